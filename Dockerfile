@@ -1,0 +1,23 @@
+FROM python:3.12-slim
+
+# One BLAS thread: the matrices are small, and there is a process per core already.
+ENV OPENBLAS_NUM_THREADS=1 \
+    OMP_NUM_THREADS=1 \
+    MKL_NUM_THREADS=1 \
+    PYTHONUNBUFFERED=1 \
+    # Comma-separated origins whose pages may connect; "*" lets plain `docker run -p` work.
+    BOKEH_ALLOW_WS_ORIGIN=*
+
+RUN useradd --create-home slipfront
+WORKDIR /srv/slipfront
+COPY pyproject.toml README.md ./
+COPY solver solver
+COPY app app
+COPY static static
+RUN pip install --no-cache-dir .
+
+USER slipfront
+EXPOSE 5006
+HEALTHCHECK --interval=30s --timeout=5s --start-period=20s \
+    CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]
+CMD ["panel", "serve", "app", "--address", "0.0.0.0", "--port", "5006", "--liveness", "--unused-session-lifetime", "120000", "--session-token-expiration", "3600"]

@@ -1,0 +1,372 @@
+"""The page: controls at the side, the run at the top, the views that apply below."""
+
+from __future__ import annotations
+
+import json
+import time
+from io import StringIO
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl, quote
+
+import numpy as np
+import panel as pn
+import panel_material_ui as pmui
+
+from app.controls import Control, make_control
+from app.pulse import Pulse
+from app.session import Session
+from app.transport import Transport
+from app.views.convergence import Convergence
+from app.views.drawing import Picture, View
+from app.views.error_time import ErrorTime
+from app.views.friction import FrictionForce
+from app.views.loop import Loop
+from app.views.spectra import Spectra
+from app.views.status_map import StatusMap
+from app.words import card_title, key_figures, status_line
+from app.worker.pool import shared_pool
+from solver.files import scene_settings, settings_from_toml
+from solver.loads import load_path
+from solver.scenes.bar import PROFILES
+from solver.settings import Curve, SettingError, Settings, about, dump, parse, read_table
+
+STATIC = Path(__file__).resolve().parents[1] / "static"
+TICK_MS = 25
+IN_FLIGHT = 2
+LOST_AFTER = 2.0
+DEFAULT_SCENE = "bar"
+
+
+def open_page() -> pmui.Page:
+    """Make the page of one session; its run starts when the browser is there."""
+    pn.extension("tabulator", notifications=True, reconnect=True)
+    settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
+    dashboard = Dashboard(Session(shared_pool(), settings))
+    if complaint:
+        pn.state.onload(lambda: dashboard.complain(complaint))
+    pn.state.onload(dashboard.begin)
+    pn.state.on_session_destroyed(dashboard.end)
+    return dashboard.page
+
+
+def settings_from_query(query: str) -> tuple[Settings, str]:
+    """Read settings from a page's address; a bad one gives the defaults and a complaint."""
+    kind = scene_settings(DEFAULT_SCENE)
+    try:
+        pairs = dict(parse_qsl(query.lstrip("?")))
+        kind = scene_settings(pairs.pop("scene", DEFAULT_SCENE))
+        definitions = kind.definitions()
+        values = {
+            name: parse(text) if name in definitions else text for name, text in pairs.items()
+        }
+        return kind.checked(values), ""
+    except SettingError as refusal:
+        return kind.checked({}), f"From the address: {refusal}"
+
+
+def query_of(settings: Settings) -> str:
+    """Write the settings that differ from their defaults as a page's address."""
+    pairs = [("scene", settings.scene)]
+    pairs += [(name, json.dumps(value)) for name, value in settings.changed().items()]
+    return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)
+
+
+class Dashboard:
+    """One page over one session: what is done is told to the session, what it holds is drawn.
+
+    Attributes
+    ----------
+    page
+        What is served.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self._pulse = Pulse()
+        self._pulse.param.watch(self._on_painted, "painted")
+        self._pulse.param.watch(self._on_key, "key")
+        self._sent_at = 0.0
+        self._dirty = False
+        self._paused_alone = False
+        self._tick: Any = None
+        self._style = (STATIC / "style.css").read_text(encoding="utf-8")
+        self.transport = Transport(session, self._mark)
+        self._views: list[View] = [
+            FrictionForce(),
+            StatusMap(self.transport.choose_time),
+            Loop(),
+            Convergence(),
+            Spectra(),
+            ErrorTime(),
+        ]
+        self._titles: dict[str, Any] = {}
+        self._cards = {view.name: self._card(view) for view in self._views}
+        self._chosen = pmui.CheckBoxGroup(
+            options=[view.name for view in self._views],
+            value=[view.name for view in self._views],
+        )
+        self._chosen.param.watch(lambda event: self._arrange(), "value")
+        self._controls = self._make_controls()
+        self._status = self._html("status")
+        self._figures = self._html("figures")
+        self._plots = pn.Column(
+            sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
+        )
+        self.page = self._make_page()
+        self._arrange()
+        self._show_controls()
+
+    def begin(self) -> None:
+        """Start the run and the pulse of the page."""
+        self.session.start()
+        self._tick = pn.state.curdoc.add_periodic_callback(self._collect, TICK_MS)
+
+    def end(self, context: Any) -> None:
+        """Leave nothing behind when the page is gone."""
+        self.session.close()
+
+    def complain(self, text: str) -> None:
+        """Tell the user what was refused and why."""
+        if pn.state.notifications is not None:
+            pn.state.notifications.error(text, duration=8000)
+
+    def _make_page(self) -> pmui.Page:
+        return pmui.Page(
+            title="Slipfront",
+            favicon=STATIC / "logo.svg",
+            logo=STATIC / "logo.svg",
+            sidebar=self._sidebar(),
+            sidebar_width=310,
+            header=[],
+            main=[
+                pn.Column(
+                    self.transport.view,
+                    self._status,
+                    self._figures,
+                    self._plots,
+                    self._pulse,
+                    sizing_mode="stretch_width",
+                    margin=(4, 10),
+                )
+            ],
+            meta_description="A laboratory for frictional contact: LATIN iterations, live.",
+        )
+
+    def _sidebar(self) -> list[Any]:
+        """Put the essential controls under their headings, the others behind "more"."""
+        groups: dict[str, list[Any]] = {}
+        more: list[Any] = []
+        for control in self._controls.values():
+            record = about(control.definition)
+            if record.essential:
+                groups.setdefault(record.group, []).append(control.view)
+            else:
+                more.append(control.view)
+        order = ("Load", "Contact", "Bar", "Decomposition", "Method", "Stop")
+        items: list[Any] = []
+        for group in order:
+            if group in groups:
+                items += [self._heading(group), *groups[group]]
+        items.append(
+            pmui.Accordion(("More settings", pmui.Column(*more)), sizing_mode="stretch_width")
+        )
+        return [
+            *items,
+            self._heading("Views"),
+            self._chosen,
+            self._heading("Share"),
+            *self._share(),
+        ]
+
+    def _share(self) -> list[Any]:
+        link = pmui.Button(
+            label="Link",
+            icon="link",
+            variant="outlined",
+            size="small",
+            description="Put the settings into the address bar, and copy it.",
+        )
+        link.on_click(lambda event: self._copy_link())
+        save = pmui.FileDownload(
+            label="Save",
+            callback=self._saved,
+            filename="slipfront.toml",
+            size="small",
+            variant="outlined",
+            description="Save the settings; the command line reads them too.",
+        )
+        default = pmui.Button(
+            label="Defaults",
+            icon="undo",
+            variant="outlined",
+            size="small",
+            description="Bring all settings back to their defaults.",
+        )
+        default.on_click(lambda event: self._adopt(type(self.session.settings).checked({})))
+        upload = pmui.FileInput(
+            label="Open settings (.toml) or load (.csv)",
+            accept=".toml,.csv",
+            size="small",
+            sizing_mode="stretch_width",
+        )
+        upload.param.watch(self._on_upload, "value")
+        return [pmui.Row(link, save, default), upload]
+
+    def _make_controls(self) -> dict[str, Control]:
+        controls = {}
+        for name, definition in self.session.settings.definitions().items():
+            control = make_control(name, definition, self._on_setting, self._points_of)
+            if control is not None:
+                controls[name] = control
+        return controls
+
+    def _card(self, view: View) -> Any:
+        title = pn.pane.HTML(
+            card_title(view.name, view.keys),
+            css_classes=["title"],
+            stylesheets=[self._style],
+            sizing_mode="stretch_width",
+            margin=(4, 6, 0, 12),
+        )
+        self._titles[view.name] = title
+        plot = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=(0, 4))
+        return pn.Column(
+            title,
+            plot,
+            sizing_mode="stretch_both",
+            css_classes=["card"],
+            stylesheets=[self._style],
+            margin=0,
+        )
+
+    def _heading(self, text: str) -> Any:
+        return pmui.Typography(text, variant="overline", margin=(6, 10, -6, 10))
+
+    def _html(self, role: str) -> Any:
+        return pn.pane.HTML(
+            "",
+            css_classes=[role],
+            stylesheets=[self._style],
+            sizing_mode="stretch_width",
+            margin=(2, 10),
+        )
+
+    def _points_of(self, name: str) -> list[tuple[float, float]]:
+        """Give points that stand for the preset of a curve setting."""
+        values = self.session.settings.values()
+        if name in ("friction_profile", "pressure_profile"):
+            return [(x * values["length"], factor) for x, factor in PROFILES[values[name]]]
+        instants = np.linspace(0.0, values["duration"], 9)
+        forces = load_path(
+            values[name], instants, values["duration"], values["peak"], values["seed"]
+        )
+        return [(float(t), float(round(f, 6))) for t, f in zip(instants, forces, strict=True)]
+
+    def _on_setting(self, name: str, value: Any) -> None:
+        try:
+            self.session.change(name, value)
+        except SettingError as refusal:
+            self.complain(str(refusal))
+        self._show_controls()
+        self._mark()
+
+    def _adopt(self, settings: Settings) -> None:
+        self.session.adopt(settings)
+        self._show_controls()
+        self._mark()
+
+    def _on_upload(self, event: Any) -> None:
+        if event.new is None:
+            return
+        try:
+            text = event.new.decode("utf-8-sig")
+            if event.obj.filename.endswith(".toml"):
+                self._adopt(settings_from_toml(text))
+            else:
+                definition = self.session.settings.definitions()["load"]
+                assert isinstance(definition, Curve)
+                rows = read_table(text, definition, "load", event.obj.filename)
+                self._on_setting("load", rows)
+        except SettingError as refusal:
+            self.complain(str(refusal))
+        except UnicodeDecodeError:
+            self.complain("The file is not text: give a settings file (.toml) or a table (.csv).")
+
+    def _saved(self) -> StringIO:
+        return StringIO(dump(self.session.settings))
+
+    def _copy_link(self) -> None:
+        self._pulse.copy = f"{query_of(self.session.settings)}#{time.monotonic()}"
+
+    def _show_controls(self) -> None:
+        settings = self.session.wanted
+        for control in self._controls.values():
+            control.show(settings)
+        self._arrange()
+
+    def _arrange(self) -> None:
+        """Show the views that are chosen and apply; frames carry what they need."""
+        settings = self.session.wanted
+        shown = [
+            view
+            for view in self._views
+            if view.name in self._chosen.value and view.applies(settings)
+        ]
+        cards = [self._cards[view.name] for view in shown]
+        if list(self._plots) != cards:
+            self._plots[:] = cards
+        self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
+        self._shown = shown
+        self._mark()
+
+    def _mark(self) -> None:
+        self._dirty = True
+
+    def _collect(self) -> None:
+        """Take what the worker sent and draw it, if the page has painted what it has."""
+        self._pause_while_alone()
+        if self.session.collect():
+            self._dirty = True
+        now = time.monotonic()
+        in_flight = self._pulse.frame - self._pulse.painted
+        if self._dirty and (in_flight < IN_FLIGHT or now - self._sent_at > LOST_AFTER):
+            self._sent_at = now
+            self._dirty = False
+            with pn.io.hold():
+                self._draw()
+                self._pulse.frame += 1
+
+    def _draw(self) -> None:
+        session = self.session
+        frame = session.shown
+        picture = Picture(session.run, session.before, tuple(session.past), frame, session.instant)
+        for view in self._shown:
+            view.draw(picture)
+            self._titles[view.name].object = card_title(view.name, view.keys)
+        self.transport.show()
+        sought = frame.iteration if frame is not None and not session.follows else None
+        self._status.object = status_line(session.run, session.running, sought)
+        entry = session.run.record_of(frame) if frame is not None else None
+        self._figures.object = key_figures(session.run, session.before, entry)
+
+    def _pause_while_alone(self) -> None:
+        """Let no run go on while no browser is connected."""
+        context = pn.state.curdoc.session_context if pn.state.curdoc else None
+        alone = context is not None and context.session.connection_count == 0
+        if alone == self._paused_alone:
+            return
+        self._paused_alone = alone
+        self.session.rest(alone)
+
+    def _on_painted(self, event: Any) -> None:
+        if self._dirty:
+            self._collect()
+
+    def _on_key(self, event: Any) -> None:
+        action = {
+            " ": self.transport.toggle,
+            "s": self.transport.step,
+            "r": self.transport.reset,
+        }[event.new[0]]
+        action()

@@ -1,0 +1,43 @@
+"""The thread between browser and server: painted frames, keys, and the clipboard."""
+
+from __future__ import annotations
+
+import param
+from panel.custom import JSComponent
+
+
+class Pulse(JSComponent):
+    """An invisible component that acknowledges frames when they are painted and hears keys."""
+
+    frame = param.Integer(default=0, doc="Number of the newest frame sent.")
+    painted = param.Integer(default=0, doc="Number of the newest frame painted.")
+    key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
+    copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
+
+    _esm = """
+    export function render({model}) {
+      let count = 0
+      model.on("frame", () => {
+        const frame = model.frame
+        requestAnimationFrame(() => { model.painted = frame })
+      })
+      model.on("copy", () => {
+        const url = location.origin + location.pathname + model.copy.split("#")[0]
+        history.replaceState(null, "", url)
+        if (navigator.clipboard) { navigator.clipboard.writeText(url).catch(() => {}) }
+      })
+      document.addEventListener("keydown", (event) => {
+        const typed = event.composedPath()[0]
+        const writes = typed.tagName === "INPUT" && typed.type !== "range" ||
+          typed.tagName === "TEXTAREA" || typed.isContentEditable
+        if (writes || event.ctrlKey || event.metaKey || event.altKey) { return }
+        if (![" ", "s", "r"].includes(event.key)) { return }
+        const presses = "button, [role=option], [role=combobox], [role=switch]"
+        if (event.key === " " && typed.closest && typed.closest(presses)) { return }
+        event.preventDefault()
+        count += 1
+        model.key = event.key + count
+      })
+      return document.createElement("span")
+    }
+    """

@@ -1,0 +1,85 @@
+"""What a page keeps of a run: every record, the newest frame, and the one that is looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.worker.protocol import Begun, Died, End, Frame, Progress, Reference, Refused, Report
+from solver.latin import Record, Status
+from solver.settings import Settings
+
+HISTORY = (
+    "iteration",
+    "seconds",
+    "indicator",
+    "behaviour",
+    "error_displacement",
+    "error_force",
+)
+
+
+@dataclass
+class Recording:
+    """One run, filled by the reports of its worker."""
+
+    ticket: int
+    settings: Settings
+    label: str
+    begun: Begun | None = None
+    reference: Reference | None = None
+    records: list[Record] = field(default_factory=list)
+    newest: Frame | None = None
+    sought: Frame | None = None
+    status: Status | None = None
+    notice: str = ""
+
+    def take(self, report: Report) -> None:
+        """Add what a worker reports."""
+        match report:
+            case Begun():
+                self.begun = report
+            case Reference():
+                self.reference = report
+            case Progress():
+                self.records.extend(report.records)
+            case Frame(sought=True):
+                self.sought = report
+            case Frame():
+                self.newest = report
+            case End():
+                self.status = report.status
+            case Refused():
+                self.notice = report.reason
+            case Died():
+                self.records.clear()
+                self.newest = self.sought = self.status = None
+                self.notice = report.reason
+            case _:
+                raise TypeError(f"no place for a report of type {type(report).__name__}")
+
+    @property
+    def iteration(self) -> int:
+        """Iterations done, as far as is known."""
+        return self.records[-1].iteration if self.records else 0
+
+    @property
+    def is_worth_keeping(self) -> bool:
+        """Whether the run got far enough to be compared with."""
+        return self.status is not None or len(self.records) >= 10
+
+    def history(self, since: int = 0) -> dict[str, NDArray[np.float64]]:
+        """Give the columns of the records from a place on, for plots."""
+        chosen = self.records[since:]
+        return {name: np.array([getattr(entry, name) for entry in chosen]) for name in HISTORY}
+
+    def first_within(self, level: float) -> Record | None:
+        """Find the first record whose friction force error is at most `level`."""
+        return next((entry for entry in self.records if entry.error_force <= level), None)
+
+    def record_of(self, frame: Frame) -> Record | None:
+        """Find the record of a frame's iteration."""
+        place = frame.iteration - 1
+        return self.records[place] if 0 <= place < len(self.records) else None

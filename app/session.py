@@ -1,0 +1,197 @@
+"""A page's state and its one owner: settings, the run at work, the run before, what is looked at.
+
+Reports of the worker arrive on another thread and wait in a mailbox; everything else happens on
+the page's own event loop.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import Any
+
+from app.recording import Recording
+from app.worker.pool import Pool
+from app.worker.protocol import Pace, Report, Run, Seek, Step, Watch
+from solver.settings import Settings, about
+
+PAST_RUNS = 6
+DEFAULT_PACE = 20.0
+
+
+class Session:
+    """The state of one page.
+
+    Attributes
+    ----------
+    settings
+        Of the run at work.
+    run, before
+        The run at work, and the last one worth comparing with.
+    past
+        Finished runs, oldest first, for error against run time.
+    instant
+        Index of the chosen instant among those that frames carry.
+    running, pace
+        Whether iterations go on by themselves, and how many a second (None: all it can).
+    follows
+        Whether the newest iterate is looked at, not one that was sought.
+    """
+
+    def __init__(self, pool: Pool, settings: Settings) -> None:
+        self.settings = settings
+        self.before: Recording | None = None
+        self.past: deque[Recording] = deque(maxlen=PAST_RUNS)
+        self.instant = 0
+        self.phase = 0.75
+        self.running = True
+        self.pace: float | None = DEFAULT_PACE
+        self.watch: frozenset[str] = frozenset()
+        self.follows = True
+        self._mailbox: deque[Report] = deque()
+        self._lock = threading.Lock()
+        self._seat = pool.seat(self._receive)
+        self._pending: Settings | None = None
+        self.run = Recording(0, settings, "")
+
+    def start(self, settings: Settings | None = None) -> None:
+        """Start a run, with new settings or the same, in place of the one at work."""
+        self._retire()
+        changed = {
+            name: value
+            for name, value in (settings or self.settings).values().items()
+            if value != self.settings.values()[name]
+        }
+        self.settings = settings or self.settings
+        label = _label(self.settings, changed) if changed else self.run.label
+        self.run = Recording(self.run.ticket + 1, self.settings, label)
+        self.follows = True
+        self._pending = None
+        self._seat.run(
+            Run(
+                self.run.ticket,
+                self.settings.scene,
+                self.settings.values(),
+                pace=self.pace,
+                pause_after=None if self.running else 1,
+                watch=self.watch,
+            )
+        )
+
+    def change(self, name: str, value: Any) -> None:
+        """Change one setting; the run starts again as soon as the last change was shown.
+
+        Raises
+        ------
+        SettingError
+            If the value is refused; then nothing changes.
+        """
+        self.adopt((self._pending or self.settings).with_change(name, value))
+
+    def adopt(self, settings: Settings) -> None:
+        """Take new settings as a whole."""
+        if settings.values() == self.settings.values() and self._pending is None:
+            return
+        self._pending = settings
+        if self.run.newest is not None or self.run.notice or self.run.ticket == 0:
+            self.start(settings)
+
+    def collect(self) -> bool:
+        """Take the waiting reports; tell whether anything is new."""
+        with self._lock:
+            reports = list(self._mailbox)
+            self._mailbox.clear()
+        for report in reports:
+            if report.ticket == self.run.ticket:
+                self.run.take(report)
+        if reports and self.run.begun is not None:
+            self.instant = round(self.phase * (len(self.run.begun.instants) - 1))
+        if self._pending is not None and (self.run.newest is not None or self.run.notice):
+            self.start(self._pending)
+        return bool(reports)
+
+    def go(self) -> None:
+        """Let iterations go on by themselves; a run that ended starts again."""
+        self.running = True
+        self.follows = True
+        if self.run.status is not None:
+            self.start()
+        else:
+            self._seat.send(Pace(self.run.ticket, self.pace))
+
+    def pause(self) -> None:
+        """Wait after the present iteration."""
+        self.running = False
+        self._seat.send(Pace(self.run.ticket, 0.0))
+
+    def step(self) -> None:
+        """Do one iteration and wait."""
+        self.running = False
+        self.follows = True
+        self._seat.send(Step(self.run.ticket))
+
+    def set_pace(self, pace: float | None) -> None:
+        """Set the iterations per second."""
+        self.pace = pace
+        if self.running and self.run.status is None:
+            self._seat.send(Pace(self.run.ticket, pace))
+
+    def seek(self, iteration: int) -> None:
+        """Look at an iteration that was done already."""
+        self.follows = iteration >= self.run.iteration
+        if not self.follows:
+            self._seat.send(Seek(self.run.ticket, iteration))
+
+    def look_at(self, instant: int) -> None:
+        """Choose the instant at which fields are drawn."""
+        if self.run.begun is not None:
+            count = len(self.run.begun.instants)
+            self.instant = min(max(instant, 0), count - 1)
+            self.phase = self.instant / max(count - 1, 1)
+
+    def set_watch(self, watch: frozenset[str]) -> None:
+        """Set what frames carry beyond the fields."""
+        if watch != self.watch:
+            self.watch = watch
+            self._seat.send(Watch(self.run.ticket, watch))
+
+    def close(self) -> None:
+        """Leave: the run stops and its process is free."""
+        self._seat.close()
+
+    def rest(self, alone: bool) -> None:
+        """Hold the run while nobody is connected, and let it go on afterwards."""
+        if self.running and self.run.status is None:
+            self._seat.send(Pace(self.run.ticket, 0.0 if alone else self.pace))
+
+    @property
+    def wanted(self) -> Settings:
+        """The settings that the user sees: of the run at work, or of the one about to start."""
+        return self._pending or self.settings
+
+    @property
+    def shown(self) -> Any:
+        """The frame that is looked at, or None before the first."""
+        if self.follows or self.run.sought is None:
+            return self.run.newest
+        return self.run.sought
+
+    def _retire(self) -> None:
+        if self.run.is_worth_keeping:
+            self.before = self.run
+            self.past.append(self.run)
+
+    def _receive(self, report: Report) -> None:
+        with self._lock:
+            self._mailbox.append(report)
+
+
+def _label(settings: Settings, changed: dict[str, Any]) -> str:
+    definitions = settings.definitions()
+    parts = []
+    for name, value in list(changed.items())[:2]:
+        unit = about(definitions[name]).unit
+        text = f"{value:.4g}" if isinstance(value, float) else str(value)
+        text = "points" if isinstance(value, tuple) else text
+        parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
+    return ", ".join(parts) + (", ..." if len(changed) > 2 else "")

@@ -1,0 +1,106 @@
+"""Indicators beside true errors, over iterations."""
+
+from __future__ import annotations
+
+from bokeh.models import Range1d, Span
+
+from app.views.drawing import (
+    BLUE,
+    GREEN,
+    GREY,
+    PURPLE,
+    VERMILION,
+    Key,
+    Picture,
+    decades,
+    empty,
+    make_figure,
+    round_up,
+    set_range,
+)
+from solver.settings import Settings
+
+CURVES = (
+    ("indicator", GREY, "indicator η", "dashed"),
+    ("behaviour", PURPLE, "k-free", "dashed"),
+    ("error_displacement", GREEN, "error u", "solid"),
+    ("error_force", BLUE, "error f", "solid"),
+)
+FLOOR = 1e-18
+
+
+class Convergence:
+    """What the method knows of itself (dashed), and how far it really is (solid)."""
+
+    name = "Convergence"
+    watches = ""
+    keys = tuple(
+        Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
+    )
+
+    def __init__(self) -> None:
+        self.figure = make_figure(
+            "Iteration",
+            "Indicator, relative error",
+            x_range=Range1d(0, 20),
+            y_range=Range1d(1e-4, 10),
+            y_axis_type="log",
+        )
+        columns = [name for name, *_ in CURVES]
+        self._now = empty("iteration", *columns)
+        self._ghost = empty("iteration", *columns)
+        self._ticket = -1
+        self._count = 0
+        self._lowest = 1.0
+        made = self.figure
+        for name, color, _, dash in CURVES:
+            if dash == "solid":
+                made.line(
+                    "iteration",
+                    name,
+                    source=self._ghost,
+                    line_color=color,
+                    line_alpha=0.35,
+                    line_width=2,
+                )
+            made.line(
+                "iteration",
+                name,
+                source=self._now,
+                line_color=color,
+                line_dash=dash,
+                line_width=2.5,
+            )
+        self._shown = Span(location=0, dimension="height", line_color=VERMILION, line_width=2)
+        made.add_layout(self._shown)
+
+    def applies(self, settings: Settings) -> bool:
+        """Every run converges, or not."""
+        return True
+
+    def draw(self, picture: Picture) -> None:
+        """Add the new records."""
+        run = picture.run
+        if run.ticket != self._ticket or len(run.records) < self._count:
+            self._begin(picture)
+        if len(run.records) > self._count:
+            new = run.history(self._count)
+            self._count = len(run.records)
+            self._now.stream({name: new[name] for name in self._now.data})
+            columns = [new[name] for name, *_ in CURVES]
+            lowest, _ = decades([self._lowest, *(v for c in columns for v in c)], FLOOR)
+            self._lowest = min(self._lowest, lowest)
+            set_range(self.figure.y_range, self._lowest, 10.0)
+        widest = max(run.iteration, picture.before.iteration if picture.before else 0, 20)
+        set_range(self.figure.x_range, 0, round_up(widest))
+        at = picture.frame.iteration if picture.frame else 0
+        if self._shown.location != at:
+            self._shown.location = at
+
+    def _begin(self, picture: Picture) -> None:
+        self._ticket, self._count, self._lowest = picture.run.ticket, 0, 1e-2
+        self._now.data = {name: [] for name in self._now.data}
+        if picture.before is None:
+            return
+        past = picture.before.history()
+        self._ghost.data = {name: past[name] for name in self._ghost.data}

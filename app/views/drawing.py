@@ -1,0 +1,146 @@
+"""What all views share: colours, figures, and the picture that they draw."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from bokeh.models import ColumnDataSource, Range1d
+from bokeh.plotting import figure
+
+from app.recording import Recording
+from app.worker.protocol import Frame
+from solver.settings import Settings
+
+BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"
+SKY, VERMILION = "#56B4E9", "#D55E00"
+BACKWARD, STICK, FORWARD = BLUE, "#D9D9D9", ORANGE
+FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
+
+
+@dataclass(frozen=True)
+class Key:
+    """One entry of a legend, which stands beside the view's name: a mark and its meaning.
+
+    Attributes
+    ----------
+    mark
+        "line", "dashed", "dotted", "band", "square" or "dot".
+    """
+
+    color: str
+    mark: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What is looked at in one moment.
+
+    Attributes
+    ----------
+    run, before
+        The run at work and the last one worth comparing with.
+    past
+        Finished runs, oldest first.
+    frame
+        The fields that are shown, or None before the first.
+    instant
+        Index of the chosen instant.
+    """
+
+    run: Recording
+    before: Recording | None
+    past: Sequence[Recording]
+    frame: Frame | None
+    instant: int
+
+
+class View(Protocol):
+    """One plot of the page.
+
+    Attributes
+    ----------
+    name
+        Its name in the choice of views.
+    watches
+        What its frames must carry beyond the fields, or an empty text.
+    keys
+        Its legend.
+    figure
+        The Bokeh figure.
+    """
+
+    name: str
+    watches: str
+    keys: Sequence[Key]
+    figure: Any
+
+    def applies(self, settings: Settings) -> bool:
+        """Tell whether the view says anything about such a run."""
+
+    def draw(self, picture: Picture) -> None:
+        """Bring the figure up to date."""
+
+
+def make_figure(x_label: str, y_label: str, **options: Any) -> Any:
+    """Make a figure of the page's style; `options` go to Bokeh."""
+    made = figure(
+        height=230,
+        min_height=150,
+        sizing_mode="stretch_both",
+        toolbar_location=None,
+        tools=options.pop("tools", ""),
+        x_axis_label=x_label,
+        y_axis_label=y_label,
+        min_border_right=12,
+        min_border_top=6,
+        **options,
+    )
+    made.axis.axis_label_text_font_size = "14px"
+    made.axis.major_label_text_font_size = "13px"
+    made.axis.axis_label_standoff = 4
+    return made
+
+
+def empty(*columns: str) -> ColumnDataSource:
+    """Make a data source without rows."""
+    return ColumnDataSource({name: [] for name in columns})
+
+
+def set_range(axis: Range1d, low: float, high: float) -> None:
+    """Move a range, only if it has to: every change is painted."""
+    if not high > low:
+        low, high = low - 0.5, high + 0.5
+    if (axis.start, axis.end) != (low, high):
+        axis.update(start=low, end=high)
+
+
+def decimal_scale(size: float, unit: str) -> tuple[float, str]:
+    """Choose an SI prefix for values of a size; give the factor to divide by, and the unit."""
+    if not (np.isfinite(size) and size > 0.0):
+        return 1.0, unit
+    fitting = [(factor, prefix) for prefix, factor in FACTORS.items() if size >= 0.5 * factor] or [
+        (1e-9, "n")
+    ]
+    factor, prefix = max(fitting)
+    return factor, prefix + unit
+
+
+def decades(values: Sequence[float], floor: float) -> tuple[float, float]:
+    """Give whole decades around the positive values, not below a floor."""
+    finite = [value for value in values if np.isfinite(value) and value > 0.0]
+    low = max(min(finite, default=1e-1), floor)
+    high = max(max(finite, default=1.0), 10.0 * low)
+    return 10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high))
+
+
+def round_up(value: float) -> float:
+    """Give the next of 1, 2, 5, 10, 20, ... so that a growing axis moves seldom."""
+    if value <= 0.0:
+        return 1.0
+    decade = 10.0 ** np.floor(np.log10(value))
+    steps = (1.0, 2.0, 5.0, 10.0)
+    return float(next(step * decade for step in steps if step * decade >= 0.999 * value))

@@ -1,0 +1,94 @@
+"""Stick and slip over space and time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from bokeh.events import Pan, Tap
+from bokeh.models import LinearColorMapper, Range1d, Span
+
+from app.views.drawing import (
+    BACKWARD,
+    FORWARD,
+    GREY,
+    STICK,
+    VERMILION,
+    Key,
+    Picture,
+    empty,
+    make_figure,
+    set_range,
+)
+from solver.settings import Settings
+
+
+class StatusMap:
+    """The contact status, the cuts, and the chosen instant, which a tap or a drag moves.
+
+    Parameters
+    ----------
+    choose
+        Called with the time, s, that was tapped.
+    """
+
+    name = "Stick and slip"
+    watches = ""
+    keys = (
+        Key(BACKWARD, "square", "slip −"),
+        Key(STICK, "square", "stick"),
+        Key(FORWARD, "square", "slip +"),
+        Key(VERMILION, "line", "chosen instant"),
+    )
+
+    def __init__(self, choose: Callable[[float], None]) -> None:
+        self.figure = make_figure(
+            "Position x (m)", "Time t (s)", x_range=Range1d(0, 1), y_range=Range1d(0, 1)
+        )
+        self._image = empty("image", "x", "y", "dw", "dh")
+        self._cuts = empty("x")
+        self._drawn = -1
+        made = self.figure
+        made.grid.visible = False
+        mapper = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=0, high=2)
+        made.image("image", x="x", y="y", dw="dw", dh="dh", source=self._image, color_mapper=mapper)
+        made.vspan("x", source=self._cuts, line_color=GREY, line_width=1)
+        self._instant = Span(location=0, dimension="width", line_color=VERMILION, line_width=3)
+        made.add_layout(self._instant)
+        made.on_event(Tap, lambda event: choose(event.y))
+        made.on_event(Pan, lambda event: choose(event.y))
+
+    def applies(self, settings: Settings) -> bool:
+        """Friction is what the page is about."""
+        return True
+
+    def draw(self, picture: Picture) -> None:
+        """Draw the map of the shown iterate."""
+        run, frame = picture.run, picture.frame
+        if run.begun is None or frame is None or frame.ticket != run.ticket:
+            return
+        begun = run.begun
+        if self._drawn != run.ticket:
+            self._drawn = run.ticket
+            self._cuts.data = {"x": begun.cuts}
+        half_x = 0.5 * _step(begun.positions)
+        half_t = 0.5 * _step(begun.instants)
+        first_x, last_x = float(begun.positions[0]), float(begun.positions[-1])
+        first_t, last_t = float(begun.instants[0]), float(begun.instants[-1])
+        set_range(self.figure.x_range, first_x, last_x)
+        set_range(self.figure.y_range, first_t - half_t, last_t + half_t)
+        image = np.ascontiguousarray((frame.status + 1).astype(np.uint8).T)
+        self._image.data = {
+            "image": [image],
+            "x": [first_x - half_x],
+            "y": [first_t - half_t],
+            "dw": [last_x - first_x + 2 * half_x],
+            "dh": [last_t - first_t + 2 * half_t],
+        }
+        time = float(begun.instants[picture.instant])
+        if self._instant.location != time:
+            self._instant.location = time
+
+
+def _step(axis: np.ndarray) -> float:
+    return float(axis[-1] - axis[0]) / (len(axis) - 1) if len(axis) > 1 else 1.0

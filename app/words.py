@@ -1,0 +1,131 @@
+"""What the page says in words: the status line, and the key figures beside those before."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from html import escape
+
+from app.recording import Recording
+from app.views.drawing import Key
+from solver.latin import Ending, Record
+
+ENDINGS = {
+    Ending.CONVERGED: "✓ converged",
+    Ending.EXHAUSTED: "■ out of iterations",
+    Ending.STALLED: "■ stalled",
+    Ending.CANCELLED: "■ stopped",
+    Ending.DIVERGED: "✗ diverged",
+}
+
+
+def status_line(run: Recording, running: bool, sought: int | None) -> str:
+    """Say what runs, how far it is, and how it ended with what to try (HTML)."""
+    if run.notice and run.status is None:
+        return f"<b>{escape(run.notice)}</b>"
+    settings = run.settings.values()
+    parts = settings["substructures"]
+    scale = (
+        "one substructure"
+        if parts == 1
+        else (f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}")
+    )
+    if run.status is not None:
+        state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} iterations"
+    elif not running:
+        state = f"<b>paused</b> at iteration {run.iteration}"
+    else:
+        state = f"<b>running</b>, iteration {run.iteration}"
+    line = f"{state} · {scale}"
+    if run.records:
+        last = run.records[-1]
+        line += f" · η = {number(last.indicator)}"
+        line += f" · friction force error {percent(last.error_force)}"
+        line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
+    if sought is not None:
+        line += f" · <b>showing iteration {sought}</b>"
+    if run.status is not None:
+        line += f"<br>{escape(run.status.advice)}"
+    elif run.notice:
+        line += f"<br>{escape(run.notice)}"
+    return line
+
+
+def key_figures(run: Recording, before: Recording | None, shown: Record | None) -> str:
+    """Set the figures of this run beside those of the run before (an HTML table)."""
+    heads = (
+        "Iteration",
+        "LATIN indicator η",
+        "k-free indicator",
+        "Displacement error",
+        "Friction force error",
+        "Run time",
+        "Iterations to 1 %",
+    )
+    rows = [("this run", run, shown or (run.records[-1] if run.records else None))]
+    if before is not None:
+        rows.append(
+            (
+                f"before ({escape(before.label)})" if before.label else "before",
+                before,
+                before.records[-1] if before.records else None,
+            )
+        )
+    head = "".join(f"<th>{text}</th>" for text in ("", *heads))
+    body = "".join(
+        f"<tr><th>{name}</th>{''.join(f'<td>{cell}</td>' for cell in _cells(kept, entry))}</tr>"
+        for name, kept, entry in rows
+    )
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _cells(run: Recording, entry: Record | None) -> tuple[str, ...]:
+    if entry is None:
+        return ("–",) * 7
+    within = run.first_within(0.01)
+    return (
+        str(entry.iteration),
+        number(entry.indicator),
+        number(entry.behaviour),
+        percent(entry.error_displacement),
+        percent(entry.error_force),
+        f"{1e3 * entry.seconds:.1f} ms",
+        str(within.iteration) if within else "–",
+    )
+
+
+def card_title(name: str, keys: Sequence[Key]) -> str:
+    """Write a view's name with its legend beside it (HTML)."""
+    entries = "".join(
+        f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
+        f"{escape(key.text)}</span>"
+        for key in keys
+    )
+    return f"<b>{escape(name)}</b>{entries}"
+
+
+def per_iteration(run: Recording) -> float:
+    """Give the time per iteration, s, without the set-up where more than one is done."""
+    first, last = run.records[0], run.records[-1]
+    if last.iteration == first.iteration:
+        return last.seconds
+    return (last.seconds - first.seconds) / (last.iteration - first.iteration)
+
+
+def number(value: float) -> str:
+    """Write a positive number over many decades."""
+    if not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    exponent = math.floor(math.log10(abs(value)))
+    if -3 <= exponent < 3:
+        return f"{value:.3g}"
+    return f"{value / 10.0**exponent:.1f}·10<sup>{exponent}</sup>"
+
+
+def percent(value: float) -> str:
+    """Write a relative error."""
+    if not math.isfinite(value):
+        return "–"
+    return f"{100.0 * value:.2g} %" if value >= 1e-4 else f"{number(100.0 * value)} %"

@@ -1,0 +1,137 @@
+"""A worker process as the server holds it: two threads carry orders to it and reports from it."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from importlib.machinery import ModuleSpec
+from multiprocessing.connection import Connection
+from multiprocessing.context import BaseContext
+from multiprocessing.process import BaseProcess
+from queue import SimpleQueue
+
+from app.worker import process
+from app.worker.protocol import Order, Ready, Report
+
+ONE_THREAD = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
+PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]
+
+_starting = threading.Lock()
+
+
+class Member:
+    """One worker process, from its start to its end.
+
+    Parameters
+    ----------
+    received
+        Called with every report, on this member's own thread.
+    gone
+        Called once on the same thread, when the process has ended.
+    """
+
+    def __init__(
+        self,
+        received: Callable[[Member, Report | Ready], None],
+        gone: Callable[[Member], None],
+    ) -> None:
+        self._received = received
+        self._gone = gone
+        self._orders: SimpleQueue[Order | None] = SimpleQueue()
+        self._doomed = threading.Event()
+        self._process: BaseProcess | None = None
+        self._reader = threading.Thread(target=self._live, name="worker-reports", daemon=True)
+        self._reader.start()
+
+    @property
+    def pid(self) -> int | None:
+        """Number of the process, None until it has started."""
+        return self._process.pid if self._process else None
+
+    def send(self, order: Order) -> None:
+        """Send an order, without ever waiting for the process."""
+        self._orders.put(order)
+
+    def kill(self) -> None:
+        """End the process at once, whatever it does."""
+        self._doomed.set()
+        if self._process is not None:
+            self._process.kill()
+
+    def join(self, timeout: float) -> None:
+        """Wait until the process has ended; not from one of this member's own callbacks."""
+        if threading.current_thread() is not self._reader:
+            self._reader.join(timeout)
+
+    def _live(self) -> None:
+        try:
+            started, ours = start()
+            self._process = started
+            if self._doomed.is_set():
+                started.kill()
+            carry = threading.Thread(
+                target=self._carry_orders, args=(ours,), name="worker-orders", daemon=True
+            )
+            carry.start()
+            with contextlib.suppress(EOFError, OSError):
+                while True:
+                    self._received(self, ours.recv())
+        finally:
+            self._orders.put(None)
+            if self._process is not None:
+                self._process.kill()
+                self._process.join()
+            self._gone(self)
+
+    def _carry_orders(self, connection: Connection) -> None:
+        with contextlib.suppress(OSError):
+            while (order := self._orders.get()) is not None:
+                connection.send(order)
+
+
+def start() -> tuple[BaseProcess, Connection]:
+    """Start a worker process, and give the server's end of its pipe."""
+    context = _context()
+    ours, theirs = context.Pipe()
+    worker = context.Process(  # type: ignore[attr-defined]  # every concrete context has it
+        target=process.main, args=(theirs,), name="slipfront-worker", daemon=True
+    )
+    with _starting, _children_surroundings():
+        worker.start()
+    # As long as this end were open here, the end of the process would not be seen.
+    theirs.close()
+    return worker, ours
+
+
+def _context() -> BaseContext:
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(PRELOADED)
+    return context
+
+
+@contextlib.contextmanager
+def _children_surroundings() -> Iterator[None]:
+    """Let children start with one BLAS thread, and without importing the server's main module.
+
+    The main module of `panel serve` imports all of Panel, which would take each worker seconds.
+    multiprocessing leaves out a main module that is named like a package's `__main__`.
+    """
+    main = sys.modules["__main__"]
+    spec, before = main.__spec__, {name: os.environ.get(name) for name in ONE_THREAD}
+    main.__spec__ = ModuleSpec("app.__main__", None)
+    os.environ.update(ONE_THREAD)
+    try:
+        yield
+    finally:
+        main.__spec__ = spec
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

@@ -1,0 +1,290 @@
+"""What the server and a worker process say to each other; all of it is plain, picklable data.
+
+A run has a ticket. Orders about another ticket than the one at work are ignored, and so are
+reports about a ticket that is no longer wanted: nothing depends on who is first.
+
+    server -> worker   Run, Pace, Step, Seek, Watch, Park, Leave
+    worker -> server   Ready, then per run: Taken, Begun, Frame, Reference, Progress*, Frame*,
+                       then End | Parked | Refused; Waiting whenever there is nothing to do
+    pool -> session    Begun, Reference, Progress, Frame, End, Refused, Died; the rest is internal
+
+Every record of a run is in exactly one Progress; frames are only the newest. A run that was
+parked and went on sends Begun, Reference and a Frame again, and no record or End twice. Died
+alone breaks this: what was sent under its ticket before is to be forgotten.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.worker.resume import Resume
+from solver.latin import Record, Status
+
+Floats = NDArray[np.float32]
+Bytes = NDArray[np.int8]
+
+LARGEST_SIDE = 400
+"""Points and instants of a field that are sent at most; a screen shows no more."""
+
+LONGEST_CURVE = 2000
+"""Instants of a curve that are sent at most."""
+
+MOST_SPECTRA = 60
+"""Substructures whose spectra are sent at most, chosen by `thinned`."""
+
+MOST_VALUES = 64
+"""Singular values of a substructure that are sent at most."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """Start a run in place of whatever is at work.
+
+    Attributes
+    ----------
+    scene, values
+        The catalogue's name and the settings' plain values.
+    pace
+        Iterations per second, None for as fast as possible, or 0 to wait. The first iteration is
+        done in any case.
+    pause_after
+        Iterations after which the run waits for Pace or Step; None never waits.
+    resume
+        Where to go on; records before it are not sent again.
+    watch
+        Names of what frames carry beyond the fields: "spectra", "behaviour".
+    seek
+        Iteration whose frame is sought first.
+    """
+
+    ticket: int
+    scene: str
+    values: dict[str, Any]
+    pace: float | None = None
+    pause_after: int | None = None
+    resume: Resume | None = None
+    watch: frozenset[str] = frozenset()
+    seek: int | None = None
+
+    @property
+    def waits(self) -> bool:
+        """Whether it has nothing to do until another order comes."""
+        if self.resume is None or self.seek is not None:
+            return False
+        paused = self.pause_after is not None and self.resume.iteration >= self.pause_after
+        return self.resume.status is not None or self.pace == 0 or paused
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Go on at this many iterations per second; None is as fast as possible, 0 waits.
+
+    A pause that was reached is over with it, a later one stays.
+    """
+
+    ticket: int
+    pace: float | None
+
+
+@dataclass(frozen=True)
+class Step:
+    """Do one iteration and wait."""
+
+    ticket: int
+
+
+@dataclass(frozen=True)
+class Seek:
+    """Send the frame of an iteration that was done already; the run itself is not moved.
+
+    A number out of range counts as the nearest one; a newer Seek takes the place of an older.
+    """
+
+    ticket: int
+    iteration: int
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Change what frames carry, and send one at once."""
+
+    ticket: int
+    watch: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Park:
+    """Give up the run, and unless `keep` is false, say how to go on: someone needs the process."""
+
+    ticket: int
+    keep: bool = True
+
+
+@dataclass(frozen=True)
+class Leave:
+    """End the process."""
+
+
+Order = Run | Pace | Step | Seek | Watch | Park | Leave
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The process listens."""
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A Run was read and is being set up; the run before it is gone."""
+
+    ticket: int
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """The run has nothing to do until an order comes: it has ended, or is paused."""
+
+    ticket: int
+
+
+@dataclass(frozen=True)
+class Begun:
+    """A run has started: what its fields stand on, thinned to `LARGEST_SIDE`, in SI.
+
+    Attributes
+    ----------
+    positions, instants
+        Of the field's points and columns, m and s.
+    cuts
+        Positions where substructures meet, m.
+    bound
+        Friction bound mu p at the positions, N/m.
+    load
+        Force at the loaded end, shape (n_curve,), N.
+    all_instants
+        The instants of `load` and of end displacements, thinned to `LONGEST_CURVE`, s.
+    closed_form, closed_form_end
+        Friction force, N/m, and end displacement, m, of the closed form, or None.
+    """
+
+    ticket: int
+    positions: Floats
+    instants: Floats
+    cuts: Floats
+    bound: Floats
+    load: Floats
+    all_instants: Floats
+    closed_form: Floats | None
+    closed_form_end: Floats | None
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The incremental reference: friction force, N/m; status; end displacement, m."""
+
+    ticket: int
+    friction: Floats
+    status: Bytes
+    end_displacement: Floats
+    residual: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Records of iterations, in order, none left out."""
+
+    ticket: int
+    records: tuple[Record, ...]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The fields of one iterate, thinned, in SI.
+
+    Attributes
+    ----------
+    sought
+        Whether it answers a Seek, and is not the newest.
+    friction
+        Friction force on the bar, shape (n_positions, n_instants), N/m.
+    status
+        -1, 0, +1, same shape.
+    end_displacement
+        Displacement of the loaded end, shape (n_curve,), m.
+    spectra
+        Singular values, shape (n_substructures, n_values), NaN where there is none, of the
+        substructures `thinned(number, MOST_SPECTRA)`; or None.
+    behaviour
+        Map of the k-free indicator, shape as friction; or None.
+    """
+
+    ticket: int
+    iteration: int
+    sought: bool
+    friction: Floats
+    status: Bytes
+    end_displacement: Floats
+    spectra: Floats | None
+    behaviour: Floats | None
+
+
+@dataclass(frozen=True)
+class End:
+    """The run has ended; it still answers Seek and Watch until it is parked or replaced."""
+
+    ticket: int
+    status: Status
+    iteration: int
+
+
+@dataclass(frozen=True)
+class Parked:
+    """The run was given up on request.
+
+    Attributes
+    ----------
+    order
+        The order that goes on with it; None if that was not asked for, or nothing is known of it.
+    """
+
+    ticket: int
+    order: Run | None
+
+
+@dataclass(frozen=True)
+class Refused:
+    """The run could not start, or broke: a sentence for the user."""
+
+    ticket: int
+    reason: str
+
+
+@dataclass(frozen=True)
+class Died:
+    """The process of this run is gone, and all that was sent under the ticket is to be forgotten.
+
+    The pool says it in the process's stead.
+
+    Attributes
+    ----------
+    again
+        Whether the run was started again from its beginning, under the same ticket; otherwise
+        it is given up.
+    """
+
+    ticket: int
+    reason: str
+    again: bool
+
+
+Report = Taken | Waiting | Begun | Reference | Progress | Frame | End | Parked | Refused | Died
+
+
+def thinned(size: int, largest: int = LARGEST_SIDE) -> NDArray[np.intp]:
+    """Give the indices that stand for a long axis, first and last included."""
+    return np.unique(np.linspace(0, size - 1, min(size, largest)).round().astype(np.intp))

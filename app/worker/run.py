@@ -1,0 +1,242 @@
+"""A run at work in a worker process: one thing at a time, so that orders are never kept waiting."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from app.worker.protocol import (
+    End,
+    Frame,
+    Pace,
+    Parked,
+    Progress,
+    Report,
+    Run,
+    Seek,
+    Step,
+    Watch,
+)
+from app.worker.recording import Recording, References
+from app.worker.resume import Resume
+from app.worker.sampler import Sampler
+from app.worker.tempo import Tempo
+from solver.discrete import discretise
+from solver.latin import Ending, Iterate, Record, StopRules, iterations, record
+from solver.latin.indicators import latin_indicator
+from solver.reference.distance import Distance, distance_to
+from solver.reference.incremental import Interrupted, Reference
+from solver.scenes import CATALOGUE
+from solver.settings import SettingError, Settings
+
+PUBLISH_EVERY = 1.0 / 25.0
+"""Seconds between two frames of a run that goes on by itself."""
+
+
+class WorkerRun:
+    """One run, which does a small piece of work at each `advance` and obeys orders in between.
+
+    The pieces are: the first iteration and its frame; the reference; an iteration that is sought;
+    a frame that is due; the next iteration.
+
+    Parameters
+    ----------
+    order
+        What to run.
+    send
+        Takes reports.
+    urgent
+        Tells whether an order waits that ends this run.
+    references
+        Shared by the runs of a process.
+
+    Raises
+    ------
+    SettingError
+        For a value that is refused.
+    """
+
+    def __init__(
+        self,
+        order: Run,
+        send: Callable[[Report], None],
+        urgent: Callable[[], bool],
+        references: References,
+    ) -> None:
+        resume = order.resume
+        self.ticket = order.ticket
+        self._order = order
+        self._send = send
+        self._urgent = urgent
+        self._references = references
+        self._settings = _checked(order)
+        self._problem = discretise(self._settings)
+        self._sampler = Sampler(self._problem)
+        self._rules = resume.rules if resume else StopRules(self._settings)
+        self._status = resume.status if resume else None
+        self._reference: Reference | None = None
+        self._distance: Distance | None = None
+        self._before = resume.before if resume else None
+        self._newest: Iterate | None = None
+        self._search: tuple[Iterator[Iterate], int] | None = None
+        self._recording = Recording()
+        self._tempo = Tempo(order.pace, order.pause_after)
+        self._watch = order.watch
+        self._unsent: list[Record] = []
+        self._stale = False
+        self._publish_at = 0.0
+
+    def rest(self) -> float | None:
+        """Give the seconds until `advance` has something to do; None waits for an order."""
+        if self._newest is None or self._distance is None or self._search is not None:
+            return 0.0
+        rest = self._rest_of_iterations(self._newest.number)
+        if not self._stale:
+            return rest
+        due = max(self._publish_at - time.monotonic(), 0.0)
+        return due if rest is None else min(rest, due)
+
+    def advance(self) -> None:
+        """Do the next piece of work, if any is due."""
+        if self._newest is None:
+            self._open()
+        elif self._distance is None:
+            self._compare(self._newest)
+        elif self._search is not None:
+            self._search_on(*self._search)
+        elif self._stale and time.monotonic() >= self._publish_at:
+            self._publish()
+        elif self._rest_of_iterations(self._newest.number) == 0.0:
+            self._iterate(self._newest, self._distance)
+
+    def obey(self, order: Pace | Step | Seek | Watch) -> None:
+        """Follow an order."""
+        match order:
+            case Pace():
+                self._tempo.change(order.pace, self._newest.number if self._newest else 0)
+            case Step():
+                self._tempo.step()
+            case Seek():
+                self._seek(order.iteration)
+            case Watch():
+                self._watch = order.watch
+                if self._newest is not None:
+                    self._send(self._frame(self._newest))
+
+    def parked(self) -> Parked:
+        """Give the order that goes on with the run, once all its records are sent."""
+        resume = self._order.resume
+        done = self._newest.number if self._newest else 0
+        if self._newest is not None and self._reference is not None:
+            self._publish()
+            resume = Resume(self._before, done, self._rules, self._reference, self._status)
+        pace, pause_after = self._tempo.carried(done)
+        seek = self._search[1] if self._search else self._order.seek
+        order = replace(
+            self._order,
+            pace=pace,
+            pause_after=pause_after,
+            resume=resume,
+            watch=self._watch,
+            seek=seek,
+        )
+        return Parked(self.ticket, order)
+
+    def _open(self) -> None:
+        """Do the first iteration, or the last one again, and show it: the picture comes first."""
+        self._send(self._sampler.begun(self.ticket, self._settings))
+        self._generator = iterations(self._problem, self._settings, self._before)
+        newest = next(self._generator)
+        if not math.isfinite(latin_indicator(newest)):
+            raise FloatingPointError(
+                "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
+                "nearer to 1."
+            )
+        self._newest = newest
+        self._send(self._frame(newest))
+        if self._order.resume is not None:
+            self._refer(self._order.resume.reference)
+            if self._before is not None:
+                self._recording.keep(self._before)
+            self._recording.keep(newest.checkpoint)
+        if self._order.seek is not None:
+            self._seek(self._order.seek)
+
+    def _compare(self, newest: Iterate) -> None:
+        try:
+            found = self._references.of(self._settings, self._problem, self._urgent)
+        except Interrupted:
+            return
+        self._account(newest, newest, self._refer(found))
+        self._publish()
+
+    def _refer(self, found: Reference) -> Distance:
+        self._reference = found
+        self._distance = distance_to(found, self._problem)
+        self._send(self._sampler.reference(self.ticket, found))
+        return self._distance
+
+    def _iterate(self, newest: Iterate, distance: Distance) -> None:
+        self._tempo.count()
+        self._account(newest, next(self._generator), distance)
+
+    def _account(self, newest: Iterate, iterate: Iterate, distance: Distance) -> None:
+        """Record and judge an iterate; one that is not finite does not become the newest."""
+        entry = record(iterate, distance)
+        self._status = self._rules.judge(iterate.number, entry.indicator)
+        if self._status is None or self._status.ending is not Ending.DIVERGED:
+            if iterate is not newest:
+                self._before = newest.checkpoint
+                self._stale = True
+            self._newest = newest = iterate
+            self._unsent.append(entry)
+            self._recording.keep(iterate.checkpoint)
+        if self._rest_of_iterations(newest.number) is None:
+            self._publish()
+        if self._status is not None:
+            self._send(End(self.ticket, self._status, newest.number))
+
+    def _seek(self, iteration: int) -> None:
+        newest = self._newest
+        if newest is None:
+            self._order = replace(self._order, seek=iteration)
+            return
+        self._order = replace(self._order, seek=None)
+        wanted = min(max(iteration, 1), newest.number)
+        if wanted == newest.number:
+            self._search = None
+            self._send(self._frame(newest, sought=True))
+        else:
+            start = self._recording.before(wanted)
+            self._search = (iterations(self._problem, self._settings, start), wanted)
+
+    def _search_on(self, generator: Iterator[Iterate], wanted: int) -> None:
+        iterate = next(generator)
+        self._recording.keep(iterate.checkpoint)
+        if iterate.number == wanted:
+            self._search = None
+            self._send(self._frame(iterate, sought=True))
+
+    def _publish(self) -> None:
+        """Send all records not yet sent, and the newest frame if there is a newer one."""
+        if self._unsent:
+            self._send(Progress(self.ticket, tuple(self._unsent)))
+            self._unsent.clear()
+        if self._stale and self._newest is not None:
+            self._send(self._frame(self._newest))
+            self._stale = False
+        self._publish_at = time.monotonic() + PUBLISH_EVERY
+
+    def _frame(self, iterate: Iterate, *, sought: bool = False) -> Frame:
+        return self._sampler.frame(self.ticket, iterate, self._watch, sought=sought)
+
+    def _rest_of_iterations(self, done: int) -> float | None:
+        return None if self._status is not None else self._tempo.rest(done)
+
+
+def _checked(order: Run) -> Settings:
+    if order.scene not in CATALOGUE:
+        raise SettingError("scene", order.scene, ", ".join(CATALOGUE), "choose one of these")
+    return CATALOGUE[order.scene].settings.checked(order.values)

@@ -1,0 +1,125 @@
+"""A session's place in the pool: what it wants to run, and how far that has come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from app.worker.protocol import Died, Pace, Report, Run, Seek, Step, Watch
+
+if TYPE_CHECKING:
+    from app.worker.pool import Pool
+    from app.worker.post import Post
+
+Change = Pace | Step | Seek | Watch
+Listener = Callable[[Report], None]
+
+QUANTUM = 0.5
+"""Seconds of work after which a run makes room for one that waits."""
+
+RESTARTS = 2
+"""Times that a run is started again after its process died."""
+
+AGAIN = "The worker stopped unexpectedly; the run was started again."
+GIVEN_UP = (
+    "The worker stopped unexpectedly several times; the run was given up. Lower the numbers of "
+    "elements and instants, or start it again."
+)
+
+
+class Seat:
+    """One session's place: at most one run, which the pool gives a process when it can.
+
+    Attributes without documentation belong to the roster, and are guarded by the pool's lock.
+
+    Parameters
+    ----------
+    pool
+        Where it is a place in.
+    listener
+        Takes the reports of its runs, on a thread of the pool. A report that was on its way may
+        still come just after another run was ordered; its ticket tells.
+    """
+
+    def __init__(self, pool: Pool, listener: Listener) -> None:
+        self._pool = pool
+        self.listener = listener
+        self.closed = False
+        self.ticket = -1
+        self.first: Run | None = None
+        self.next: Run | None = None
+        self.pending: list[Change] = []
+        self.post: Post | None = None
+        self.held = False
+        self.done = 0
+        self.restarts = 0
+        self.unanswered = 0
+        self.quantum = QUANTUM
+
+    def run(self, order: Run) -> None:
+        """Run this in place of the former run of this seat."""
+        self._pool.run(self, order)
+
+    def send(self, order: Change) -> None:
+        """Pass an order to the run with its ticket; a run that is not at work is put to work."""
+        self._pool.send(self, order)
+
+    def close(self) -> None:
+        """Stop the run and free its process; afterwards all orders are ignored."""
+        self._pool.leave(self)
+
+    def begin(self, order: Run) -> None:
+        """Take up a new run."""
+        self.ticket = order.ticket
+        self.first = self.next = order
+        self.pending = []
+        self.held = False
+        self.done = order.resume.iteration if order.resume else 0
+        self.restarts = self.unanswered = 0
+        self.quantum = QUANTUM
+
+    def forget(self) -> None:
+        """Give up the run."""
+        self.first = self.next = None
+        self.pending = []
+        self.held = False
+
+    def lose(self) -> Died:
+        """Go back to the beginning after the process died, or give up; say which."""
+        self.restarts += 1
+        again = self.restarts <= RESTARTS
+        if again:
+            self.next, self.done, self.pending, self.held = self.first, 0, [], True
+        else:
+            self.forget()
+        return Died(self.ticket, AGAIN if again else GIVEN_UP, again)
+
+    def note(self, change: Change) -> None:
+        """Remember what a restart of the run has to know."""
+        if self.first is None:
+            return
+        match change:
+            case Pace(pace=0):
+                self.first = replace(self.first, pause_after=max(self.done, 1))
+            case Pace(pace=pace):
+                pause = self.first.pause_after
+                later = pause if pause is not None and pause > self.done else None
+                self.first = replace(self.first, pace=pace, pause_after=later)
+            case Step():
+                self.first = replace(self.first, pause_after=self.done + 1)
+            case Watch(watch=watch):
+                self.first = replace(self.first, watch=watch)
+
+    def postpone(self, change: Change) -> None:
+        """Keep an order for when the run is at work; it takes the place of its like."""
+        if not isinstance(change, Step):
+            self.pending = [kept for kept in self.pending if type(kept) is not type(change)]
+        self.pending.append(change)
+
+    def go_on_with(self, order: Run) -> None:
+        """Take what a parked run goes on with; a turn that brought nothing makes longer ones."""
+        before, after = self.next and self.next.resume, order.resume
+        fruitless = (before and before.iteration) == (after and after.iteration)
+        self.quantum = 2.0 * self.quantum if fruitless and not order.waits else QUANTUM
+        self.next = replace(order, ticket=self.ticket)

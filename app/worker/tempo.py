@@ -1,0 +1,59 @@
+"""When the next iteration of a run is due."""
+
+from __future__ import annotations
+
+import time
+
+LONGEST_REST = 60.0
+"""Seconds after which a very slow run looks at the clock again."""
+
+
+class Tempo:
+    """The pace of a run, its pause, and the steps that were asked for.
+
+    Parameters
+    ----------
+    pace, pause_after
+        As in a Run.
+    """
+
+    def __init__(self, pace: float | None, pause_after: int | None) -> None:
+        self._pace = pace
+        self._pause_after = pause_after
+        self._steps = 0
+        self._due = time.monotonic() + self._interval
+
+    def change(self, pace: float | None, done: int) -> None:
+        """Go on at another pace; a pause that was reached is over, and so are steps."""
+        self._steps = 0
+        self._pace = pace
+        if pace != 0 and self._pause_after is not None and done >= self._pause_after:
+            self._pause_after = None
+        self._due = min(self._due, time.monotonic() + self._interval)
+
+    def step(self) -> None:
+        """Do one more iteration, and wait."""
+        self._pace = 0
+        self._steps += 1
+
+    def count(self) -> None:
+        """Count an iteration that begins now."""
+        self._steps = max(self._steps - 1, 0)
+        self._due = max(self._due + self._interval, time.monotonic())
+
+    def rest(self, done: int) -> float | None:
+        """Give the seconds until the next iteration is due; None waits for an order."""
+        if self._steps:
+            return 0.0
+        paused = self._pause_after is not None and done >= self._pause_after
+        if paused or self._pace == 0:
+            return None
+        return min(max(self._due - time.monotonic(), 0.0), LONGEST_REST)
+
+    def carried(self, done: int) -> tuple[float | None, int | None]:
+        """Give pace and pause with which another tempo goes on."""
+        return (None, done + self._steps) if self._steps else (self._pace, self._pause_after)
+
+    @property
+    def _interval(self) -> float:
+        return 1.0 / self._pace if self._pace else 0.0

@@ -1,0 +1,99 @@
+"""Commands of `python -m solver`: run a scene, list scenes and settings, measure an iteration."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from solver.discrete import discretise
+from solver.files import save_result, scene_settings, settings_from_command, summary
+from solver.latin import Ending, solve
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.scenes import CATALOGUE
+from solver.settings import SettingError, about, allowed
+from solver.study.iteration_cost import print_iteration_cost
+
+REFUSED = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; give the exit code: 0 converged, 1 stopped otherwise, 2 refused input."""
+    chosen = _parser().parse_args(arguments)
+    try:
+        code: int = chosen.command(chosen)
+    except SettingError as refusal:
+        print(f"slipfront: {refusal}", file=sys.stderr)
+        return REFUSED
+    except BrokenPipeError:
+        # Whoever reads has enough (as with "| head"); Python must not complain at its own end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m solver", description=__doc__)
+    commands = parser.add_subparsers(required=True)
+    run = commands.add_parser("run", help="run one scene to its stop rule")
+    run.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    run.add_argument("--out", type=Path, metavar="FILE.npz", help="write the result here")
+    run.add_argument("--json", action="store_true", help="print the key figures as JSON")
+    run.set_defaults(command=_run)
+    scenes = commands.add_parser("scenes", help="list the scenes")
+    scenes.set_defaults(command=_scenes)
+    settings = commands.add_parser("settings", help="list the settings of a scene")
+    settings.add_argument("scene")
+    settings.set_defaults(command=_settings)
+    cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
+    cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
+    cost.set_defaults(command=_benchmark)
+    return parser
+
+
+def _run(chosen: argparse.Namespace) -> int:
+    settings = settings_from_command(chosen.scene, chosen.changes)
+    if chosen.out is not None and (chosen.out.is_dir() or not chosen.out.parent.is_dir()):
+        raise SettingError("--out", str(chosen.out), "a file in an existing folder", "make it")
+    problem = discretise(settings)
+    distance = distance_to(incremental(problem), problem)
+    solution = solve(problem, settings, distance=distance)
+    figures = summary(settings, solution)
+    if chosen.out is not None:
+        save_result(chosen.out, settings, solution)
+    if chosen.json:
+        plain = {
+            name: None if isinstance(value, float) and not math.isfinite(value) else value
+            for name, value in figures.items()
+        }
+        print(json.dumps({**plain, "settings": settings.values()}))
+    else:
+        for name, value in figures.items():
+            print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
+    return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _scenes(chosen: argparse.Namespace) -> int:
+    for name, entry in CATALOGUE.items():
+        print(f"{name:<10} {entry.title} ({entry.source})")
+    return 0
+
+
+def _settings(chosen: argparse.Namespace) -> int:
+    for name, definition in scene_settings(chosen.scene).definitions().items():
+        unit = about(definition).unit or "-"
+        default = json.dumps(definition.default)
+        print(f"{name:<22} {unit:<5} default {default:<10} {allowed(definition)}")
+        print(f"{'':<22} {definition.doc}")
+    return 0
+
+
+def _benchmark(chosen: argparse.Namespace) -> int:
+    print_iteration_cost(chosen.repeats)
+    return 0

@@ -1,0 +1,18 @@
+"""From a scene to a discrete problem."""
+
+from solver.discrete.bar import discretise_bar
+from solver.discrete.problem import Problem
+from solver.scenes.bar import BarSettings, bar
+from solver.settings import Settings
+
+
+def discretise(settings: Settings) -> Problem:
+    """Make the discrete problem that checked settings describe."""
+    match settings:
+        case BarSettings():
+            return discretise_bar(bar(settings))
+        case _:
+            raise TypeError(f"no discretisation for the settings of {settings.scene!r}")
+
+
+__all__ = ["Problem", "discretise"]

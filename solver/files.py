@@ -1,0 +1,121 @@
+"""Settings read from text and files, and results written to files."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solver.latin import Solution
+from solver.scenes import CATALOGUE
+from solver.settings import SettingError, Settings, parse, resolve
+
+
+def settings_from_toml(text: str, folder: Path | None = None) -> Settings:
+    """Read a saved settings file.
+
+    Parameters
+    ----------
+    text
+        TOML: a scene's name under `scene`, and settings by name.
+    folder
+        Where CSV files named by a curve are sought; without it files are not read.
+
+    Raises
+    ------
+    SettingError
+        For text that is no TOML, an unknown scene, or a refused setting.
+    """
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise SettingError("settings file", text, "TOML", f"mend it: {problem}") from None
+    values = dict(values)
+    kind = scene_settings(values.pop("scene", None))
+    if folder is not None:
+        definitions = kind.definitions()
+        values = {
+            name: resolve(definitions[name], name, value, folder) if name in definitions else value
+            for name, value in values.items()
+        }
+    return kind.checked(values)
+
+
+def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
+    """Read settings from a scene's name or a saved file, and `NAME=VALUE` texts over it."""
+    if scene.endswith(".toml"):
+        path = Path(scene)
+        try:
+            base = settings_from_toml(path.read_text(encoding="utf-8"), path.parent)
+        except (OSError, UnicodeDecodeError) as problem:
+            raise SettingError(
+                "settings file", scene, "a readable TOML file", f"{type(problem).__name__}"
+            ) from None
+        kind, values = type(base), base.values()
+    else:
+        kind, values = scene_settings(scene), {}
+    definitions = kind.definitions()
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        if not equals:
+            raise SettingError("--set", assignment, "NAME=VALUE", "write an equals sign")
+        values[name] = (
+            resolve(definitions[name], name, parse(text), Path()) if name in definitions else text
+        )
+    return kind.checked(values)
+
+
+def scene_settings(scene: object) -> type[Settings]:
+    """Find the settings of a scene by its name in the catalogue."""
+    if not isinstance(scene, str) or scene not in CATALOGUE:
+        raise SettingError(
+            "scene", scene, ", ".join(CATALOGUE), "choose one of these, or a saved .toml file"
+        )
+    return CATALOGUE[scene].settings
+
+
+def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
+    """Give the key figures of a finished run."""
+    last = solution.records[-1] if solution.records else None
+    return {
+        "scene": settings.scene,
+        "status": str(solution.status.ending),
+        "advice": solution.status.advice,
+        "iterations": solution.iterate.number,
+        "indicator": last.indicator if last else None,
+        "behaviour": last.behaviour if last else None,
+        "error_displacement": last.error_displacement if last else None,
+        "error_force": last.error_force if last else None,
+        "seconds": solution.iterate.seconds,
+    }
+
+
+def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
+    """Give the arrays of a result file (SI; space first, time last)."""
+    iterate, problem = solution.iterate, solution.iterate.problem
+    history = {
+        "indicator": [entry.indicator for entry in solution.records],
+        "behaviour": [entry.behaviour for entry in solution.records],
+        "seconds": [entry.seconds for entry in solution.records],
+        "error_displacement": [entry.error_displacement for entry in solution.records],
+        "error_force": [entry.error_force for entry in solution.records],
+    }
+    return {
+        "x": problem.positions,
+        "t": problem.instants,
+        "displacement": iterate.displacement,
+        "friction_force": iterate.friction_force,
+        "status": iterate.status,
+        **{name: np.array(column) for name, column in history.items()},
+        "settings": json.dumps({"scene": settings.scene, **settings.values()}),
+    }
+
+
+def save_result(path: Path, settings: Settings, solution: Solution) -> None:
+    """Write a result file (npz)."""
+    with path.open("wb") as file:
+        np.savez_compressed(file, **result_arrays(settings, solution))

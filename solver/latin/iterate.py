@@ -1,0 +1,105 @@
+"""What the iteration shows: read-only snapshots, whose fields are computed when looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.discrete.problem import Array, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """From where an iteration can go on exactly.
+
+    Attributes
+    ----------
+    number, seconds
+        Iterations done and time taken so far.
+    outgoing
+        W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
+    """
+
+    number: int
+    seconds: float
+    outgoing: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Iterate:
+    """One LATIN iterate: the linear stage's s and the local stage's s^ that it came from.
+
+    Properties without a leading "boundary" are SI fields of the whole structure.
+
+    Attributes
+    ----------
+    number
+        Iterations done, from 1.
+    seconds
+        Time that the method took so far, set-up included, looking excluded.
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    outgoing, incoming
+        W + F/k and W - F/k of the linear stage, shape (n_rows, n_instants), scaled, read-only.
+    local_displacement
+        W^ of the local stage, same shape, bit by bit as the laws gave it.
+    local_incoming
+        W - F/k that the local stage read, which is its own W^ - F^/k.
+    """
+
+    number: int
+    seconds: float
+    problem: Problem
+    k: Array
+    outgoing: Array
+    incoming: Array
+    local_displacement: Array
+    local_incoming: Array
+
+    @property
+    def checkpoint(self) -> Checkpoint:
+        """What is needed to go on from here."""
+        return Checkpoint(self.number, self.seconds, self.outgoing)
+
+    @property
+    def boundary_displacement(self) -> Array:
+        """W of the linear stage, shape (n_rows, n_instants), scaled."""
+        return 0.5 * (self.outgoing + self.incoming)
+
+    @property
+    def boundary_force(self) -> Array:
+        """F of the linear stage, shape (n_rows, n_instants), scaled."""
+        return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
+
+    @property
+    def boundary_local_force(self) -> Array:
+        """F^ of the local stage, shape (n_rows, n_instants), scaled."""
+        return self.k[:, None] * (self.local_displacement - self.local_incoming)
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Displacement of the linear stage, shape (n_dofs, n_instants), m; mean at cuts."""
+        found = self.problem.mean_of_rows @ self.boundary_displacement
+        return np.asarray(found) * self.problem.scales.displacement
+
+    @cached_property
+    def friction_force(self) -> Array:
+        """Nodal friction force on the body, linear stage, (n_points, n_instants), N."""
+        found = self.problem.sum_of_friction @ self.boundary_force
+        return np.asarray(found) * self.problem.scales.force
+
+    @cached_property
+    def status(self) -> NDArray[np.int8]:
+        """Contact status of the local stage, shape (n_points, n_instants): -1, 0 or +1.
+
+        Slip forward is +1. Stick is exact: the law repeats the last position bit by bit. At a cut
+        both sides have their say, and the larger slip wins.
+        """
+        law = self.problem.friction
+        slip = np.diff(self.local_displacement[law.rows], axis=1, prepend=0.0)
+        total = np.zeros((len(law.positions), slip.shape[1]))
+        np.add.at(total, law.points, slip)
+        return np.sign(total).astype(np.int8)

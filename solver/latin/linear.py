@@ -1,0 +1,208 @@
+"""The linear stage: elasticity of every substructure, all instants at once (paper, problem 2.2)."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from solver.discrete.problem import Array, Elasticity, Indices, Problem, Substructure, space_time
+from solver.latin.coarse import CoarseProblem
+
+DENSE_UP_TO = 700
+"""Boundary rows up to which one dense matrix product beats a sparse solution (measured)."""
+
+
+class LinearStage:
+    """Elasticity along the search direction E-, factored for one problem and one k.
+
+    With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
+    comes from body forces; then W - F/k = 2 W - y (theory.md, 2). Its state is y: it is what
+    relaxation mixes, and everything else follows from it.
+    """
+
+    def __init__(self, problem: Problem, k: Array, *, multiscale: bool) -> None:
+        self.groups = [Group(problem, parts, k) for parts in _alike(problem, k)]
+        self._coarse = (
+            CoarseProblem(problem, self.groups) if multiscale and problem.has_cuts else None
+        )
+        self._shape = (problem.n_rows, problem.n_instants)
+
+    def zero(self) -> list[Array]:
+        """Give the state in which all displacements and forces are zero, one array per group."""
+        return [group.field() for group in self.groups]
+
+    def from_boundary(self, outgoing: Array) -> list[Array]:
+        """Give the state with this W + F/k, shape (n_rows, n_instants)."""
+        return [np.copy(outgoing[group.rows], order="F") for group in self.groups]
+
+    def to_boundary(self, state: list[Array]) -> Array:
+        """Give W + F/k of a state, shape (n_rows, n_instants)."""
+        field = space_time(*self._shape)
+        for group, own in zip(self.groups, state, strict=True):
+            group.scatter(own, field)
+        return field
+
+    def advance(self, state: list[Array], target: Array, relaxation: float) -> None:
+        """Solve the linear stage and relax: the state becomes a mean of the new and the old.
+
+        Parameters
+        ----------
+        state
+            Changed in place.
+        target
+            W^ + F^/k of the local stage, shape (n_rows, n_instants).
+        relaxation
+            Share of the new one.
+        """
+        for group in self.groups:
+            group.gather(target)
+        if self._coarse is not None:
+            self._coarse.add_multiplier()
+        for group, own in zip(self.groups, state, strict=True):
+            group.relax(own, relaxation)
+
+    def incoming(self, state: list[Array], field: Array) -> Array:
+        """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
+        for group, own in zip(self.groups, state, strict=True):
+            group.scatter(group.reflect(own), field)
+        return field
+
+
+class Group:
+    """Identical substructures with the same k: one operator and one matrix product for all.
+
+    Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous in space.
+    """
+
+    def __init__(self, problem: Problem, parts: list[Substructure], k: Array) -> None:
+        self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
+        self.k: Array = k[self.rows[:, 0]]
+        self._n_instants = problem.n_instants
+        self.response = response(parts[0].elasticity, self.k)
+        inside = [part.body_force for part in parts if part.body_force is not None]
+        self.body = (
+            np.stack([self.response.of_body_force(force) for force in inside], axis=1)
+            if inside
+            else None
+        )
+        self.target = self.field()
+        self._reflected = self.field()
+        self._order = np.ascontiguousarray(self.rows.T.ravel())
+        covers = self.rows.size == problem.n_rows
+        self._back = np.argsort(self._order) if covers else None
+
+    def field(self) -> Array:
+        """Allocate a zero field of the group."""
+        return np.zeros((*self.rows.shape, self._n_instants), order="F")
+
+    def gather(self, field: Array) -> None:
+        """Take the group's rows of a boundary field as its target."""
+        flat = self.target.T.reshape(self._n_instants, -1)
+        np.take(field.T, self._order, axis=1, out=flat, mode="clip")
+
+    def scatter(self, own: Array, field: Array) -> None:
+        """Write a field of the group into the rows of a boundary field."""
+        flat = own.T.reshape(self._n_instants, -1)
+        if self._back is None:
+            field.T[:, self._order] = flat
+        else:
+            np.take(flat, self._back, axis=1, out=field.T, mode="clip")
+
+    def relax(self, own: Array, relaxation: float) -> None:
+        """Mix the target into a state."""
+        if relaxation == 1.0:
+            np.copyto(own, self.target)
+            return
+        np.subtract(self.target, own, out=self.target)
+        np.multiply(self.target, relaxation, out=self.target)
+        np.add(own, self.target, out=own)
+
+    def reflect(self, own: Array) -> Array:
+        """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it."""
+        flat = (len(self.k), -1)
+        self.response.reflect(
+            own.reshape(flat, order="F"), self._reflected.reshape(flat, order="F")
+        )
+        if self.body is not None:
+            self._reflected += 2.0 * self.body
+        return self._reflected
+
+
+class DenseResponse:
+    """The boundary response of a substructure as one dense matrix."""
+
+    def __init__(self, elasticity: Elasticity, k: Array) -> None:
+        self._factor = _factor(elasticity, k)
+        self._trace = elasticity.trace
+        n_boundary = len(k)
+        ones = np.zeros((elasticity.stiffness.shape[0], n_boundary))
+        ones[elasticity.trace, np.arange(n_boundary)] = 1.0
+        compliance = self._factor.solve(ones)[elasticity.trace]
+        self._compliance = 0.5 * (compliance + compliance.T)
+        self._k = k
+        self._reflection = 2.0 * self._compliance * k - np.eye(n_boundary)
+
+    def reflect(self, outgoing: Array, out: Array) -> None:
+        """Write 2 H k y - y for y of shape (n_boundary, n)."""
+        np.matmul(self._reflection, outgoing, out=out)
+
+    def force_rows(self, rows: Indices) -> Array:
+        """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        k = self._k
+        full = -k[rows, None] * self._compliance[rows] * k
+        full[np.arange(len(rows)), rows] += k[rows]
+        return full
+
+    def of_body_force(self, force: Array) -> Array:
+        """Give the boundary displacement under body forces, with k as a spring to rest."""
+        return np.asarray(self._factor.solve(force)[self._trace])
+
+
+class SparseResponse:
+    """The boundary response of a large substructure, by a sparse solution for all columns."""
+
+    def __init__(self, elasticity: Elasticity, k: Array) -> None:
+        self._factor = _factor(elasticity, k)
+        self._trace = elasticity.trace
+        self._k = k
+        n_dofs, n_boundary = elasticity.stiffness.shape[0], len(k)
+        self._load = sparse.csr_array(
+            (k, (elasticity.trace, np.arange(n_boundary))), shape=(n_dofs, n_boundary)
+        )
+
+    def reflect(self, outgoing: Array, out: Array) -> None:
+        """Write 2 H k y - y for y of shape (n_boundary, n)."""
+        displacement = self._factor.solve(np.asfortranarray(self._load @ outgoing))
+        np.multiply(displacement[self._trace], 2.0, out=out)
+        np.subtract(out, outgoing, out=out)
+
+    def force_rows(self, rows: Indices) -> Array:
+        """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
+        load = self._load[:, rows].toarray()
+        full = -(self._load.T @ self._factor.solve(load)).T
+        full[np.arange(len(rows)), rows] += self._k[rows]
+        return np.asarray(full)
+
+    def of_body_force(self, force: Array) -> Array:
+        """Give the boundary displacement under body forces, with k as a spring to rest."""
+        return np.asarray(self._factor.solve(force)[self._trace])
+
+
+def response(elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
+    """Condense or factor the elasticity of a substructure with its search direction."""
+    dense = len(k) <= DENSE_UP_TO
+    return DenseResponse(elasticity, k) if dense else SparseResponse(elasticity, k)
+
+
+def _factor(elasticity: Elasticity, k: Array):  # type: ignore[no-untyped-def]  # SuperLU
+    n_dofs = elasticity.stiffness.shape[0]
+    springs = np.bincount(elasticity.trace, weights=k, minlength=n_dofs)
+    return splu(sparse.csc_array(elasticity.stiffness + sparse.diags_array(springs)))
+
+
+def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:
+    groups: dict[tuple[int, bytes], list[Substructure]] = {}
+    for part in problem.substructures:
+        groups.setdefault((id(part.elasticity), k[part.rows].tobytes()), []).append(part)
+    return list(groups.values())

@@ -1,0 +1,167 @@
+"""Driving the iteration to an end: stop rules, records, and one status with advice."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from solver.discrete.problem import Problem
+from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.latin.iterate import Checkpoint, Iterate
+from solver.latin.iterations import iterations
+from solver.reference.distance import Distance
+from solver.settings import Settings
+
+STALL_WINDOW = 200
+STALL_FACTOR = 0.9
+ROUNDING = 1e-24
+
+
+class Ending(StrEnum):
+    """How a run can end."""
+
+    CONVERGED = "converged"
+    EXHAUSTED = "exhausted"
+    STALLED = "stalled"
+    CANCELLED = "cancelled"
+    DIVERGED = "diverged"
+
+
+@dataclass(frozen=True)
+class Status:
+    """The end of a run, in a word, and what to try next in a sentence."""
+
+    ending: Ending
+    advice: str
+
+
+@dataclass(frozen=True)
+class Record:
+    """The scalars of one iteration; an error is NaN while no reference is at hand.
+
+    Attributes
+    ----------
+    seconds
+        Time that the method took so far, s.
+    indicator
+        LATIN indicator eta (paper, eq. 2).
+    behaviour, behaviour_largest
+        The k-free indicator, and the largest entry of its map.
+    error_displacement, error_force
+        Relative L2 distance to the reference over space and time.
+    """
+
+    iteration: int
+    seconds: float
+    indicator: float
+    behaviour: float
+    behaviour_largest: float
+    error_displacement: float
+    error_force: float
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The last good iterate of a run, its records, and how it ended."""
+
+    iterate: Iterate
+    records: list[Record]
+    status: Status
+
+
+def record(iterate: Iterate, distance: Distance | None) -> Record:
+    """Compute the scalars of an iterate, off the method's clock."""
+    behaviour = behaviour_indicator(iterate)
+    return Record(
+        iteration=iterate.number,
+        seconds=iterate.seconds,
+        indicator=latin_indicator(iterate),
+        behaviour=behaviour.total,
+        behaviour_largest=behaviour.largest,
+        error_displacement=distance.of_displacement(iterate) if distance else math.nan,
+        error_force=distance.of_friction_force(iterate) if distance else math.nan,
+    )
+
+
+class StopRules:
+    """When a run ends; it remembers the best indicator to see a stall."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._best = math.inf
+        self._best_at = 0
+
+    def judge(self, iteration: int, indicator: float) -> Status | None:
+        """Say how the run ends after this iteration, or None if it goes on."""
+        settings = self._settings
+        if not math.isfinite(indicator):
+            return Status(
+                Ending.DIVERGED,
+                f"Numbers stopped being finite at iteration {iteration}; the iterate before it is "
+                "kept. Lower the relaxation, or bring k_scale and the loads nearer to 1.",
+            )
+        if indicator <= settings.tolerance:
+            return Status(
+                Ending.CONVERGED,
+                "The LATIN indicator is below the tolerance. It is not an error: lower the "
+                "tolerance if the error is still too large.",
+            )
+        if indicator < STALL_FACTOR * self._best:
+            self._best, self._best_at = indicator, iteration
+        if iteration - self._best_at >= STALL_WINDOW:
+            return Status(Ending.STALLED, self._stall_advice())
+        if iteration >= settings.max_iterations:
+            return Status(
+                Ending.EXHAUSTED,
+                "The iterations are used up. Raise max_iterations, loosen the tolerance, or try "
+                "another k_scale.",
+            )
+        return None
+
+    def _stall_advice(self) -> str:
+        if self._best < ROUNDING:
+            return "The indicator is down to rounding: this is as near as it gets."
+        if self._settings.relaxation > 0.9:
+            return "The indicator does not fall any more. Lower the relaxation to 0.8."
+        return "The indicator does not fall any more. Try another k_scale."
+
+
+CANCELLED = Status(Ending.CANCELLED, "The run was stopped; it can be started again.")
+
+
+def solve(
+    problem: Problem,
+    settings: Settings,
+    *,
+    distance: Distance | None = None,
+    start: Checkpoint | None = None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> Solution:
+    """Drive the iteration until a stop rule ends it.
+
+    Parameters
+    ----------
+    problem, settings, start
+        As for `iterations`.
+    distance
+        To a reference, for the errors in the records.
+    cancelled
+        Asked after every iteration.
+    """
+    rules = StopRules(settings)
+    records: list[Record] = []
+    last = None
+    for iterate in iterations(problem, settings, start):
+        entry = record(iterate, distance)
+        status = rules.judge(iterate.number, entry.indicator)
+        if status is not None and status.ending is Ending.DIVERGED:
+            return Solution(last or iterate, records, status)
+        records.append(entry)
+        last = iterate
+        if status is None and cancelled():
+            status = CANCELLED
+        if status is not None:
+            return Solution(iterate, records, status)
+    raise AssertionError("the iteration has no end of its own")

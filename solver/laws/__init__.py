@@ -1,0 +1,9 @@
+"""Interface laws: what an interface is, and the pure function that obeys it, all points at once."""
+
+from solver.laws.boundary import Dirichlet, Neumann
+from solver.laws.friction import Friction
+from solver.laws.perfect import Perfect
+
+Interface = Perfect | Dirichlet | Neumann | Friction
+
+__all__ = ["Dirichlet", "Friction", "Interface", "Neumann", "Perfect"]

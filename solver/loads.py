@@ -1,0 +1,68 @@
+"""Load paths: a scalar over time, from a named preset or from a table of points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.settings import Pairs
+
+Array = NDArray[np.float64]
+
+RANDOM_POINTS = 12
+DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
+
+
+def interpolate(points: Pairs | Array, where: Array) -> Array:
+    """Evaluate a table of (abscissa, value), linear in between and held outside."""
+    abscissae, values = np.array(points).T
+    found: Array = np.interp(where, abscissae, values)
+    return found
+
+
+def _polyline(ordinates: Array) -> Callable[[Array, int], Array]:
+    points = np.column_stack([np.linspace(0.0, 1.0, len(ordinates)), ordinates])
+    return lambda phase, seed: interpolate(points, phase)
+
+
+def _random_walk(phase: Array, seed: int) -> Array:
+    steps = np.random.default_rng(seed).uniform(-1.0, 1.0, RANDOM_POINTS)
+    walk = np.concatenate([[0.0], np.cumsum(steps)])
+    return _polyline(walk / np.max(np.abs(walk)))(phase, seed)
+
+
+PRESETS: dict[str, Callable[[Array, int], Array]] = {
+    "ramp": _polyline(np.array([0.0, 1.0])),
+    "triangle": _polyline(np.array([0.0, 1.0, 0.0])),
+    "cycle": _polyline(np.array([0.0, 1.0, 0.0, -1.0, 0.0, 1.0])),
+    "sine": lambda phase, seed: np.sin(2.0 * np.pi * phase),
+    "decaying": _polyline(np.concatenate([[0.0], DECAY, [0.0]])),
+    "random": _random_walk,
+}
+
+
+def load_path(path: str | Pairs, instants: Array, duration: float, peak: float, seed: int) -> Array:
+    """Evaluate a load path at the instants of a run.
+
+    Parameters
+    ----------
+    path
+        A preset's name, or points (time in s, value), linear in between and held outside.
+    instants
+        Shape (n_instants,), s.
+    duration
+        Length of the interval that a preset fills, s.
+    peak
+        Largest size that a preset reaches, in the path's unit; a table has its own.
+    seed
+        Of the random walk.
+
+    Returns
+    -------
+    Values at the instants, shape (n_instants,).
+    """
+    if isinstance(path, str):
+        return peak * PRESETS[path](instants / duration, seed)
+    return interpolate(path, instants)

@@ -1,0 +1,1 @@
+"""Model reduction: what the fields of an interface could be reduced to."""

@@ -1,0 +1,137 @@
+"""What one iteration costs: by stage, and against the arithmetic that it cannot do without."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.discrete import discretise
+from solver.discrete.problem import Problem, space_time
+from solver.latin.direction import search_direction
+from solver.latin.linear import DenseResponse, LinearStage
+from solver.latin.local import LocalStage
+from solver.scenes.bar import BarSettings
+
+SIZES = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Median seconds of one iteration's parts.
+
+    Attributes
+    ----------
+    local, coarse, linear
+        Local stage; coarse problem; gathering, relaxation, elasticity and scattering.
+    floor
+        The matrix product and the element-wise passes alone: a step of the friction law for every
+        point and instant, the reflections, the relaxation.
+    """
+
+    nodes: int
+    instants: int
+    local: float
+    coarse: float
+    linear: float
+    floor: float
+
+    @property
+    def iteration(self) -> float:
+        """Seconds of the whole iteration."""
+        return self.local + self.coarse + self.linear
+
+
+def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
+    """Measure the stages and the floor, interleaved, in one run.
+
+    Parameters
+    ----------
+    nodes, instants
+        Size of the friction bar; 10 substructures, multiscale, relaxation 0.8.
+    repeats
+        Measurements of each, whose median is taken.
+    """
+    settings = BarSettings.checked({"elements": nodes - 1, "instants": instants})
+    problem = discretise(settings)
+    k = search_direction(problem, settings)
+    local = LocalStage(problem, k)
+    multi = LinearStage(problem, k, multiscale=True)
+    mono = LinearStage(problem, k, multiscale=False)
+    state = multi.zero()
+    incoming = space_time(problem.n_rows, problem.n_instants)
+    target = local(incoming)
+
+    def linear_stage(stage: LinearStage) -> Callable[[], None]:
+        def step() -> None:
+            stage.advance(state, target, settings.relaxation)
+            stage.incoming(state, incoming)
+
+        return step
+
+    parts: list[Callable[[], object]] = [
+        lambda: local(incoming),
+        linear_stage(mono),
+        linear_stage(multi),
+        _floor(problem, multi),
+    ]
+    number = max(3, int(2e6 / (nodes * instants) ** 1.0))
+    samples: list[list[float]] = [[] for _ in parts]
+    for _ in range(repeats):
+        for part, times in zip(parts, samples, strict=True):
+            times.append(_seconds(part, number))
+    local_s, mono_s, multi_s, floor_s = (statistics.median(times) for times in samples)
+    return Cost(nodes, instants, local_s, max(multi_s - mono_s, 0.0), mono_s, floor_s)
+
+
+def _floor(problem: Problem, stage: LinearStage) -> Callable[[], None]:
+    law = problem.friction
+    friction = np.zeros((4, problem.n_instants, len(law.rows)))
+    low, high, before, after = friction
+    rows = np.zeros((3, problem.n_instants, problem.n_rows))
+    one, two, three = rows
+    products = [
+        (np.eye(len(group.k)), group.target.reshape(len(group.k), -1, order="F"), group.field())
+        for group in stage.groups
+        if isinstance(group.response, DenseResponse)
+    ]
+
+    def passes() -> None:
+        np.subtract(before, 1.0, out=low)
+        np.add(before, 1.0, out=high)
+        np.maximum(before, low, out=after)
+        np.minimum(after, high, out=after)
+        np.multiply(one, 2.0, out=two)
+        np.subtract(two, three, out=two)
+        np.subtract(two, three, out=one)
+        np.multiply(one, 0.8, out=one)
+        np.add(three, one, out=three)
+        for matrix, columns, out in products:
+            np.matmul(matrix, columns, out=out.reshape(len(matrix), -1, order="F"))
+
+    return passes
+
+
+def _seconds(part: Callable[[], object], number: int) -> float:
+    start = time.perf_counter()
+    for _ in range(number):
+        part()
+    return (time.perf_counter() - start) / number
+
+
+def print_iteration_cost(repeats: int) -> None:
+    """Print the table of all sizes."""
+    print(f"one iteration, ms: 10 substructures, multiscale; medians of {repeats}")
+    print(
+        f"{'nodes x instants':>17} {'all':>8} {'local':>8} {'coarse':>8} {'linear':>8} "
+        f"{'floor':>8} {'all/floor':>9} {'ns/value':>9}"
+    )
+    for nodes, instants in SIZES:
+        cost = iteration_cost(nodes, instants, repeats)
+        parts = (cost.iteration, cost.local, cost.coarse, cost.linear, cost.floor)
+        cells = " ".join(f"{1e3 * part:8.3f}" for part in parts)
+        each = 1e9 * cost.iteration / (nodes * instants)
+        print(f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} {each:9.1f}")
