@@ -6,13 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-import pandas as pd
 import panel as pn
 import panel_material_ui as pmui
 import param
 from bokeh.models import CustomJSTickFormatter
 
+from app.points import PointsTable
 from solver.settings import Curve, Settings, about
 
 POINTS = "table of points"
@@ -166,51 +165,18 @@ class CurveControl(Control):
                 self._table = None
             return
         self.widget.value = POINTS
-        frame = pd.DataFrame(value, columns=[self.definition.abscissa, self.definition.ordinate])
+        rows = [list(pair) for pair in value]
         if self._table is None:
-            self._table = self._make_table(frame)
-            self.view[1:] = [self._table, self._buttons()]
-        elif not self._table.value.equals(frame):
-            self._table.value = frame
-
-    def _make_table(self, frame: pd.DataFrame) -> Any:
-        table = pn.widgets.Tabulator(
-            frame,
-            show_index=False,
-            selectable=1,
-            height=220,
-            sizing_mode="stretch_width",
-            layout="fit_columns",
-            editors={column: {"type": "number", "step": "any"} for column in frame.columns},
-        )
-        table.on_edit(lambda event: self._report_rows(table.value))
-        return table
-
-    def _buttons(self) -> Any:
-        add = pmui.Button(label="Add row", size="small", variant="outlined")
-        remove = pmui.Button(label="Remove row", size="small", variant="outlined")
-        add.on_click(lambda event: self._report_rows(_with_row(self._table.value, self._chosen)))
-        remove.on_click(lambda event: self._report_rows(self._table.value.drop(index=self._chosen)))
-        return pmui.Row(add, remove)
-
-    @property
-    def _chosen(self) -> int:
-        chosen = self._table.selection
-        return int(chosen[0]) if chosen else len(self._table.value) - 1
-
-    def _report_rows(self, frame: pd.DataFrame) -> None:
-        rows = [tuple(float(cell) for cell in row) for row in frame.to_numpy(dtype=float)]
-        self._report(self.name, rows)
-
-
-def _with_row(frame: pd.DataFrame, after: int) -> pd.DataFrame:
-    rows = frame.to_numpy(dtype=float)
-    here = rows[after]
-    following = rows[after + 1] if after + 1 < len(rows) else here + (here - rows[after - 1])
-    if len(rows) == 1:
-        following = here + np.array([1.0, 0.0])
-    new = 0.5 * (here + following) if after + 1 < len(rows) else following
-    return pd.DataFrame(np.insert(rows, after + 1, new, axis=0), columns=frame.columns)
+            headings = [self.definition.abscissa, self.definition.ordinate]
+            self._table = PointsTable(
+                columns=headings, shown=rows, sizing_mode="stretch_width", margin=(4, 10)
+            )
+            self._table.param.watch(
+                lambda event: self._report(self.name, [tuple(row) for row in event.new]), "wanted"
+            )
+            self.view[1:] = [self._table]
+        else:
+            self._table.shown = rows
 
 
 def make_control(

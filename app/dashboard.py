@@ -40,12 +40,12 @@ DEFAULT_SCENE = "bar"
 
 def open_page() -> pmui.Page:
     """Make the page of one session; its run starts when the browser is there."""
-    pn.extension("tabulator", notifications=True, reconnect=True)
+    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
     settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
     dashboard = Dashboard(Session(shared_pool(), settings))
     if complaint:
         pn.state.onload(lambda: dashboard.complain(complaint))
-    pn.state.onload(dashboard.begin)
+    pn.state.curdoc.add_periodic_callback(dashboard.tick, TICK_MS)
     pn.state.on_session_destroyed(dashboard.end)
     return dashboard.page
 
@@ -86,10 +86,10 @@ class Dashboard:
         self._pulse = Pulse()
         self._pulse.param.watch(self._on_painted, "painted")
         self._pulse.param.watch(self._on_key, "key")
+        self._pulse.param.watch(self._on_narrow, "narrow")
         self._sent_at = 0.0
         self._dirty = False
-        self._paused_alone = False
-        self._tick: Any = None
+        self._alone = True
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
         self.transport = Transport(session, self._mark)
         self._views: list[View] = [
@@ -107,7 +107,8 @@ class Dashboard:
             value=[view.name for view in self._views],
         )
         self._chosen.param.watch(lambda event: self._arrange(), "value")
-        self._controls = self._make_controls()
+        self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
+        self._controls = self._make_controls(essential=True)
         self._status = self._html("status")
         self._figures = self._html("figures")
         self._plots = pn.Column(
@@ -117,10 +118,20 @@ class Dashboard:
         self._arrange()
         self._show_controls()
 
-    def begin(self) -> None:
-        """Start the run and the pulse of the page."""
-        self.session.start()
-        self._tick = pn.state.curdoc.add_periodic_callback(self._collect, TICK_MS)
+    def tick(self) -> None:
+        """Keep the page alive: start when a browser connects, rest while none is, draw what came.
+
+        The body of the app also runs for whoever only asks for the page, so nothing starts there;
+        and the run need not wait until the browser has drawn everything.
+        """
+        alone = self._connections() == 0
+        if alone != self._alone:
+            self._alone = alone
+            if self.session.run.ticket == 0:
+                self.session.start()
+            else:
+                self.session.rest(alone)
+        self._collect()
 
     def end(self, context: Any) -> None:
         """Leave nothing behind when the page is gone."""
@@ -156,21 +167,16 @@ class Dashboard:
     def _sidebar(self) -> list[Any]:
         """Put the essential controls under their headings, the others behind "more"."""
         groups: dict[str, list[Any]] = {}
-        more: list[Any] = []
         for control in self._controls.values():
-            record = about(control.definition)
-            if record.essential:
-                groups.setdefault(record.group, []).append(control.view)
-            else:
-                more.append(control.view)
+            groups.setdefault(about(control.definition).group, []).append(control.view)
         order = ("Load", "Contact", "Bar", "Decomposition", "Method", "Stop")
         items: list[Any] = []
         for group in order:
             if group in groups:
                 items += [self._heading(group), *groups[group]]
-        items.append(
-            pmui.Accordion(("More settings", pmui.Column(*more)), sizing_mode="stretch_width")
-        )
+        more = pmui.Accordion(("More settings", self._more), sizing_mode="stretch_width")
+        more.param.watch(self._open_more, "active")
+        items.append(more)
         return [
             *items,
             self._heading("Views"),
@@ -213,13 +219,21 @@ class Dashboard:
         upload.param.watch(self._on_upload, "value")
         return [pmui.Row(link, save, default), upload]
 
-    def _make_controls(self) -> dict[str, Control]:
-        controls = {}
-        for name, definition in self.session.settings.definitions().items():
-            control = make_control(name, definition, self._on_setting, self._points_of)
-            if control is not None:
-                controls[name] = control
-        return controls
+    def _make_controls(self, *, essential: bool) -> dict[str, Control]:
+        made = {
+            name: make_control(name, definition, self._on_setting, self._points_of)
+            for name, definition in self.session.settings.definitions().items()
+            if about(definition).essential is essential
+        }
+        return {name: control for name, control in made.items() if control is not None}
+
+    def _open_more(self, event: Any) -> None:
+        """Make the controls behind "more" when they are first looked at: few ever are."""
+        if event.new and not self._more.objects:
+            more = self._make_controls(essential=False)
+            self._controls.update(more)
+            self._show_controls()
+            self._more[:] = [control.view for control in more.values()]
 
     def _card(self, view: View) -> Any:
         title = pn.pane.HTML(
@@ -325,7 +339,6 @@ class Dashboard:
 
     def _collect(self) -> None:
         """Take what the worker sent and draw it, if the page has painted what it has."""
-        self._pause_while_alone()
         if self.session.collect():
             self._dirty = True
         now = time.monotonic()
@@ -350,18 +363,16 @@ class Dashboard:
         entry = session.run.record_of(frame) if frame is not None else None
         self._figures.object = key_figures(session.run, session.before, entry)
 
-    def _pause_while_alone(self) -> None:
-        """Let no run go on while no browser is connected."""
+    def _connections(self) -> int:
         context = pn.state.curdoc.session_context if pn.state.curdoc else None
-        alone = context is not None and context.session.connection_count == 0
-        if alone == self._paused_alone:
-            return
-        self._paused_alone = alone
-        self.session.rest(alone)
+        return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
         if self._dirty:
             self._collect()
+
+    def _on_narrow(self, event: Any) -> None:
+        self.page.sidebar_open = not event.new
 
     def _on_key(self, event: Any) -> None:
         action = {

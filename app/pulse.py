@@ -12,11 +12,13 @@ class Pulse(JSComponent):
     frame = param.Integer(default=0, doc="Number of the newest frame sent.")
     painted = param.Integer(default=0, doc="Number of the newest frame painted.")
     key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
+    narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
 
     _esm = """
     export function render({model}) {
       let count = 0
+      if (window.innerWidth < 900) { model.narrow = true }
       model.on("frame", () => {
         const frame = model.frame
         requestAnimationFrame(() => { model.painted = frame })

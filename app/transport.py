@@ -6,8 +6,8 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.models import CustomJSTickFormatter
 
+from app.scrubber import Scrubber
 from app.session import DEFAULT_PACE, Session
 
 PACES = {
@@ -31,8 +31,6 @@ class Transport:
     def __init__(self, session: Session, refresh: Any) -> None:
         self._session = session
         self._refresh = refresh
-        self._showing = False
-        self._duration = -1.0
         self._run = pmui.Button(
             label="Pause",
             icon="pause",
@@ -63,29 +61,23 @@ class Transport:
             size="small",
             description="Iterations per second that are shown; the method itself is not slowed.",
         )
-        slim = {"size": "small", "sizing_mode": "stretch_width", "margin": (0, 14)}
-        self._iteration = pmui.IntSlider(
+        slim = {"sizing_mode": "stretch_width", "margin": (0, 14)}
+        self._iteration = Scrubber(
             label="Iteration",
-            start=0,
-            end=1,
-            value=0,
-            description="Go back to any iteration done; at the right end it follows the run.",
+            help="Go back to any iteration done; at the right end it follows the run.",
             **slim,
         )
-        self._instant = pmui.IntSlider(
-            label="Instant t (s)",
-            start=0,
-            end=100,
-            value=0,
-            description="The instant at which forces are drawn; a tap on the map chooses it too.",
+        self._instant = Scrubber(
+            label="Instant",
+            help="The instant at which forces are drawn; a tap on the map chooses it too.",
             **slim,
         )
         self._run.on_click(lambda event: self.toggle())
         self._step.on_click(lambda event: self.step())
         self._reset.on_click(lambda event: self.reset())
         self._pace.param.watch(lambda event: session.set_pace(PACES[event.new]), "value")
-        self._iteration.param.watch(self._on_iteration, "value")
-        self._instant.param.watch(self._on_instant, "value")
+        self._iteration.param.watch(self._on_iteration, "wanted")
+        self._instant.param.watch(self._on_instant, "wanted")
         self.view = pn.FlexBox(
             pmui.Row(self._run, self._step, self._reset, self._pace, margin=0),
             pmui.Row(
@@ -122,51 +114,32 @@ class Transport:
     def choose_time(self, time: float) -> None:
         """Look at the instant nearest to a time, s."""
         begun = self._session.run.begun
-        if begun is not None and time is not None:
-            self._instant.value = int(abs(begun.instants - time).argmin())
+        if begun is not None:
+            self._session.look_at(int(abs(begun.instants - time).argmin()))
+            self._refresh()
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
         session = self._session
         active = session.running and session.run.status is None
-        self._showing = True
-        try:
-            self._run.param.update(
-                label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
+        self._run.param.update(
+            label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
+        )
+        frame, done = session.shown, max(session.run.iteration, 1)
+        at = done if session.follows or frame is None else frame.iteration
+        self._iteration.param.update(start=1, end=max(done, 2), shown=at, text=f"{at} of {done}")
+        begun = session.run.begun
+        if begun is not None:
+            self._instant.param.update(
+                end=max(len(begun.instants) - 1, 1),
+                shown=session.instant,
+                text=f"t = {float(begun.instants[session.instant]):.3g} s",
             )
-            self._show_iteration()
-            self._show_instant()
-        finally:
-            self._showing = False
-
-    def _show_iteration(self) -> None:
-        done = max(self._session.run.iteration, 1)
-        if self._session.follows:
-            self._iteration.param.update(start=1, end=max(done, 2), value=done)
-        elif self._iteration.end != max(done, 2):
-            self._iteration.param.update(start=1, end=max(done, 2))
-
-    def _show_instant(self) -> None:
-        begun = self._session.run.begun
-        if begun is None:
-            return
-        last = len(begun.instants) - 1
-        duration = float(begun.instants[-1])
-        if (last, duration) != (self._instant.end, self._duration):
-            self._duration = duration
-            step = duration / max(last, 1)
-            self._instant.format = CustomJSTickFormatter(
-                code=f"return Number((tick * {step!r}).toPrecision(3)).toString()"
-            )
-            self._instant.param.update(end=max(last, 1))
-        self._instant.value = self._session.instant
 
     def _on_iteration(self, event: Any) -> None:
-        if not self._showing:
-            self._session.seek(event.new)
-            self._refresh()
+        self._session.seek(event.new)
+        self._refresh()
 
     def _on_instant(self, event: Any) -> None:
-        if not self._showing:
-            self._session.look_at(event.new)
-            self._refresh()
+        self._session.look_at(event.new)
+        self._refresh()

@@ -15,6 +15,7 @@ from app.views.drawing import (
     decades,
     empty,
     make_figure,
+    mark_decades,
     round_up,
     set_range,
 )
@@ -91,6 +92,7 @@ class Convergence:
             lowest, _ = decades([self._lowest, *(v for c in columns for v in c)], FLOOR)
             self._lowest = min(self._lowest, lowest)
             set_range(self.figure.y_range, self._lowest, 10.0)
+            mark_decades(self.figure.yaxis[0], self.figure.y_range)
         widest = max(run.iteration, picture.before.iteration if picture.before else 0, 20)
         set_range(self.figure.x_range, 0, round_up(widest))
         at = picture.frame.iteration if picture.frame else 0

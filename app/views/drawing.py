@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from bokeh.models import ColumnDataSource, Range1d
+from bokeh.models import ColumnDataSource, FixedTicker, Range1d
 from bokeh.plotting import figure
 
 from app.recording import Recording
@@ -116,6 +116,14 @@ def set_range(axis: Range1d, low: float, high: float) -> None:
         low, high = low - 0.5, high + 0.5
     if (axis.start, axis.end) != (low, high):
         axis.update(start=low, end=high)
+
+
+def mark_decades(axis: Any, scale: Range1d) -> None:
+    """Label a logarithmic axis at whole decades only: in a small plot there is room for no more."""
+    powers = range(round(np.log10(scale.start)), round(np.log10(scale.end)) + 1)
+    ticks = [10.0**power for power in powers][:: max(1, len(powers) // 5)]
+    if not isinstance(axis.ticker, FixedTicker) or axis.ticker.ticks != ticks:
+        axis.ticker = FixedTicker(ticks=ticks)
 
 
 def decimal_scale(size: float, unit: str) -> tuple[float, str]:

@@ -19,6 +19,7 @@ from app.views.drawing import (
     decades,
     empty,
     make_figure,
+    mark_decades,
     set_range,
 )
 from solver.settings import Settings
@@ -93,8 +94,10 @@ class ErrorTime:
             self._incremental.update(location=reference.seconds, visible=True)
             times.append(reference.seconds)
         set_range(self.figure.x_range, *decades(times, 1e-6))
+        mark_decades(self.figure.xaxis[0], self.figure.x_range)
         low, _ = decades(errors, FLOOR)
         set_range(self.figure.y_range, low, 2.0)
+        mark_decades(self.figure.yaxis[0], self.figure.y_range)
 
 
 def _color(run: Recording) -> str:

@@ -6,7 +6,15 @@ import numpy as np
 from bokeh.models import ColorBar, FixedTicker, LinearColorMapper, Range1d
 from bokeh.palettes import Viridis256
 
-from app.views.drawing import Picture, decades, empty, make_figure, round_up, set_range
+from app.views.drawing import (
+    Picture,
+    decades,
+    empty,
+    make_figure,
+    mark_decades,
+    round_up,
+    set_range,
+)
 from solver.settings import Settings
 
 FLOOR = 1e-8
@@ -71,6 +79,7 @@ class Spectra:
         scaled = np.maximum(spectra / largest, 1e-30)
         low, _ = decades(scaled[np.isfinite(scaled)].tolist(), FLOOR)
         set_range(self.figure.y_range, low, 2.0)
+        mark_decades(self.figure.yaxis[0], self.figure.y_range)
         set_range(self.figure.x_range, 0.5, round_up(width) + 0.5)
         modes = np.arange(1, width + 1)
         self._lines.data = {

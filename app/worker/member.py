@@ -17,7 +17,7 @@ from queue import SimpleQueue
 from app.worker import process
 from app.worker.protocol import Order, Ready, Report
 
-ONE_THREAD = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]
 
 _starting = threading.Lock()

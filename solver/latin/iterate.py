@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 from solver.discrete.problem import Array, Problem
 
 
+NO_SLIP = 1e-9
+"""Slip, as a share of the largest displacement, up to which a point counts as stuck."""
+
+
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
     """From where an iteration can go on exactly.
@@ -95,11 +99,14 @@ class Iterate:
     def status(self) -> NDArray[np.int8]:
         """Contact status of the local stage, shape (n_points, n_instants): -1, 0 or +1.
 
-        Slip forward is +1. Stick is exact: the law repeats the last position bit by bit. At a cut
-        both sides have their say, and the larger slip wins.
+        Slip forward is +1. The law repeats the position of a stuck point bit by bit; a point that
+        is just at its bound moves by rounding alone, and that is not called slip. At a cut both
+        sides have their say, and the larger slip wins.
         """
         law = self.problem.friction
-        slip = np.diff(self.local_displacement[law.rows], axis=1, prepend=0.0)
+        position = self.local_displacement[law.rows]
+        slip = np.diff(position, axis=1, prepend=0.0)
         total = np.zeros((len(law.positions), slip.shape[1]))
         np.add.at(total, law.points, slip)
+        total[np.abs(total) <= NO_SLIP * np.abs(position).max(initial=0.0)] = 0.0
         return np.sign(total).astype(np.int8)

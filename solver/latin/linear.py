@@ -150,7 +150,7 @@ class DenseResponse:
     def force_rows(self, rows: Indices) -> Array:
         """Give rows of k - k H k, which makes F of y / k, shape (len(rows), n_boundary)."""
         k = self._k
-        full = -k[rows, None] * self._compliance[rows] * k
+        full: Array = -k[rows, None] * self._compliance[rows] * k
         full[np.arange(len(rows)), rows] += k[rows]
         return full
 

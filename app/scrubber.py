@@ -1,0 +1,67 @@
+"""A slider that the server and the user both move.
+
+What the server shows and what the user wants are two parameters, one for each direction, so that
+no late echo of a shown value is taken for a wish (Material sliders send such echoes when they are
+updated many times a second).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+STYLE = """
+label { display: block; font-size: 15px; line-height: 1.4; white-space: nowrap; }
+output { font-weight: 600; }
+input { display: block; width: 100%; margin: 4px 0; accent-color: #1976d2; cursor: pointer; }
+"""
+
+
+class Scrubber(JSComponent):
+    """A range from `start` to `end`.
+
+    Attributes
+    ----------
+    shown
+        Where it stands.
+    wanted
+        Where the user moved it last.
+    """
+
+    label = param.String(default="")
+    help = param.String(default="")
+    text = param.String(default="", doc="What is written beside the label.")
+    start = param.Integer(default=0)
+    end = param.Integer(default=1)
+    shown = param.Integer(default=0)
+    wanted = param.Integer(default=-1)
+
+    _esm = """
+    export function render({model, el}) {
+      const label = document.createElement("label")
+      const text = document.createElement("output")
+      const range = document.createElement("input")
+      range.type = "range"
+      label.append(document.createElement("span"), text, range)
+      const show = () => {
+        label.title = model.help
+        label.firstChild.textContent = model.label + ": "
+        text.textContent = model.text
+        range.min = model.start
+        range.max = model.end
+        if (!held) { range.value = model.shown }
+      }
+      let held = false
+      range.addEventListener("pointerdown", () => { held = true })
+      window.addEventListener("pointerup", () => { held = false })
+      range.addEventListener("input", () => { model.wanted = Number(range.value) })
+      for (const name of ["label", "text", "start", "end", "shown"]) { model.on(name, show) }
+      show()
+      return label
+    }
+    """
+
+    def __init__(self, **params: Any) -> None:
+        super().__init__(stylesheets=[STYLE], **params)
