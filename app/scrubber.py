@@ -47,6 +47,7 @@ class Scrubber(JSComponent):
       label.append(document.createElement("span"), text, range)
       const show = () => {
         label.title = model.help
+        range.ariaLabel = model.label
         label.firstChild.textContent = model.label + ": "
         text.textContent = model.text
         range.min = model.start

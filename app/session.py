@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 from app.recording import Recording
 from app.worker.pool import Pool
-from app.worker.protocol import Pace, Report, Run, Seek, Step, Watch
+from app.worker.protocol import Frame, Pace, Report, Run, Seek, Step, Watch
 from solver.settings import Settings, about
 
 PAST_RUNS = 6
@@ -36,10 +37,13 @@ class Session:
         Whether iterations go on by themselves, and how many a second (None: all it can).
     follows
         Whether the newest iterate is looked at, not one that was sought.
+    wake
+        Called on another thread when the first frame of a run has come.
     """
 
     def __init__(self, pool: Pool, settings: Settings) -> None:
         self.settings = settings
+        self.wake: Callable[[], None] = lambda: None
         self.before: Recording | None = None
         self.past: deque[Recording] = deque(maxlen=PAST_RUNS)
         self.instant = 0
@@ -184,6 +188,8 @@ class Session:
     def _receive(self, report: Report) -> None:
         with self._lock:
             self._mailbox.append(report)
+        if isinstance(report, Frame) and self.run.newest is None:
+            self.wake()
 
 
 def _label(settings: Settings, changed: dict[str, Any]) -> str:

@@ -32,7 +32,7 @@ def settings_from_toml(text: str, folder: Path | None = None) -> Settings:
     """
     try:
         values = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
+    except (ValueError, RecursionError) as problem:
         raise SettingError("settings file", text, "TOML", f"mend it: {problem}") from None
     values = dict(values)
     kind = scene_settings(values.pop("scene", None))

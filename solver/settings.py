@@ -336,7 +336,7 @@ def _checked_value(definition: Parameter, name: str, value: object) -> Any:
         return value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise refuse("write a number")
-    if not math.isfinite(value):
+    if isinstance(value, float) and not math.isfinite(value):
         raise refuse("write a finite number")
     low, high = definition.bounds
     if not low <= value <= high:
@@ -363,7 +363,7 @@ def _checked_curve(
             raise refuse(f"row {row} must be a pair of numbers")
         if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in pair):
             raise refuse(f"row {row} has an entry that is not a number")
-        if not all(math.isfinite(entry) for entry in pair):
+        if not all(math.isfinite(entry) for entry in pair if isinstance(entry, float)):
             raise refuse(f"row {row} has an entry that is not finite")
         if any(abs(entry) > 1e15 for entry in pair):
             raise refuse(f"row {row} has an entry beyond 1e15 in size")
@@ -406,7 +406,7 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
 def _read_file(path: Path, definition: Curve, name: str) -> list[list[float]]:
     try:
         text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as problem:
+    except (OSError, ValueError) as problem:  # no text, or no path at all
         remedy = f"it is no preset, and no readable CSV file ({type(problem).__name__})"
         raise SettingError(name, str(path), allowed(definition), remedy) from None
     return read_table(text, definition, name, str(path))
@@ -415,10 +415,10 @@ def _read_file(path: Path, definition: Curve, name: str) -> list[list[float]]:
 def parse(text: str) -> object:
     """Read a setting's value from text, as typed on a command line or in an address."""
     try:
-        value: object = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+        found: dict[str, object] = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):  # no TOML, digits beyond Python's limit, deep nesting
         return text
-    return value
+    return found["value"] if len(found) == 1 else text
 
 
 def resolve(definition: Parameter, name: str, value: object, folder: Path) -> object:

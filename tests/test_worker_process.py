@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,19 +32,22 @@ from app.worker.protocol import (
     Run,
     Seek,
     Step,
+    Taken,
     Waiting,
     Watch,
 )
 from app.worker.recording import Recording, References
 from app.worker.run import WorkerRun
 from app.worker.sampler import Sampler
+from solver import latin
 from solver.discrete import discretise
 from solver.latin import Checkpoint, Ending, Iterate, Record, Solution, iterations, solve
+from solver.reference.closed_form import closed_form
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
-from solver.scenes.bar import BarSettings
+from solver.scenes.bar import BarSettings, bar
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 SHORT = {"tolerance": 1e-8, "max_iterations": 50}
 STALLING = {"tolerance": 1e-30, "elements": 20, "substructures": 4}
 
@@ -62,14 +68,15 @@ class Line:
         """Listen until a report of one of these kinds comes."""
         end = time.monotonic() + PATIENCE
         while self.connection.poll(max(end - time.monotonic(), 0.0)):
-            report = self.connection.recv()
+            report: Any = self.connection.recv()
             self.reports.append(report)
             if isinstance(report, kinds) and report.ticket == ticket:
                 return report
         pytest.fail(f"no report of kind {kinds}")
 
     def all(self, kind: type, ticket: int = 1) -> list[Any]:
-        return [said for said in self.reports if isinstance(said, kind) and said.ticket == ticket]
+        said: list[Any] = [report for report in self.reports if isinstance(report, kind)]
+        return [report for report in said if report.ticket == ticket]
 
     def records(self, ticket: int = 1) -> list[Record]:
         return [record for part in self.all(Progress, ticket) for record in part.records]
@@ -122,9 +129,7 @@ def is_same_picture(frame: Frame, other: Frame) -> bool:
 
 
 @pytest.mark.parametrize("values", [{}, STALLING, {"substructures": 1}])
-def test_worker_gives_the_numbers_of_a_direct_solution(
-    line: Line, values: dict[str, Any]
-) -> None:
+def test_worker_gives_the_numbers_of_a_direct_solution(line: Line, values: dict[str, Any]) -> None:
     line.send(Run(1, "bar", values))
     end = line.until(End, Refused)
     line.until(Waiting)
@@ -137,8 +142,9 @@ def test_worker_gives_the_numbers_of_a_direct_solution(
 def test_first_picture_comes_before_the_reference_and_every_record_after_it(line: Line) -> None:
     line.send(Run(1, "bar", SHORT))
     line.until(End)
-    kinds = [type(report) for report in line.reports if not isinstance(report, Ready)]
-    assert kinds[1:5] == [Begun, Frame, Reference, Progress]
+    kinds = [type(report) for report in line.reports]
+    assert kinds[:6] == [Taken, Begun, Frame, Begun, Reference, Progress]
+    assert [begun.closed_form is not None for begun in line.all(Begun)] == [False, True]
     assert line.all(Frame)[0].iteration == 1
     assert [record.iteration for record in line.records()] == list(range(1, 51))
     assert not any(math.isnan(record.error_force) for record in line.records())
@@ -222,9 +228,7 @@ def test_seek_shows_the_exact_iterate(line: Line, number: int) -> None:
 
 
 @pytest.mark.parametrize(("wanted", "answer"), [(-5, 1), (0, 1), (10**9, 50)])
-def test_seek_out_of_range_shows_the_nearest_iterate(
-    line: Line, wanted: int, answer: int
-) -> None:
+def test_seek_out_of_range_shows_the_nearest_iterate(line: Line, wanted: int, answer: int) -> None:
     line.send(Run(1, "bar", SHORT))
     line.until(Waiting)
     line.send(Seek(1, wanted))
@@ -292,7 +296,7 @@ def test_frames_carry_spectra_and_behaviour_only_when_watched(line: Line) -> Non
     [
         ("bar", {"elements": 0}, "elements = 0 is refused; allowed: a whole number from 1"),
         ("bar", {"friktion": 0.3}, "did you mean friction?"),
-        ("bridge", {}, "scene = \"bridge\" is refused; allowed: bar"),
+        ("bridge", {}, 'scene = "bridge" is refused; allowed: bar'),
         ("bar", None, "The run broke (AttributeError"),
     ],
 )
@@ -361,7 +365,7 @@ def test_run_that_diverges_keeps_its_last_good_iterate(monkeypatch: pytest.Monke
         entry = plain(iterate, distance)
         return replace(entry, indicator=math.nan) if iterate.number == 5 else entry
 
-    plain = run.record
+    plain = latin.record
     monkeypatch.setattr(run, "record", record)
     said: list[Any] = []
     work = WorkerRun(Run(1, "bar", SHORT), said.append, lambda: False, References())
@@ -388,3 +392,49 @@ def test_recording_stays_within_its_memory_and_finds_the_nearest_checkpoint(budg
         (start.number if start else 0) == max((n for n in kept if n < number), default=0)
         for number, start in enumerate(found, start=1)
     )
+
+
+def test_begun_gives_bound_load_and_cuts_in_si(line: Line) -> None:
+    path = {"load": [[0.0, 0.0], [2.0, 700.0]], "duration": 2.0, "instants": 11}
+    rod = {"length": 2.0, "young": 1e9, "elements": 20, "substructures": 4}
+    line.send(Run(1, "bar", {**path, **rod, "friction": 0.4, "friction_profile": "rising"}))
+    line.until(End)
+    begun = line.all(Begun)[0]
+    assert begun.positions == pytest.approx(np.linspace(0.0, 2.0, 21))
+    assert begun.cuts == pytest.approx([0.5, 1.0, 1.5])
+    assert begun.load == pytest.approx(np.linspace(0.0, 700.0, 11))
+    assert begun.all_instants == pytest.approx(np.linspace(0.0, 2.0, 11))
+    factor = np.linspace(0.2, 1.8, 21)
+    assert begun.bound == pytest.approx(0.4 * 5000.0 * factor)
+
+
+def test_run_that_goes_on_never_takes_back_its_closed_form(lines: list[Line]) -> None:
+    lines[0].send(Run(1, "bar", SHORT, pause_after=2))
+    lines[0].until(Waiting)
+    lines[0].send(Park(1))
+    lines[1].send(lines[0].until(Parked).order)
+    lines[1].until(Waiting)
+    (resumed,) = lines[1].all(Begun)
+    assert np.array_equal(resumed.closed_form, lines[0].all(Begun)[-1].closed_form)
+    exact = closed_form(bar(BarSettings.checked(SHORT)))
+    assert exact is not None
+    assert resumed.closed_form_end == pytest.approx(exact.end_displacement, rel=1e-6)
+
+
+def test_run_without_a_closed_form_sends_none(line: Line) -> None:
+    line.send(Run(1, "bar", {**SHORT, "body_force": 100.0}))
+    line.until(Reference)
+    assert [begun.closed_form for begun in line.all(Begun)] == [None, None]
+
+
+def test_worker_loads_no_part_of_the_page() -> None:
+    script = (
+        "import sys, app.worker.process\n"
+        "page = {'panel', 'bokeh', 'holoviews', 'tornado', 'pandas', 'app.session'}\n"
+        "print(*sorted(page & set(sys.modules)))"
+    )
+    root = Path(__file__).parents[1]
+    found = subprocess.run(
+        [sys.executable, "-c", script], cwd=root, capture_output=True, text=True, check=True
+    )
+    assert found.stdout.split() == []

@@ -99,6 +99,10 @@ def make_figure(x_label: str, y_label: str, **options: Any) -> Any:
         min_border_top=6,
         **options,
     )
+    for axis, kind in ((made.xaxis, "x_axis_type"), (made.yaxis, "y_axis_type")):
+        if options.get(kind) == "log":
+            # Given once and changed in place: a new ticker would be a new model for the document.
+            axis.ticker = FixedTicker(ticks=[])
     made.axis.axis_label_text_font_size = "14px"
     made.axis.major_label_text_font_size = "13px"
     made.axis.axis_label_standoff = 4
@@ -122,8 +126,8 @@ def mark_decades(axis: Any, scale: Range1d) -> None:
     """Label a logarithmic axis at whole decades only: in a small plot there is room for no more."""
     powers = range(round(np.log10(scale.start)), round(np.log10(scale.end)) + 1)
     ticks = [10.0**power for power in powers][:: max(1, len(powers) // 5)]
-    if not isinstance(axis.ticker, FixedTicker) or axis.ticker.ticks != ticks:
-        axis.ticker = FixedTicker(ticks=ticks)
+    if axis.ticker.ticks != ticks:
+        axis.ticker.ticks = ticks
 
 
 def decimal_scale(size: float, unit: str) -> tuple[float, str]:

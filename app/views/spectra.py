@@ -46,7 +46,9 @@ class Spectra:
             line_width=2.5,
             line_color={"field": "number", "transform": self._mapper},
         )
-        self._bar = ColorBar(
+        self._marks = FixedTicker(ticks=[1, 2])
+        bar = ColorBar(
+            ticker=self._marks,
             color_mapper=self._mapper,
             title="sub.",
             width=10,
@@ -54,7 +56,7 @@ class Spectra:
             title_text_font_size="12px",
             major_label_text_font_size="12px",
         )
-        self.figure.add_layout(self._bar, "right")
+        self.figure.add_layout(bar, "right")
 
     def applies(self, settings: Settings) -> bool:
         """One instant has one singular value."""
@@ -74,7 +76,7 @@ class Spectra:
         if self._mapper.high != max(total, 2):
             self._mapper.high = max(total, 2)
             marks = sorted({int(mark) for mark in np.linspace(1, total, min(total, 5)).round()})
-            self._bar.ticker = FixedTicker(ticks=marks)
+            self._marks.ticks = marks
         largest = float(np.nanmax(spectra)) or 1.0
         scaled = np.maximum(spectra / largest, 1e-30)
         low, _ = decades(scaled[np.isfinite(scaled)].tolist(), FLOOR)

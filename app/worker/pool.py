@@ -77,7 +77,8 @@ class Pool:
     def pids(self) -> list[int]:
         """Numbers of the processes that have started."""
         with self._changed:
-            return [member.pid for member in self._roster.members if member.pid is not None]
+            members = [] if self._closed else self._roster.members
+        return [member.pid for member in members if member.pid is not None]
 
     def close(self) -> None:
         """End all processes; afterwards all orders are ignored."""

@@ -4,13 +4,14 @@ A run has a ticket. Orders about another ticket than the one at work are ignored
 reports about a ticket that is no longer wanted: nothing depends on who is first.
 
     server -> worker   Run, Pace, Step, Seek, Watch, Park, Leave
-    worker -> server   Ready, then per run: Taken, Begun, Frame, Reference, Progress*, Frame*,
-                       then End | Parked | Refused; Waiting whenever there is nothing to do
+    worker -> server   Ready, then per run: Taken, Begun, Frame, Begun, Reference, Progress*,
+                       Frame*, then End | Parked | Refused; Waiting whenever there is nothing to do
     pool -> session    Begun, Reference, Progress, Frame, End, Refused, Died; the rest is internal
 
+Only the second Begun has the closed form, which must not hold up the first picture.
 Every record of a run is in exactly one Progress; frames are only the newest. A run that was
-parked and went on sends Begun, Reference and a Frame again, and no record or End twice. Died
-alone breaks this: what was sent under its ticket before is to be forgotten.
+parked and went on sends a complete Begun, Reference and a Frame again, and no record or End
+twice. Died alone breaks this: what was sent under its ticket before is to be forgotten.
 """
 
 from __future__ import annotations
@@ -81,9 +82,9 @@ class Run:
 
 @dataclass(frozen=True)
 class Pace:
-    """Go on at this many iterations per second; None is as fast as possible, 0 waits.
+    """Go on at this many iterations per second, None for as fast as possible, or 0 to wait.
 
-    A pause that was reached is over with it, a later one stays.
+    A `pause_after` has no effect any more, whether reached or not.
     """
 
     ticket: int
@@ -168,7 +169,8 @@ class Begun:
     all_instants
         The instants of `load` and of end displacements, thinned to `LONGEST_CURVE`, s.
     closed_form, closed_form_end
-        Friction force, N/m, and end displacement, m, of the closed form, or None.
+        Friction force, N/m, and end displacement, m, of the closed form; None where there is
+        none, or as long as it is not computed.
     """
 
     ticket: int

@@ -25,6 +25,9 @@ class Resume:
         As computed already.
     status
         How the run ended, or None.
+    due
+        When the next iteration is due, on the machine's monotonic clock, s; so a slow pace is
+        kept across short turns.
     """
 
     before: Checkpoint | None
@@ -32,3 +35,4 @@ class Resume:
     rules: StopRules
     reference: Reference
     status: Status | None
+    due: float

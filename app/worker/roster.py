@@ -47,6 +47,7 @@ from app.worker.protocol import (
     Parked,
     Progress,
     Ready,
+    Reference,
     Refused,
     Report,
     Run,
@@ -189,7 +190,7 @@ class Roster:
         """Give the time at which `tend` has something to do, if nothing happens before."""
         times = [post.deadline for post in self._posts.values()]
         if self._shortage() > 0:
-            times += [_ripe_at(post) for post in self._posts.values() if post.at_work]
+            times += [post.ripe_at for post in self._posts.values() if post.at_work]
         return min(times, default=math.inf)
 
     def _enqueue(self, seat: Seat) -> None:
@@ -221,8 +222,7 @@ class Roster:
     def _taken(self, post: Post) -> None:
         if post.awaited is not Taken or post.seat is None:
             return
-        post.clear()
-        post.since = min(post.since, self._clock())
+        post.take(self._clock())
         post.seat.unanswered = 0
         for change in post.seat.pending:
             post.member.send(replace(change, ticket=post.turn))
@@ -232,17 +232,21 @@ class Roster:
         if post.awaited is not Parked:
             return
         seat = post.seat
+        if seat is not None and post.set_up_since is not None:
+            seat.fruitless += 1
         post.clear()
         post.vacate()
         if seat is None:
             return
         seat.post = None
         if report.order is not None:
-            seat.go_on_with(report.order)
+            seat.next = replace(report.order, ticket=seat.ticket)
         if seat.next is not None and (seat.pending or not seat.next.waits):
             self._enqueue(seat)
 
     def _for_session(self, post: Post, seat: Seat, report: Report) -> Delivery:
+        if isinstance(report, Reference):
+            post.begin(self._clock())
         if isinstance(report, Progress):
             seat.done = report.records[-1].iteration
         delivery = seat, replace(report, ticket=seat.ticket)
@@ -284,13 +288,6 @@ class Roster:
 
     def _in_the_way(self, now: float) -> list[Post]:
         """Give the posts that have to make room: idle ones first, then those longest at work."""
-        at_work = [post for post in self._posts.values() if post.at_work and _ripe_at(post) <= now]
+        at_work = [post for post in self._posts.values() if post.at_work and post.ripe_at <= now]
         at_work.sort(key=lambda post: (not post.idle, post.since))
         return at_work[: max(self._shortage(), 0)]
-
-
-def _ripe_at(post: Post) -> float:
-    """Give the time from which a post at work may be asked to make room."""
-    if post.idle or post.seat is None:
-        return -math.inf
-    return post.since + post.seat.quantum

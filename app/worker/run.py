@@ -82,7 +82,7 @@ class WorkerRun:
         self._newest: Iterate | None = None
         self._search: tuple[Iterator[Iterate], int] | None = None
         self._recording = Recording()
-        self._tempo = Tempo(order.pace, order.pause_after)
+        self._tempo = Tempo(order.pace, order.pause_after, resume.due if resume else None)
         self._watch = order.watch
         self._unsent: list[Record] = []
         self._stale = False
@@ -115,7 +115,7 @@ class WorkerRun:
         """Follow an order."""
         match order:
             case Pace():
-                self._tempo.change(order.pace, self._newest.number if self._newest else 0)
+                self._tempo.change(order.pace)
             case Step():
                 self._tempo.step()
             case Seek():
@@ -128,10 +128,19 @@ class WorkerRun:
     def parked(self) -> Parked:
         """Give the order that goes on with the run, once all its records are sent."""
         resume = self._order.resume
-        done = self._newest.number if self._newest else 0
+        # A run without a past does its first iteration in any case, before all steps.
+        done = resume.iteration if resume else 1
         if self._newest is not None and self._reference is not None:
             self._publish()
-            resume = Resume(self._before, done, self._rules, self._reference, self._status)
+            done = self._newest.number
+            resume = Resume(
+                self._before,
+                done,
+                self._rules,
+                self._reference,
+                self._status,
+                self._tempo.due,
+            )
         pace, pause_after = self._tempo.carried(done)
         seek = self._search[1] if self._search else self._order.seek
         order = replace(
@@ -146,7 +155,10 @@ class WorkerRun:
 
     def _open(self) -> None:
         """Do the first iteration, or the last one again, and show it: the picture comes first."""
-        self._send(self._sampler.begun(self.ticket, self._settings))
+        resume = self._order.resume
+        begun = self._sampler.begun(self.ticket)
+        # Whoever watches a run that goes on has the closed form already, and must not lose it.
+        self._send(self._sampler.completed(begun, self._settings) if resume else begun)
         self._generator = iterations(self._problem, self._settings, self._before)
         newest = next(self._generator)
         if not math.isfinite(latin_indicator(newest)):
@@ -156,8 +168,8 @@ class WorkerRun:
             )
         self._newest = newest
         self._send(self._frame(newest))
-        if self._order.resume is not None:
-            self._refer(self._order.resume.reference)
+        if resume is not None:
+            self._refer(resume.reference)
             if self._before is not None:
                 self._recording.keep(self._before)
             self._recording.keep(newest.checkpoint)
@@ -169,6 +181,9 @@ class WorkerRun:
             found = self._references.of(self._settings, self._problem, self._urgent)
         except Interrupted:
             return
+        # The closed form takes longer than the first iteration, so it comes after the picture.
+        begun = self._sampler.begun(self.ticket)
+        self._send(self._sampler.completed(begun, self._settings))
         self._account(newest, newest, self._refer(found))
         self._publish()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -41,13 +42,12 @@ class Sampler:
         lengths = np.bincount(law.points, weights=law.weights, minlength=len(law.positions))
         self._lengths = lengths[self._rows]
 
-    def begun(self, ticket: int, settings: Settings) -> Begun:
-        """Describe what the fields stand on."""
+    def begun(self, ticket: int) -> Begun:
+        """Describe what the fields stand on, without the closed form."""
         problem, law = self._problem, self._problem.friction
         bound = np.bincount(law.points, weights=law.bound, minlength=len(law.positions))
         cuts = [law.first[0] for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
         (loaded,) = (law for law in problem.of_law(Neumann) if isinstance(law, Neumann))
-        closed = closed_form(bar(settings)) if isinstance(settings, BarSettings) else None
         return Begun(
             ticket=ticket,
             positions=_floats(law.positions[self._rows]),
@@ -56,10 +56,19 @@ class Sampler:
             bound=_floats(bound[self._rows] * problem.scales.force / self._lengths),
             load=_floats(loaded.force[0, self._curve] * problem.scales.force),
             all_instants=_floats(problem.instants[self._curve]),
-            closed_form=None if closed is None else self._density(closed.friction_force),
-            closed_form_end=None
-            if closed is None
-            else _floats(closed.end_displacement[self._curve]),
+            closed_form=None,
+            closed_form_end=None,
+        )
+
+    def completed(self, begun: Begun, settings: Settings) -> Begun:
+        """Add the closed form, where there is one."""
+        closed = closed_form(bar(settings)) if isinstance(settings, BarSettings) else None
+        if closed is None:
+            return begun
+        return replace(
+            begun,
+            closed_form=self._density(closed.friction_force),
+            closed_form_end=_floats(closed.end_displacement[self._curve]),
         )
 
     def reference(self, ticket: int, found: incremental.Reference) -> Reference:

@@ -16,7 +16,7 @@ Change = Pace | Step | Seek | Watch
 Listener = Callable[[Report], None]
 
 QUANTUM = 0.5
-"""Seconds of work after which a run makes room for one that waits."""
+"""Seconds of work, once set up, after which a run makes room for one that waits."""
 
 RESTARTS = 2
 """Times that a run is started again after its process died."""
@@ -55,7 +55,7 @@ class Seat:
         self.done = 0
         self.restarts = 0
         self.unanswered = 0
-        self.quantum = QUANTUM
+        self.fruitless = 0
 
     def run(self, order: Run) -> None:
         """Run this in place of the former run of this seat."""
@@ -76,8 +76,7 @@ class Seat:
         self.pending = []
         self.held = False
         self.done = order.resume.iteration if order.resume else 0
-        self.restarts = self.unanswered = 0
-        self.quantum = QUANTUM
+        self.restarts = self.unanswered = self.fruitless = 0
 
     def forget(self) -> None:
         """Give up the run."""
@@ -103,9 +102,7 @@ class Seat:
             case Pace(pace=0):
                 self.first = replace(self.first, pause_after=max(self.done, 1))
             case Pace(pace=pace):
-                pause = self.first.pause_after
-                later = pause if pause is not None and pause > self.done else None
-                self.first = replace(self.first, pace=pace, pause_after=later)
+                self.first = replace(self.first, pace=pace, pause_after=None)
             case Step():
                 self.first = replace(self.first, pause_after=self.done + 1)
             case Watch(watch=watch):
@@ -116,10 +113,3 @@ class Seat:
         if not isinstance(change, Step):
             self.pending = [kept for kept in self.pending if type(kept) is not type(change)]
         self.pending.append(change)
-
-    def go_on_with(self, order: Run) -> None:
-        """Take what a parked run goes on with; a turn that brought nothing makes longer ones."""
-        before, after = self.next and self.next.resume, order.resume
-        fruitless = (before and before.iteration) == (after and after.iteration)
-        self.quantum = 2.0 * self.quantum if fruitless and not order.waits else QUANTUM
-        self.next = replace(order, ticket=self.ticket)

@@ -15,21 +15,29 @@ class Tempo:
     ----------
     pace, pause_after
         As in a Run.
+    due
+        When the next iteration is due, on the monotonic clock; None is one interval from now.
+
+    Attributes
+    ----------
+    due
+        The same, at present.
     """
 
-    def __init__(self, pace: float | None, pause_after: int | None) -> None:
+    def __init__(
+        self, pace: float | None, pause_after: int | None, due: float | None = None
+    ) -> None:
         self._pace = pace
         self._pause_after = pause_after
         self._steps = 0
-        self._due = time.monotonic() + self._interval
+        self.due = time.monotonic() + self._interval if due is None else due
 
-    def change(self, pace: float | None, done: int) -> None:
-        """Go on at another pace; a pause that was reached is over, and so are steps."""
+    def change(self, pace: float | None) -> None:
+        """Go on at another pace, without a pause and without steps."""
         self._steps = 0
         self._pace = pace
-        if pace != 0 and self._pause_after is not None and done >= self._pause_after:
-            self._pause_after = None
-        self._due = min(self._due, time.monotonic() + self._interval)
+        self._pause_after = None
+        self.due = min(self.due, time.monotonic() + self._interval)
 
     def step(self) -> None:
         """Do one more iteration, and wait."""
@@ -39,7 +47,7 @@ class Tempo:
     def count(self) -> None:
         """Count an iteration that begins now."""
         self._steps = max(self._steps - 1, 0)
-        self._due = max(self._due + self._interval, time.monotonic())
+        self.due = max(self.due + self._interval, time.monotonic())
 
     def rest(self, done: int) -> float | None:
         """Give the seconds until the next iteration is due; None waits for an order."""
@@ -48,7 +56,7 @@ class Tempo:
         paused = self._pause_after is not None and done >= self._pause_after
         if paused or self._pace == 0:
             return None
-        return min(max(self._due - time.monotonic(), 0.0), LONGEST_REST)
+        return min(max(self.due - time.monotonic(), 0.0), LONGEST_REST)
 
     def carried(self, done: int) -> tuple[float | None, int | None]:
         """Give pace and pause with which another tempo goes on."""

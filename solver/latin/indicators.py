@@ -77,7 +77,7 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     map_ = np.zeros((len(law.positions), problem.n_instants))
     np.add.at(map_, law.points, np.maximum(violation, 0.0))
     total = ratio(float(map_.sum()), energy)
-    map_ *= ratio(map_.size, energy)
+    map_ *= ratio(map_.size, energy) if energy else 0.0
     return BehaviourIndicator(total + _gap_of_bonds(problem, displacement, force), map_)
 
 

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from solver.discrete.problem import Array, Problem
 
-
 NO_SLIP = 1e-9
 """Slip, as a share of the largest displacement, up to which a point counts as stuck."""
 

@@ -31,6 +31,7 @@ def iterations(
     """
     clock = _Clock(start.seconds if start else 0.0)
     k = search_direction(problem, settings)
+    k.flags.writeable = False
     local_stage = LocalStage(problem, k)
     linear_stage = LinearStage(problem, k, multiscale=settings.multiscale)
     state = linear_stage.from_boundary(start.outgoing) if start else linear_stage.zero()

@@ -15,7 +15,7 @@ from solver.reference.distance import Distance
 from solver.settings import Settings
 
 STALL_WINDOW = 200
-STALL_FACTOR = 0.9
+STALL_FACTOR = 0.99
 ROUNDING = 1e-24
 
 

@@ -1,0 +1,89 @@
+"""Measure the page in headless Chromium: `python tests/measure_page.py`.
+
+Prints medians, in ms, of opening the page until its first picture is painted, and of a key press
+on a slider until the first picture of the new run is painted.
+"""
+
+from __future__ import annotations
+
+import statistics
+import tempfile
+import time
+from pathlib import Path
+
+from browser import Server, browser
+from playwright.sync_api import Page
+
+REPEATS = 15
+FIRST_PICTURE = """() => new Promise((resolve) => {
+  const look = () => {
+    const status = document.querySelector("body") && window.findStatus()
+    if (status && status.textContent.includes("iteration")) {
+      requestAnimationFrame(() => resolve(performance.now()))
+    } else { requestAnimationFrame(look) }
+  }
+  look()
+})"""
+FIND = """window.findStatus = () => {
+  const search = (root) => {
+    for (const element of root.querySelectorAll("*")) {
+      if (element.classList.contains("status")) { return element.shadowRoot || element }
+      const found = element.shadowRoot && search(element.shadowRoot)
+      if (found) { return found }
+    }
+  }
+  return window.statusFound || (window.statusFound = search(document))
+}
+window.afterKey = (text) => new Promise((resolve) => {
+  let since
+  const note = () => { since = performance.now() }
+  window.addEventListener("keydown", note, {capture: true, once: true})
+  const look = () => {
+    if (since && window.findStatus().textContent.includes(text)) {
+      requestAnimationFrame(() => requestAnimationFrame(() => resolve(performance.now() - since)))
+    } else { requestAnimationFrame(look) }
+  }
+  look()
+})"""
+
+
+def slider_latency(page: Page) -> list[float]:
+    handle = page.get_by_role("slider", name="Substructures")
+    times = []
+    for repeat in range(REPEATS):
+        page.wait_for_timeout(1200)
+        target, key = (11, "ArrowRight") if repeat % 2 == 0 else (10, "ArrowLeft")
+        page.evaluate(f"() => {{ window.waited = window.afterKey('· {target} substructures') }}")
+        handle.press(key)
+        times.append(page.evaluate("window.waited"))
+    return times
+
+
+def main() -> None:
+    with tempfile.TemporaryDirectory() as folder, browser() as chrome:
+        server = Server(Path(folder) / "log")
+        try:
+            server.wait()
+            context = chrome.new_context(viewport={"width": 1280, "height": 720})
+            context.add_init_script(FIND)
+            opened, latency = [], []
+            for repeat in range(6):
+                page = context.new_page()
+                start = time.perf_counter()
+                page.goto(server.address, wait_until="commit")
+                page.evaluate(FIRST_PICTURE)
+                opened.append(1e3 * (time.perf_counter() - start))
+                if repeat == 5:
+                    latency = slider_latency(page)
+                page.close()
+        finally:
+            server.stop()
+    print(f"open to first picture: first {opened[0]:.0f}, then {statistics.median(opened[1:]):.0f}")
+    print(
+        f"slider to picture: median {statistics.median(latency):.0f}, "
+        f"from {min(latency):.0f} to {max(latency):.0f} ({REPEATS} presses)"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,247 @@
+"""The command line runs, lists, writes and refuses as its contract says."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solver.cli import main
+from solver.files import settings_from_toml
+from solver.scenes import CATALOGUE
+from solver.scenes.bar import BarSettings
+from solver.settings import about, allowed, dump
+
+ROOT = Path(__file__).resolve().parents[1]
+SMALL = ["--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
+FIGURES = ["scene", "status", "advice", "iterations", "indicator", "behaviour"]
+FIGURES += ["error_displacement", "error_force", "seconds"]
+
+
+def printed_figures(text):
+    return dict(line.split(maxsplit=1) for line in text.splitlines())
+
+
+def test_run_prints_the_key_figures_and_exits_0_when_converged(capsys):
+    assert main(["run", "bar", *SMALL]) == 0
+    out, err = capsys.readouterr()
+    figures = printed_figures(out)
+    assert list(figures) == FIGURES
+    assert (figures["scene"], figures["status"]) == ("bar", "converged")
+    assert int(figures["iterations"]) > 1
+    assert 0.0 < float(figures["indicator"]) <= 1e-10
+    assert 0.0 < float(figures["error_displacement"]) < 1e-3
+    assert 0.0 < float(figures["error_force"]) < 1e-2
+    assert float(figures["seconds"]) > 0.0
+    assert err == ""
+
+
+def test_run_exits_1_when_it_stops_otherwise(capsys):
+    assert main(["run", "bar", *SMALL, "--set", "max_iterations=4"]) == 1
+    figures = printed_figures(capsys.readouterr().out)
+    assert (figures["status"], figures["iterations"]) == ("exhausted", "4")
+    assert "max_iterations" in figures["advice"]
+
+
+def test_json_is_strict_and_says_the_same_as_the_text(capsys):
+    command = ["run", "bar", *SMALL, "--set", "tolerance=1e-6"]
+    main(command)
+    figures = printed_figures(capsys.readouterr().out)
+    assert main([*command, "--json"]) == 0
+
+    def refuse(word):
+        raise AssertionError(f"{word} is no JSON")
+
+    found = json.loads(capsys.readouterr().out, parse_constant=refuse)
+    assert list(found) == [*FIGURES, "settings"]
+    assert found["iterations"] == int(figures["iterations"])
+    assert found["indicator"] == pytest.approx(float(figures["indicator"]), rel=1e-5)
+    assert BarSettings.checked(found["settings"]).tolerance == 1e-6
+
+
+def test_a_bar_without_load_is_reported_in_strict_json(capsys):
+    assert main(["run", "bar", *SMALL, "--set", "peak=0", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["iterations"], found["indicator"], found["error_force"]) == (1, 0.0, 0.0)
+
+
+def test_the_result_file_holds_what_the_contract_names(tmp_path, capsys):
+    file = tmp_path / "result.npz"
+    assert main(["run", "bar", *SMALL, "--out", str(file), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    with np.load(file, allow_pickle=False) as found:
+        arrays = dict(found)
+    points, instants, iterations = 13, 11, printed["iterations"]
+    shapes = {name: array.shape for name, array in arrays.items()}
+    assert shapes == {
+        "x": (points,),
+        "t": (instants,),
+        "displacement": (points, instants),
+        "friction_force": (points, instants),
+        "status": (points, instants),
+        "indicator": (iterations,),
+        "behaviour": (iterations,),
+        "seconds": (iterations,),
+        "error_displacement": (iterations,),
+        "error_force": (iterations,),
+        "settings": (),
+    }
+    np.testing.assert_allclose(arrays["x"], np.linspace(0.0, 1.0, points))
+    np.testing.assert_allclose(arrays["t"], np.linspace(0.0, 1.0, instants))
+    assert set(np.unique(arrays["status"])) == {-1, 0, 1}
+    assert np.all(np.diff(arrays["seconds"]) > 0.0)
+    for name in ("indicator", "error_displacement", "error_force", "seconds"):
+        assert arrays[name][-1] == printed[name]
+    values = json.loads(str(arrays["settings"]))
+    assert values.pop("scene") == "bar"
+    assert BarSettings.checked(values).values() == BarSettings.checked(printed["settings"]).values()
+
+
+def test_forces_in_the_result_are_in_newtons_and_act_on_the_bar(tmp_path):
+    file = tmp_path / "result.npz"
+    main(["run", "bar", *SMALL, "--set", "load=ramp", "--set", "peak=600", "--out", str(file)])
+    with np.load(file) as found:
+        force, status, displacement = (
+            found[name] for name in ("friction_force", "status", "displacement")
+        )
+    assert force[:, -1].sum() == pytest.approx(-600.0, rel=1e-3)
+    assert np.all(force[status > 0] < 0.0)
+    assert not (status < 0).any()
+    assert displacement[-1, -1] == pytest.approx(600.0**2 / (2 * 659_400.0 * 1500.0), rel=0.02)
+
+
+def test_the_same_command_twice_gives_the_same_fields(tmp_path):
+    fields = []
+    for name in ("one.npz", "two.npz"):
+        main(["run", "bar", *SMALL, "--out", str(tmp_path / name)])
+        with np.load(tmp_path / name) as found:
+            fields.append([found[key] for key in ("displacement", "friction_force", "indicator")])
+    assert all(np.array_equal(one, two) for one, two in zip(*fields, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["bar", "--set", "friktion=0.3"], ["friktion", "0.3", "did you mean friction?"]),
+        (["bar", "--set", "peak=much"], ["peak", "much", "a number from -1e+15 to 1e+15 N"]),
+        (["bar", "--set", "relaxation=2"], ["relaxation", "2", "a number from 0.01 to 1"]),
+        (["bar", "--set", "peak=nan"], ["peak", "NaN", "a number from"]),
+        (["bar", "--set", "elements=true"], ["elements", "true", "a whole number from 1"]),
+        (["bar", "--set", "elements=3"], ["substructures", "10", "1 to elements (3)"]),
+        (["bar", "--set", "load=none.csv"], ["load", "none.csv", "ramp, triangle"]),
+        (["bar", "--set", "load=bad.csv"], ["load", "bad.csv", "line 2"]),
+        (["bar", "--set", "peak"], ["--set", "NAME=VALUE"]),
+        (["bridge"], ["scene", "bridge", "bar"]),
+        (["none.toml"], ["settings file", "none.toml"]),
+        (["broken.toml"], ["settings file", "TOML"]),
+        (["bar", "--out", "nowhere/x.npz"], ["--out", "nowhere/x.npz", "existing folder"]),
+        (["bar", "--out", "."], ["--out", "existing folder"]),
+    ],
+    ids=lambda case: " ".join(case),
+)
+def test_refused_input_prints_one_line_exits_2_and_writes_nothing(
+    tmp_path, monkeypatch, capsys, arguments, words
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.csv").write_text("0,0\n1,much\n", encoding="utf-8")
+    (tmp_path / "broken.toml").write_text("scene = bar\n", encoding="utf-8")
+    before = sorted(tmp_path.iterdir())
+    out = [] if "--out" in arguments else ["--out", "result.npz"]
+    assert main(["run", *arguments, *out]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert len(printed.err.splitlines()) == 1
+    for word in words:
+        assert word in printed.err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("arguments", [[], ["walk"], ["run"], ["run", "bar", "--fast"]])
+def test_a_command_that_does_not_exist_exits_2(arguments, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert end.value.code == 2
+    assert "usage: python -m solver" in capsys.readouterr().err
+
+
+def test_scenes_lists_all_scenes_with_their_source(capsys):
+    assert main(["scenes"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(CATALOGUE)
+    for line, (name, entry) in zip(lines, CATALOGUE.items(), strict=True):
+        assert line.startswith(name)
+        assert entry.title in line
+        assert entry.source in line
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, scene):
+    assert main(["settings", scene]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    definitions = CATALOGUE[scene].settings.definitions()
+    assert len(lines) == 2 * len(definitions)
+    for head, text, (name, definition) in zip(
+        lines[::2], lines[1::2], definitions.items(), strict=True
+    ):
+        assert head.split()[0] == name
+        assert head.split()[1] == (about(definition).unit or "-")
+        assert f"default {json.dumps(definition.default)}" in head
+        assert head.endswith(allowed(definition))
+        assert text.strip() == definition.doc
+
+
+def test_settings_of_an_unknown_scene_are_refused(capsys):
+    assert main(["settings", "bridge"]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_the_names_of_the_contract_are_settings_of_the_bar_with_their_defaults():
+    values = BarSettings().values()
+    promised = {
+        "elements": 50,
+        "instants": 101,
+        "substructures": 10,
+        "friction": 0.3,
+        "pressure": 5000.0,
+        "multiscale": True,
+        "k_scale": 1.0,
+        "linear_stage": "full",
+        "acceleration": "none",
+        "k_update": "none",
+    }
+    assert {name: values[name] for name in promised} == promised
+    others = {"young", "section", "length", "duration", "load", "peak", "k_friction_scale"}
+    others |= {"relaxation", "tolerance", "max_iterations"}
+    assert others <= set(values)
+
+
+def test_a_file_saved_by_one_front_is_run_by_the_other(tmp_path, capsys):
+    from app.dashboard import query_of, settings_from_query
+
+    chosen, _ = settings_from_query(
+        "?elements=12&instants=11&substructures=3&load=[[0,0],[1,700]]&friction_profile=rising"
+    )
+    saved = tmp_path / "slipfront.toml"
+    saved.write_text(dump(chosen), encoding="utf-8")
+    assert main(["run", str(saved), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert BarSettings.checked(found["settings"]).values() == chosen.values()
+    again = settings_from_toml(saved.read_text(encoding="utf-8"))
+    assert query_of(again) == query_of(chosen)
+
+
+def test_the_module_runs_as_a_program(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "solver", "run", "bar", "--json", "--out", tmp_path / "bar.npz"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["status"] == "converged"
+    assert (tmp_path / "bar.npz").is_file()

@@ -1,0 +1,83 @@
+"""The Dockerfile's steps without a container engine: install, serve, ask the health check."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def dockerfile() -> list[tuple[str, str]]:
+    """Give the instructions, continuation lines joined and comments dropped."""
+    text = (ROOT / "Dockerfile").read_text()
+    lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
+    joined = "\n".join(lines).replace("\\\n", " ")
+    return [tuple(line.split(None, 1)) for line in joined.splitlines() if line.strip()]
+
+
+def instructions(name: str) -> list[str]:
+    return [rest for word, rest in dockerfile() if word == name]
+
+
+@pytest.fixture(scope="module")
+def image(tmp_path_factory):
+    """Copy what the Dockerfile copies, and run its installation in a clean environment."""
+    folder = tmp_path_factory.mktemp("image")
+    for copied in instructions("COPY"):
+        *sources, target = copied.split()
+        for source in sources:
+            if (ROOT / source).is_dir():
+                ignore = shutil.ignore_patterns("__pycache__")
+                shutil.copytree(ROOT / source, folder / target, ignore=ignore)
+            else:
+                shutil.copy(ROOT / source, folder / target)
+    environment = folder.parent / "environment"
+    subprocess.run([sys.executable, "-m", "venv", environment], check=True)
+    variables = dict(os.environ, PATH=f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    variables.pop("PYTHONPATH", None)
+    for pair in re.findall(r"(\w+)=(\S+)", " ".join(instructions("ENV"))):
+        variables[pair[0]] = pair[1]
+    (install,) = [run for run in instructions("RUN") if run.startswith("pip install")]
+    subprocess.run(
+        install.replace("--no-cache-dir", "-q").split(), cwd=folder, env=variables, check=True
+    )
+    return folder, variables
+
+
+def test_the_image_is_slim_not_root_and_has_one_blas_thread():
+    (base,) = instructions("FROM")
+    assert base.endswith("-slim")
+    (user,) = instructions("USER")
+    assert user != "root"
+    variables = " ".join(instructions("ENV"))
+    assert "OPENBLAS_NUM_THREADS=1" in variables
+    assert "BOKEH_ALLOW_WS_ORIGIN=*" in variables
+
+
+def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
+    folder, variables = image
+    (command,) = [json.loads(rest) for rest in instructions("CMD")]
+    (health,) = instructions("HEALTHCHECK")
+    check = json.loads(health[health.index("CMD") + 3 :])
+    program = shutil.which(command[0], path=variables["PATH"])
+    python = shutil.which(check[0], path=variables["PATH"])
+    with (tmp_path / "log").open("w") as log:
+        server = subprocess.Popen(
+            [program, *command[1:]], cwd=folder, env=variables, stdout=log, stderr=log
+        )
+    try:
+        end = time.monotonic() + 60
+        while subprocess.run([python, *check[1:]], capture_output=True, check=False).returncode:
+            assert time.monotonic() < end, (tmp_path / "log").read_text()
+            assert server.poll() is None, (tmp_path / "log").read_text()
+            time.sleep(0.5)
+    finally:
+        server.terminate()
+        server.wait(20)

@@ -1,0 +1,121 @@
+"""The parts know each other in one direction only, and the project keeps its shape."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
+LAYERS = [
+    ["settings"],
+    ["loads"],
+    ["laws"],
+    ["scenes"],
+    ["discrete"],
+    ["reference"],
+    ["latin"],
+    ["reduction"],
+    ["files", "study"],
+    ["cli"],
+    ["__main__"],
+]
+"""Parts of the solver; each may import itself and what stands before it."""
+GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
+
+
+def modules(package):
+    """Give the path of every module of a package, by its full name."""
+    found = {}
+    for path in sorted((ROOT / package).rglob("*.py")):
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        found[name.removesuffix(".__init__")] = path
+    return found
+
+
+SOLVER = modules("solver")
+
+
+def imports(path):
+    """Give the names of all modules that a file imports, anywhere in it."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path} imports relatively"
+            found.add(node.module)
+            found.update(f"{node.module}.{alias.name}" for alias in node.names)
+    return found
+
+
+def layer(module):
+    part = module.split(".")[1]
+    return next(number for number, parts in enumerate(LAYERS) if part in parts)
+
+
+def run(*command):
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def last_command(text):
+    return [line.strip() for line in text.splitlines() if line.strip()][-1]
+
+
+@pytest.mark.parametrize("module", list(SOLVER))
+def test_the_solver_imports_no_graphics(module):
+    assert not {name.split(".")[0] for name in imports(SOLVER[module])} & GRAPHICS
+
+
+def test_the_engine_runs_where_graphics_cannot_be_imported():
+    program = (
+        "import sys\n"
+        f"sys.modules.update(dict.fromkeys({sorted(GRAPHICS)!r}))\n"
+        "from solver.cli import main\n"
+        "sys.exit(main(['run', 'bar', '--set', 'peak=0']))\n"
+    )
+    assert run(sys.executable, "-c", program).returncode == 0
+
+
+@pytest.mark.parametrize("module", [name for name in SOLVER if name != "solver"])
+def test_imports_inside_the_solver_go_one_way(module):
+    own = {name for name in imports(SOLVER[module]) if name in SOLVER and name != "solver"}
+    for name in own:
+        same_part = name.split(".")[1] == module.split(".")[1]
+        assert same_part or layer(name) < layer(module), f"{module} imports {name}"
+
+
+def test_no_module_of_the_solver_imports_itself_by_detours():
+    graph = {module: imports(path) & SOLVER.keys() for module, path in SOLVER.items()}
+    order = list(TopologicalSorter(graph).static_order())
+    assert set(order) == set(SOLVER)
+
+
+def test_every_part_of_the_solver_has_its_layer():
+    parts = {name.split(".")[1] for name in SOLVER if name != "solver"}
+    assert parts == {part for parts in LAYERS for part in parts}
+
+
+def test_the_code_is_linted_formatted_and_typed():
+    for tool in (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"]):
+        done = run(sys.executable, "-m", *tool)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_continuous_integration_calls_the_test_command_of_the_readme():
+    command = last_command((ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert command.endswith("-m pytest")
+    assert command in [line.strip() for line in readme.splitlines()]
+
+
+def test_the_top_level_is_what_the_design_names():
+    done = run("git", "-c", "safe.directory=*", "ls-files")
+    assert done.returncode == 0, done.stderr
+    top = {line.split("/")[0] for line in done.stdout.splitlines()}
+    assert {name for name in top if not name.startswith(".")} == TOP_LEVEL
