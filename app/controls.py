@@ -35,6 +35,9 @@ class Control:
         self._report = report
         self._showing = False
         self.widget = self._make_widget()
+        # Panel gathers changes from the browser for 50 ms; here every change is wanted at once,
+        # and the session itself starts no run before the last one was shown.
+        self.widget._debounce = 0
         self.view: pn.viewable.Viewable = self.widget
         self.widget.param.watch(self._on_value, "value")
 

@@ -33,8 +33,10 @@ from solver.settings import Curve, SettingError, Settings, about, dump, parse, r
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
-IN_FLIGHT = 2
+IN_FLIGHT = 1
+REST = 0.7
 VIEWS_AT_ONCE = 3
+VIEWS_AT_FIRST = 2
 LOST_AFTER = 2.0
 DEFAULT_SCENE = "bar"
 
@@ -93,6 +95,7 @@ class Dashboard:
         self._sent_at = 0.0
         self._dirty = False
         self._alone = True
+        self._rest_until = 0.0
         self._owed: list[View] = []
         self._drawn_ticket = -1
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
@@ -350,7 +353,11 @@ class Dashboard:
         now = time.monotonic()
         in_flight = self._pulse.frame - self._pulse.painted
         waiting = self._dirty or bool(self._owed)
-        if waiting and (in_flight < IN_FLIGHT or now - self._sent_at > LOST_AFTER):
+        # The first picture of a run overtakes what is still on its way.
+        first = self.session.shown is not None and self.session.run.ticket != self._drawn_ticket
+        free = in_flight < IN_FLIGHT and now >= self._rest_until
+        free = free or now - self._sent_at > LOST_AFTER
+        if waiting and (first or free):
             self._sent_at = now
             if self._dirty:
                 self._owed += [view for view in self._shown if view not in self._owed]
@@ -373,14 +380,17 @@ class Dashboard:
         self._figures.object = key_figures(session.run, session.before, entry)
 
     def _next_views(self) -> list[View]:
-        """Give the views whose turn it is: a browser paints three at once twice as soon as six.
+        """Give the views whose turn it is: a browser paints few at once sooner than all.
 
         A new run shows the first views first; then all take turns.
         """
-        if self.session.run.ticket != self._drawn_ticket:
+        if self.session.shown is not None and self.session.run.ticket != self._drawn_ticket:
             self._drawn_ticket = self.session.run.ticket
             self._owed = list(self._shown)
-        turn, self._owed = self._owed[:VIEWS_AT_ONCE], self._owed[VIEWS_AT_ONCE:]
+            count = VIEWS_AT_FIRST
+        else:
+            count = VIEWS_AT_ONCE
+        turn, self._owed = self._owed[:count], self._owed[count:]
         return [view for view in turn if view in self._shown]
 
     def _connections(self) -> int:
@@ -388,8 +398,10 @@ class Dashboard:
         return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
-        if self._dirty or self._owed:
-            self._collect()
+        """Leave the browser as long as it painted for listening to its user."""
+        now = time.monotonic()
+        if event.new == self._pulse.frame:
+            self._rest_until = now + REST * (now - self._sent_at)
 
     def _on_narrow(self, event: Any) -> None:
         self.page.sidebar_open = not event.new

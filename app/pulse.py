@@ -9,6 +9,9 @@ from panel.custom import JSComponent
 class Pulse(JSComponent):
     """An invisible component that acknowledges frames when they are painted and hears keys."""
 
+    # Panel gathers changes from the browser for 50 ms, which every painted frame would wait for.
+    _debounce = 0
+
     frame = param.Integer(default=0, doc="Number of the newest frame sent.")
     painted = param.Integer(default=0, doc="Number of the newest frame painted.")
     key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")

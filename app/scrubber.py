@@ -30,6 +30,9 @@ class Scrubber(JSComponent):
         Where the user moved it last.
     """
 
+    # Panel gathers changes from the browser for 50 ms; a slider that is dragged should not wait.
+    _debounce = 0
+
     label = param.String(default="")
     help = param.String(default="")
     text = param.String(default="", doc="What is written beside the label.")

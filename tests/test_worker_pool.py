@@ -230,10 +230,7 @@ def test_frozen_worker_is_replaced_when_a_new_run_is_ordered(session: Session) -
     assert frames[-1].behaviour is not None
 
 
-def test_eight_sessions_on_two_processes_progress_together(
-    pool: Pool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(posts, "QUANTUM", 0.2)
+def test_eight_sessions_on_two_processes_progress_together(pool: Pool) -> None:
     sessions = [Session(pool) for _ in range(8)]
     for each in sessions:
         each.seat.run(Run(1, "bar", SHORT, pace=60.0))

@@ -70,7 +70,7 @@ class Line:
         while self.connection.poll(max(end - time.monotonic(), 0.0)):
             report: Any = self.connection.recv()
             self.reports.append(report)
-            if isinstance(report, kinds) and report.ticket == ticket:
+            if report.ticket == ticket and isinstance(report, kinds):
                 return report
         pytest.fail(f"no report of kind {kinds}")
 
@@ -200,6 +200,19 @@ def test_every_record_comes_once_however_often_a_run_is_parked(lines: list[Line]
     lines[0].until(End)
     records = sorted(lines[0].records() + lines[1].records(), key=lambda entry: entry.iteration)
     assert timeless(records) == timeless(direct(STALLING).records)
+
+
+def test_turn_that_is_cut_short_still_brings_an_iteration(lines: list[Line]) -> None:
+    order: Run = Run(1, "bar", SHORT, pause_after=3)
+    lines[0].send(order)
+    lines[0].until(Waiting)
+    lines[0].send(Park(1))
+    order = replace(lines[0].until(Parked).order, pause_after=None)
+    lines[1].send(order)
+    lines[1].until(Reference)
+    lines[1].send(Park(1))
+    assert lines[1].until(Parked).order.resume.iteration >= 4
+    assert lines[1].records()[0].iteration == 4
 
 
 def test_parked_run_that_has_ended_only_answers(lines: list[Line]) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from bokeh.models import ColumnDataSource, FixedTicker, Range1d
+from bokeh.models import BasicTicker, ColumnDataSource, FixedTicker, Range1d
 from bokeh.plotting import figure
 
 from app.recording import Recording
@@ -106,6 +106,13 @@ def make_figure(x_label: str, y_label: str, **options: Any) -> Any:
     made.axis.axis_label_text_font_size = "14px"
     made.axis.major_label_text_font_size = "13px"
     made.axis.axis_label_standoff = 4
+    for ticker in (made.xaxis[0].ticker, made.yaxis[0].ticker):
+        if isinstance(ticker, BasicTicker):
+            # Labels are half of what a browser paints.
+            ticker.desired_num_ticks = 4
+    made.axis.minor_tick_line_color = None
+    made.xgrid.visible = False
+    made.outline_line_color = None
     return made
 
 

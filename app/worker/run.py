@@ -108,7 +108,7 @@ class WorkerRun:
             self._search_on(*self._search)
         elif self._stale and time.monotonic() >= self._publish_at:
             self._publish()
-        elif self._rest_of_iterations(self._newest.number) == 0.0:
+        elif self._is_due():
             self._iterate(self._newest, self._distance)
 
     def obey(self, order: Pace | Step | Seek | Watch) -> None:
@@ -130,7 +130,10 @@ class WorkerRun:
         resume = self._order.resume
         # A run without a past does its first iteration in any case, before all steps.
         done = resume.iteration if resume else 1
-        if self._newest is not None and self._reference is not None:
+        if self._newest is not None and self._distance is not None and self._reference is not None:
+            # However busy the machine is, a turn that came so far brings at least an iteration.
+            if resume and resume.iteration == self._newest.number and self._is_due():
+                self._iterate(self._newest, self._distance)
             self._publish()
             done = self._newest.number
             resume = Resume(
@@ -246,6 +249,9 @@ class WorkerRun:
 
     def _frame(self, iterate: Iterate, *, sought: bool = False) -> Frame:
         return self._sampler.frame(self.ticket, iterate, self._watch, sought=sought)
+
+    def _is_due(self) -> bool:
+        return self._newest is not None and self._rest_of_iterations(self._newest.number) == 0.0
 
     def _rest_of_iterations(self, done: int) -> float | None:
         return None if self._status is not None else self._tempo.rest(done)
