@@ -48,6 +48,7 @@ def open_page() -> pmui.Page:
     dashboard = Dashboard(Session(shared_pool(), settings))
     if complaint:
         pn.state.onload(lambda: dashboard.complain(complaint))
+    pn.state.onload(dashboard.loaded)
     document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     dashboard.session.wake = lambda: document.add_next_tick_callback(dashboard.tick)
@@ -91,10 +92,11 @@ class Dashboard:
         self._pulse = Pulse()
         self._pulse.param.watch(self._on_painted, "painted")
         self._pulse.param.watch(self._on_key, "key")
-        self._pulse.param.watch(self._on_narrow, "narrow")
+        self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         self._sent_at = 0.0
         self._dirty = False
         self._alone = True
+        self._loaded = False
         self._rest_until = 0.0
         self._owed: list[View] = []
         self._drawn_ticket = -1
@@ -125,6 +127,11 @@ class Dashboard:
         self.page = self._make_page()
         self._arrange()
         self._show_controls()
+
+    def loaded(self) -> None:
+        """Begin to draw: what is sent to a browser that still builds the page may be lost."""
+        self._loaded = True
+        self._on_narrow()
 
     def tick(self) -> None:
         """Keep the page alive: start when a browser connects, rest while none is, draw what came.
@@ -352,7 +359,7 @@ class Dashboard:
             self._dirty = True
         now = time.monotonic()
         in_flight = self._pulse.frame - self._pulse.painted
-        waiting = self._dirty or bool(self._owed)
+        waiting = self._loaded and (self._dirty or bool(self._owed))
         # The first picture of a run overtakes what is still on its way.
         first = self.session.shown is not None and self.session.run.ticket != self._drawn_ticket
         free = in_flight < IN_FLIGHT and now >= self._rest_until
@@ -403,8 +410,9 @@ class Dashboard:
         if event.new == self._pulse.frame:
             self._rest_until = now + REST * (now - self._sent_at)
 
-    def _on_narrow(self, event: Any) -> None:
-        self.page.sidebar_open = not event.new
+    def _on_narrow(self) -> None:
+        if self._loaded and self._pulse.narrow:
+            self.page.sidebar_open = False
 
     def _on_key(self, event: Any) -> None:
         action = {

@@ -79,7 +79,10 @@ class Transport:
         self._iteration.param.watch(self._on_iteration, "wanted")
         self._instant.param.watch(self._on_instant, "wanted")
         self.view = pn.FlexBox(
-            pmui.Row(self._run, self._step, self._reset, self._pace, margin=0),
+            self._run,
+            self._step,
+            self._reset,
+            self._pace,
             pmui.Row(
                 self._iteration,
                 self._instant,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from bokeh.models import Range1d, Span
 
 from app.views.drawing import (
@@ -84,15 +85,11 @@ class Convergence:
         run = picture.run
         if run.ticket != self._ticket or len(run.records) < self._count:
             self._begin(picture)
-        if len(run.records) > self._count:
+        elif len(run.records) > self._count:
             new = run.history(self._count)
-            self._count = len(run.records)
             self._now.stream({name: new[name] for name in self._now.data})
-            columns = [new[name] for name, *_ in CURVES]
-            lowest, _ = decades([self._lowest, *(v for c in columns for v in c)], FLOOR)
-            self._lowest = min(self._lowest, lowest)
-            set_range(self.figure.y_range, self._lowest, 10.0)
-            mark_decades(self.figure.yaxis[0], self.figure.y_range)
+            self._fit(new)
+        self._count = len(run.records)
         widest = max(run.iteration, picture.before.iteration if picture.before else 0, 20)
         set_range(self.figure.x_range, 0, round_up(widest))
         at = picture.frame.iteration if picture.frame else 0
@@ -100,9 +97,18 @@ class Convergence:
             self._shown.location = at
 
     def _begin(self, picture: Picture) -> None:
-        self._ticket, self._count, self._lowest = picture.run.ticket, 0, 1e-2
-        self._now.data = {name: [] for name in self._now.data}
-        if picture.before is None:
-            return
-        past = picture.before.history()
-        self._ghost.data = {name: past[name] for name in self._ghost.data}
+        """Put all records at once: rows streamed behind new data would be sent twice."""
+        self._ticket, self._lowest = picture.run.ticket, 1e-2
+        now = picture.run.history()
+        self._now.data = {name: now[name] for name in self._now.data}
+        self._fit(now)
+        if picture.before is not None:
+            past = picture.before.history()
+            self._ghost.data = {name: past[name] for name in self._ghost.data}
+
+    def _fit(self, new: dict[str, np.ndarray]) -> None:
+        values = [value for name, *_ in CURVES for value in new[name]]
+        lowest, _ = decades([self._lowest, *values], FLOOR)
+        self._lowest = min(self._lowest, lowest)
+        set_range(self.figure.y_range, self._lowest, 10.0)
+        mark_decades(self.figure.yaxis[0], self.figure.y_range)
