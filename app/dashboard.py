@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Sequence
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,7 @@ from solver.settings import Curve, SettingError, Settings, about, dump, parse, r
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 IN_FLIGHT = 1
+FIRST_PATIENCE = 0.4
 REST = 0.7
 VIEWS_AT_ONCE = 3
 VIEWS_AT_FIRST = 2
@@ -48,6 +50,7 @@ def open_page() -> pmui.Page:
     dashboard = Dashboard(Session(shared_pool(), settings))
     if complaint:
         pn.state.onload(lambda: dashboard.complain(complaint))
+    dashboard.prepare()
     pn.state.onload(dashboard.loaded)
     document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)
@@ -128,24 +131,33 @@ class Dashboard:
         self._arrange()
         self._show_controls()
 
+    def prepare(self) -> None:
+        """Put the first iterate into the page before it is sent, if a worker is quick enough.
+
+        The run then waits until a browser connects: whoever only asks for the page, as a crawler
+        does, costs one iteration.
+        """
+        self.session.start(waits=True)
+        end = time.monotonic() + FIRST_PATIENCE
+        while self.session.shown is None and time.monotonic() < end:
+            time.sleep(0.002)
+            self.session.collect()
+        if self.session.shown is not None:
+            self._owed = []
+            self._draw(self._shown)
+
     def loaded(self) -> None:
         """Begin to draw: what is sent to a browser that still builds the page may be lost."""
         self._loaded = True
+        self._mark()
         self._on_narrow()
 
     def tick(self) -> None:
-        """Keep the page alive: start when a browser connects, rest while none is, draw what came.
-
-        The body of the app also runs for whoever only asks for the page, so nothing starts there;
-        and the run need not wait until the browser has drawn everything.
-        """
-        alone = self._connections() == 0
+        """Keep the page alive: run while a browser shows it, and draw what came."""
+        alone = self._connections() == 0 or not self._loaded
         if alone != self._alone:
             self._alone = alone
-            if self.session.run.ticket == 0:
-                self.session.start()
-            else:
-                self.session.rest(alone)
+            self.session.rest(alone)
         self._collect()
 
     def end(self, context: Any) -> None:
@@ -370,14 +382,14 @@ class Dashboard:
                 self._owed += [view for view in self._shown if view not in self._owed]
                 self._dirty = False
             with pn.io.hold():
-                self._draw()
+                self._draw(self._next_views())
                 self._pulse.frame += 1
 
-    def _draw(self) -> None:
+    def _draw(self, views: Sequence[View]) -> None:
         session = self.session
         frame = session.shown
         picture = Picture(session.run, session.before, tuple(session.past), frame, session.instant)
-        for view in self._next_views():
+        for view in views:
             view.draw(picture)
             self._titles[view.name].object = card_title(view.name, view.keys)
         self.transport.show()

@@ -58,8 +58,11 @@ class Session:
         self._pending: Settings | None = None
         self.run = Recording(0, settings, "")
 
-    def start(self, settings: Settings | None = None) -> None:
-        """Start a run, with new settings or the same, in place of the one at work."""
+    def start(self, settings: Settings | None = None, *, waits: bool = False) -> None:
+        """Start a run, with new settings or the same, in place of the one at work.
+
+        A run that `waits` does one iteration until the page is connected.
+        """
         self._retire()
         changed = {
             name: value
@@ -77,7 +80,7 @@ class Session:
                 self.settings.scene,
                 self.settings.values(),
                 pace=self.pace,
-                pause_after=None if self.running else 1,
+                pause_after=None if self.running and not waits else 1,
                 watch=self.watch,
             )
         )

@@ -10,6 +10,7 @@ from app.views.drawing import (
     GREEN,
     GREY,
     ORANGE,
+    SKY,
     Key,
     Picture,
     decimal_scale,
@@ -29,7 +30,7 @@ class FrictionForce:
         Key(BLUE, "line", "LATIN"),
         Key(ORANGE, "line", "reference"),
         Key(GREEN, "band", "closed form"),
-        Key(f"{BLUE}59", "line", "run before"),
+        Key(SKY, "line", "run before"),
         Key(GREY, "dashed", "±μp"),
     )
 
@@ -50,7 +51,7 @@ class FrictionForce:
                 "x", name, source=self._base, line_color=GREY, line_dash="dashed", line_width=1.5
             )
         made.line("x", "closed", source=self._base, line_color=GREEN, line_width=6, line_alpha=0.35)
-        made.line("x", "y", source=self._ghost, line_color=BLUE, line_alpha=0.35, line_width=2)
+        made.line("x", "y", source=self._ghost, line_color=SKY, line_width=2)
         made.line(
             "x", "reference", source=self._base, line_color=ORANGE, line_width=4, line_alpha=0.8
         )

@@ -9,6 +9,7 @@ from app.recording import Recording
 from app.views.drawing import (
     BLUE,
     ORANGE,
+    SKY,
     VERMILION,
     Key,
     Picture,
@@ -28,7 +29,7 @@ class Loop:
     keys = (
         Key(BLUE, "line", "LATIN"),
         Key(ORANGE, "line", "reference"),
-        Key(f"{BLUE}59", "line", "run before"),
+        Key(SKY, "line", "run before"),
     )
 
     def __init__(self) -> None:
@@ -46,8 +47,7 @@ class Loop:
             "x",
             "y",
             source=self._ghost,
-            line_color=BLUE,
-            line_alpha=0.35,
+            line_color=SKY,
             line_width=2,
         )
         made.line(

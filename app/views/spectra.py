@@ -38,7 +38,7 @@ class Spectra:
             tooltips=[("substructure", "@number")],
         )
         self._lines = empty("xs", "ys", "number")
-        self._mapper = LinearColorMapper(palette=Viridis256[:236], low=1, high=2)
+        self._mapper = LinearColorMapper(palette=Viridis256[55:235], low=1, high=2)
         self.figure.multi_line(
             "xs",
             "ys",
