@@ -21,7 +21,7 @@ ENDINGS = {
 
 def status_line(run: Recording, running: bool, sought: int | None) -> str:
     """Say what runs, how far it is, and how it ended with what to try (HTML)."""
-    if run.notice and run.status is None:
+    if run.notice and not run.records:
         return f"<b>{escape(run.notice)}</b>"
     settings = run.settings.values()
     parts = settings["substructures"]

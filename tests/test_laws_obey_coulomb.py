@@ -215,7 +215,7 @@ def test_a_prescribed_force_is_what_the_search_direction_finds(data, shape):
     k = data.draw(arrays(float, (shape[0], 1), elements=st.floats(1e-6, 1e6)))
     found = k * (neumann(target, force / k) - target)
     rounding = 4.0 * EPS * (np.abs(force) + k * np.abs(target))
-    assert np.all(np.abs(found - force) <= rounding)
+    assert np.all(np.abs(found - force) <= rounding + 1e-300)
 
 
 @pytest.mark.parametrize("seed", range(5))

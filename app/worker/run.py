@@ -203,7 +203,7 @@ class WorkerRun:
     def _account(self, newest: Iterate, iterate: Iterate, distance: Distance) -> None:
         """Record and judge an iterate; one that is not finite does not become the newest."""
         entry = record(iterate, distance)
-        self._status = self._rules.judge(iterate.number, entry.indicator)
+        self._status = self._rules.judge(iterate.number, entry.indicator, entry.behaviour)
         if self._status is None or self._status.ending is not Ending.DIVERGED:
             if iterate is not newest:
                 self._before = newest.checkpoint
