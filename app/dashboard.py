@@ -36,9 +36,9 @@ STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 IN_FLIGHT = 1
 FIRST_PATIENCE = 0.4
-REST = 0.7
+REST = 2.0
 VIEWS_AT_ONCE = 3
-VIEWS_AT_FIRST = 2
+VIEWS_AT_FIRST = 1
 LOST_AFTER = 2.0
 DEFAULT_SCENE = "bar"
 
@@ -417,7 +417,7 @@ class Dashboard:
         return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
-        """Leave the browser as long as it painted for listening to its user."""
+        """Leave the browser twice as long as it painted to listen to its user."""
         now = time.monotonic()
         if event.new == self._pulse.frame:
             self._rest_until = now + REST * (now - self._sent_at)

@@ -35,12 +35,16 @@ from app.worker.recording import References
 from app.worker.run import WorkerRun
 from solver.settings import SettingError
 
+NICENESS = 2
+"""Below the server, so that pages stay alive, but not by much: the first picture of a run waits for
+this process, and beside a browser that paints on the same cores niceness 10 made it wait 0.1 s."""
+
 
 def main(connection: Connection) -> None:
     """Serve orders until the order to leave, or until the server is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
-        os.nice(10)
+        os.nice(NICENESS)
     # A run that diverges is told by its status; the lines on stderr would help nobody.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
     with contextlib.suppress(OSError):
