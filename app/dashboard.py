@@ -382,19 +382,22 @@ class Dashboard:
                 self._owed += [view for view in self._shown if view not in self._owed]
                 self._dirty = False
             with pn.io.hold():
-                self._draw(self._next_views())
+                self._draw(self._next_views(), at_once=first)
                 self._pulse.frame += 1
 
-    def _draw(self, views: Sequence[View]) -> None:
+    def _draw(self, views: Sequence[View], *, at_once: bool = False) -> None:
+        """Draw some views and the words about the run; `at_once` leaves the rest for the next."""
         session = self.session
         frame = session.shown
         picture = Picture(session.run, session.before, tuple(session.past), frame, session.instant)
         for view in views:
             view.draw(picture)
             self._titles[view.name].object = card_title(view.name, view.keys)
-        self.transport.show()
         sought = frame.iteration if frame is not None and not session.follows else None
         self._status.object = status_line(session.run, session.running, sought)
+        if at_once:
+            return
+        self.transport.show()
         entry = session.run.record_of(frame) if frame is not None else None
         self._figures.object = key_figures(session.run, session.before, entry)
 

@@ -31,7 +31,8 @@ def status_line(run: Recording, running: bool, sought: int | None) -> str:
         else (f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}")
     )
     if run.status is not None:
-        state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} iterations"
+        counted = "iteration" if run.iteration == 1 else "iterations"
+        state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
     elif not running:
         state = f"<b>paused</b> at iteration {run.iteration}"
     else:
@@ -128,4 +129,6 @@ def percent(value: float) -> str:
     """Write a relative error."""
     if not math.isfinite(value):
         return "–"
+    if value >= 1.0:
+        return f"{100.0 * value:.0f} %" if value < 100.0 else f"{number(100.0 * value)} %"
     return f"{100.0 * value:.2g} %" if value >= 1e-4 else f"{number(100.0 * value)} %"
