@@ -11,8 +11,8 @@ from scipy.sparse.linalg import splu
 
 from solver.discrete.problem import Array, Indices, Problem
 
-DENSE_UP_TO = 150
-"""Macro unknowns up to which one dense product beats the sparse factor (measured)."""
+DENSE_UP_TO = 50
+"""Macro unknowns up to which one dense product is no slower than the sparse factor (measured)."""
 
 
 class Response(Protocol):

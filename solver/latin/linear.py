@@ -9,8 +9,11 @@ from scipy.sparse.linalg import splu
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Substructure, space_time
 from solver.latin.coarse import CoarseProblem
 
-DENSE_UP_TO = 700
-"""Boundary rows up to which one dense matrix product beats a sparse solution (measured)."""
+DENSE_UP_TO = 150
+"""Boundary rows up to which a dense product is no slower than a sparse solution.
+
+Measured for 101 instants: 0.17 against 0.13 ms at 200 rows, 4.2 against 0.7 ms at 1000.
+"""
 
 
 class LinearStage:
