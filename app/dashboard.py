@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
 from io import StringIO
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qsl, quote
 
 import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 from panel.util import edit_readonly
 
+from app.address import query_of
 from app.controls import Control, make_control
-from app.pulse import Pulse
+from app.pulse import Pulse, send_without_delay
 from app.session import Session
 from app.transport import Transport
 from app.views.convergence import Convergence
@@ -27,11 +26,10 @@ from app.views.loop import Loop
 from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
 from app.words import card_title, key_figures, status_line
-from app.worker.pool import shared_pool
-from solver.files import scene_settings, settings_from_toml
+from solver.files import settings_from_toml
 from solver.loads import load_path
 from solver.scenes.bar import PROFILES
-from solver.settings import Curve, SettingError, Settings, about, dump, parse, read_table
+from solver.settings import Curve, SettingError, Settings, about, dump, read_table
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -41,56 +39,6 @@ REST = 2.0
 VIEWS_AT_ONCE = 3
 VIEWS_AT_FIRST = 1
 LOST_AFTER = 2.0
-DEFAULT_SCENE = "bar"
-
-
-def open_page() -> pmui.Page:
-    """Make the page of one session; its run starts when the browser is there."""
-    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
-    settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
-    dashboard = Dashboard(Session(shared_pool(), settings))
-    if complaint:
-        pn.state.onload(lambda: dashboard.complain(complaint))
-    dashboard.prepare()
-    pn.state.onload(dashboard.loaded)
-    document = pn.state.curdoc
-    document.add_periodic_callback(dashboard.tick, TICK_MS)
-    dashboard.session.wake = lambda: document.add_next_tick_callback(dashboard.tick)
-    pn.state.on_session_destroyed(dashboard.end)
-    return dashboard.page
-
-
-def settings_from_query(query: str) -> tuple[Settings, str]:
-    """Read settings from a page's address; a bad one gives the defaults and a complaint."""
-    kind = scene_settings(DEFAULT_SCENE)
-    try:
-        pairs = dict(parse_qsl(query.lstrip("?")))
-        kind = scene_settings(pairs.pop("scene", DEFAULT_SCENE))
-        definitions = kind.definitions()
-        values = {
-            name: parse(text) if name in definitions else text for name, text in pairs.items()
-        }
-        return kind.checked(values), ""
-    except SettingError as refusal:
-        return kind.checked({}), f"From the address: {refusal}"
-
-
-def query_of(settings: Settings) -> str:
-    """Write the settings that differ from their defaults as a page's address."""
-    pairs = [("scene", settings.scene)]
-    pairs += [(name, json.dumps(value)) for name, value in settings.changed().items()]
-    return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)
-
-
-def send_without_delay() -> None:
-    """Let the present session's sockets send small messages at once.
-
-    A message of Bokeh's protocol is three small writes or more. By default (Nagle's algorithm) the
-    second waits until the browser acknowledges the first, and browsers put that off for 40 ms.
-    """
-    context = pn.state.curdoc.session_context if pn.state.curdoc else None
-    for connection in context.session._subscribed_connections if context is not None else ():
-        connection._socket.set_nodelay(True)
 
 
 class Dashboard:
@@ -132,6 +80,7 @@ class Dashboard:
             value=[view.name for view in self._views],
         )
         self._chosen.param.watch(lambda event: self._arrange(), "value")
+        self._side = pmui.Column(sizing_mode="stretch_width", margin=0)
         self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
         self._controls = self._make_controls(essential=True)
         self._status = self._html("status")
@@ -162,6 +111,8 @@ class Dashboard:
         """Begin to draw: what is sent to a browser that still builds the page may be lost."""
         self._loaded = True
         send_without_delay()
+        # The picture comes first: a third of what the page is made of are its controls.
+        self._side[:] = self._sidebar()
         self._mark()
         self._on_narrow()
 
@@ -187,7 +138,7 @@ class Dashboard:
             title="Slipfront",
             favicon=STATIC / "logo.svg",
             logo=STATIC / "logo.svg",
-            sidebar=self._sidebar(),
+            sidebar=[self._side],
             sidebar_width=310,
             header=[],
             main=[

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import panel as pn
 import param
 from panel.custom import JSComponent
 
@@ -46,3 +47,14 @@ class Pulse(JSComponent):
       return document.createElement("span")
     }
     """
+
+
+def send_without_delay() -> None:
+    """Let the present session's sockets send small messages at once.
+
+    A message of Bokeh's protocol is three small writes or more. By default (Nagle's algorithm) the
+    second waits until the browser acknowledges the first, and browsers put that off for 40 ms.
+    """
+    context = pn.state.curdoc.session_context if pn.state.curdoc else None
+    for connection in context.session._subscribed_connections if context is not None else ():
+        connection._socket.set_nodelay(True)

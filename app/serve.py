@@ -1,0 +1,41 @@
+"""One page for every session that opens one."""
+
+from __future__ import annotations
+
+import panel as pn
+import panel_material_ui as pmui
+from bokeh.document import Document
+from panel.io.state import set_curdoc
+
+from app.address import settings_from_query
+from app.dashboard import TICK_MS, Dashboard
+from app.session import Session
+from app.worker.pool import shared_pool
+
+
+def open_page() -> pmui.Page:
+    """Make the page of one session; its run starts when the browser is there."""
+    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
+    settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
+    dashboard = Dashboard(Session(shared_pool(), settings))
+    if complaint:
+        pn.state.onload(lambda: dashboard.complain(complaint))
+    dashboard.prepare()
+    pn.state.onload(dashboard.loaded)
+    document = pn.state.curdoc
+    document.add_periodic_callback(dashboard.tick, TICK_MS)
+    dashboard.session.wake = lambda: document.add_next_tick_callback(dashboard.tick)
+    pn.state.on_session_destroyed(dashboard.end)
+    return dashboard.page
+
+
+def rehearse() -> None:
+    """Build a page and throw it away: what is done once only is then done."""
+    document = Document()
+    with set_curdoc(document):
+        session = Session(shared_pool(), settings_from_query("")[0])
+        dashboard = Dashboard(session)
+        dashboard.prepare()
+        dashboard.page.server_doc(document)
+        document.to_json()
+        session.close()

@@ -1,0 +1,46 @@
+"""What the server does for a page costs little, whatever the page holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import panel as pn
+import pytest
+from panel.util import edit_readonly
+
+from app.dashboard import Dashboard
+from app.session import Session
+from app.worker.pool import Pool
+from solver.files import scene_settings
+
+
+@pytest.fixture
+def dashboard() -> Iterator[Dashboard]:
+    pn.extension(notifications=True)
+    pool = Pool(1)
+    made = Dashboard(Session(pool, scene_settings("bar").checked({})))
+    yield made
+    made.session.close()
+    pool.close()
+
+
+def test_a_busy_server_changes_nothing_on_the_page(dashboard: Dashboard) -> None:
+    """Following the server's business walks all models, twice for every event of a browser."""
+    changes: list[object] = []
+    dashboard.page.param.watch(changes.append, "busy")
+    with edit_readonly(pn.state):
+        pn.state.busy = True
+        pn.state.busy = False
+    assert not changes
+
+
+def test_the_first_picture_is_in_the_page_and_the_controls_are_not_yet(
+    dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.dashboard.FIRST_PATIENCE", 20.0)
+    dashboard.prepare()
+    assert dashboard.session.run.newest is not None
+    assert "iteration 1" in dashboard._status.object
+    assert not dashboard._side.objects
+    dashboard.loaded()
+    assert dashboard._side.objects
