@@ -38,6 +38,7 @@ FIRST_PATIENCE = 0.4
 REST = 2.0
 VIEWS_AT_ONCE = 3
 VIEWS_AT_FIRST = 1
+FIRST_ROW = 3
 LOST_AFTER = 2.0
 
 
@@ -111,9 +112,9 @@ class Dashboard:
         """Begin to draw: what is sent to a browser that still builds the page may be lost."""
         self._loaded = True
         send_without_delay()
-        # The picture comes first: a third of what the page is made of are its controls.
+        # The first row comes first: two thirds of what the page is made of are not in it.
         self._side[:] = self._sidebar()
-        self._mark()
+        self._arrange()
         self._on_narrow()
 
     def tick(self) -> None:
@@ -324,7 +325,7 @@ class Dashboard:
             for view in self._views
             if view.name in self._chosen.value and view.applies(settings)
         ]
-        cards = [self._cards[view.name] for view in shown]
+        cards = [self._cards[view.name] for view in shown[: None if self._loaded else FIRST_ROW]]
         if list(self._plots) != cards:
             self._plots[:] = cards
         self.session.set_watch(frozenset(view.watches for view in shown if view.watches))

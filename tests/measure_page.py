@@ -18,7 +18,7 @@ REPEATS = 15
 FIRST_PICTURE = """() => new Promise((resolve) => {
   const look = () => {
     const status = document.querySelector("body") && window.findStatus()
-    if (status && status.textContent.includes("iteration")) {
+    if (status && status.textContent.includes("iteration") && window.isPainted(document)) {
       requestAnimationFrame(() => resolve(performance.now()))
     } else { requestAnimationFrame(look) }
   }
@@ -33,6 +33,16 @@ FIND = """window.findStatus = () => {
     }
   }
   return window.statusFound || (window.statusFound = search(document))
+}
+window.isPainted = (root) => {
+  for (const element of root.querySelectorAll("*")) {
+    if (element.tagName === "CANVAS" && element.width > 100 && element.height > 100) {
+      const row = element.getContext("2d").getImageData(0, element.height >> 1, element.width, 1)
+      if (new Set(row.data).size > 2) { return true }
+    }
+    if (element.shadowRoot && window.isPainted(element.shadowRoot)) { return true }
+  }
+  return false
 }
 window.afterKey = (text) => new Promise((resolve) => {
   let since
