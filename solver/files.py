@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from solver.latin import Solution
+from solver.reduction.basis import Reduction
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, Settings, parse, resolve
 
@@ -91,19 +92,39 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "error_displacement": last.error_displacement if last else None,
         "error_force": last.error_force if last else None,
         "seconds": solution.iterate.seconds,
+        **_bases(solution.iterate.reduction),
+    }
+
+
+def _bases(reduction: Reduction | None) -> dict[str, int]:
+    if reduction is None:
+        return {}
+    return {
+        "modes_largest": max(entry.modes for entry in reduction.records),
+        "modes_stored": reduction.stored,
+        "modes_saved": reduction.saved,
     }
 
 
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
-    """Give the arrays of a result file (SI; space first, time last)."""
+    """Give the arrays of a result file (SI; space first, time last).
+
+    With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
+    shape (n_iterations, n_substructures), as in `ReductionRecord`.
+    """
     iterate, problem = solution.iterate, solution.iterate.problem
-    history = {
+    history: dict[str, list[Any]] = {
         "indicator": [entry.indicator for entry in solution.records],
         "behaviour": [entry.behaviour for entry in solution.records],
         "seconds": [entry.seconds for entry in solution.records],
         "error_displacement": [entry.error_displacement for entry in solution.records],
         "error_force": [entry.error_force for entry in solution.records],
     }
+    if iterate.reduction is not None:
+        for name in ("modes", "added", "updated", "enriched", "dropped"):
+            history[f"pgd_{name}"] = [
+                [getattr(part, name) for part in entry.reduction] for entry in solution.records
+            ]
     return {
         "x": problem.positions,
         "t": problem.instants,

@@ -145,6 +145,10 @@ def curve(
     )
 
 
+def _is_reduced(settings: Settings) -> bool:
+    return bool(settings.linear_stage == "pgd")
+
+
 class Settings(param.Parameterized):
     """Settings of the method, common to all scenes; a scene adds its own.
 
@@ -200,10 +204,87 @@ class Settings(param.Parameterized):
     )
     linear_stage = choice(
         "full",
-        ["full"],
-        "How the linear stage is solved: full space-time fields.",
+        ["full", "pgd"],
+        "How the linear stage is solved: full space-time fields, or a separated basis (PGD).",
         group="Method",
         title="Linear stage",
+        essential=True,
+    )
+    pgd_modes = count(
+        10,
+        (1, 1000),
+        (1, 20),
+        "Most modes that a substructure's basis keeps; more are dropped, the smallest first.",
+        group="Method",
+        title="Most PGD modes",
+        applies=_is_reduced,
+        essential=True,
+    )
+    pgd_tolerance = quantity(
+        1e-4,
+        (1e-14, 1.0),
+        (1e-8, 1e-1),
+        "Share of a substructure's field that downsizing may drop; a residual below it is left.",
+        group="Method",
+        title="PGD tolerance",
+        logarithmic=True,
+        applies=_is_reduced,
+    )
+    pgd_enrichment = quantity(
+        0.1,
+        (0.0, 1.0),
+        (0.0, 1.0),
+        "Share of the residual that the update of the time functions may leave before modes are "
+        "added; 0 always adds, 1 never does.",
+        group="Method",
+        title="PGD enrichment threshold",
+        applies=_is_reduced,
+    )
+    pgd_pairs = count(
+        2,
+        (1, 1000),
+        (1, 10),
+        "Most pairs of modes that one iteration adds to a substructure's basis.",
+        group="Method",
+        title="PGD pairs per iteration",
+        applies=_is_reduced,
+    )
+    pgd_solver = choice(
+        "fixed_point",
+        ["fixed_point", "singular_pair"],
+        "How a pair is found: the alternating fixed point of the paper, or the leading singular "
+        "pair of the residual at once.",
+        group="Method",
+        title="PGD pair",
+        applies=_is_reduced,
+    )
+    pgd_fixed_point_steps = count(
+        4,
+        (1, 1000),
+        (1, 20),
+        "Most steps of the alternating fixed point.",
+        group="Method",
+        title="Fixed-point steps",
+        applies=lambda settings: _is_reduced(settings) and settings.pgd_solver == "fixed_point",
+    )
+    pgd_stagnation = quantity(
+        0.01,
+        (0.0, 1.0),
+        (0.0, 0.1),
+        "The fixed point stops when a step changes the size of the pair by less than this share.",
+        group="Method",
+        title="Fixed-point stagnation",
+        applies=lambda settings: _is_reduced(settings) and settings.pgd_solver == "fixed_point",
+    )
+    pgd_sharing = quantity(
+        0.0,
+        (0.0, 1.0),
+        (0.0, 0.5),
+        "Substructures of equal operators share one basis when at most this share of each one's "
+        "field lies outside the other's; 0 shares nothing.",
+        group="Method",
+        title="PGD basis sharing",
+        applies=lambda settings: _is_reduced(settings) and settings.substructures > 1,
     )
     acceleration = choice(
         "none", ["none"], "Acceleration of the iteration.", group="Method", title="Acceleration"

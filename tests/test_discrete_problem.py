@@ -17,7 +17,7 @@ from solver.latin import iterations
 from solver.latin.coarse import CoarseProblem
 from solver.latin.direction import search_direction
 from solver.latin.indicators import latin_indicator
-from solver.latin.linear import DenseResponse, LinearStage, SparseResponse
+from solver.latin.linear import DenseResponse, FullLinearStage, SparseResponse
 from solver.scenes.bar import BarSettings, bar
 
 ANY = settings(derandomize=True, deadline=None, max_examples=60)
@@ -158,7 +158,7 @@ def test_the_size_of_a_substructure_chooses_its_response(monkeypatch):
     k = search_direction(problem, chosen)
     for limit, kind in [(problem.n_rows, DenseResponse), (problem.n_rows - 1, SparseResponse)]:
         monkeypatch.setattr(linear, "DENSE_UP_TO", limit)
-        (group,) = LinearStage(problem, k, multiscale=True).groups
+        (group,) = FullLinearStage(problem, k, multiscale=True).groups
         assert type(group.response) is kind
 
 

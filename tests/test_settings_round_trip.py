@@ -71,7 +71,8 @@ def another(definition):
         return not definition.default
     if isinstance(definition, param.Selector):
         return "".join(definition.default)
-    return definition.bounds[0]
+    low, high = definition.bounds
+    return high if low == definition.default else low
 
 
 def refusal(action):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.discrete.problem import Array, Problem
+from solver.reduction.basis import Modes, Reduction
 
 NO_SLIP = 1e-9
 """Slip, as a share of the largest displacement, up to which a point counts as stuck."""
@@ -24,11 +25,14 @@ class Checkpoint:
         Iterations done and time taken so far.
     outgoing
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
+    reduction
+        The separated bases that hold it, if any do.
     """
 
     number: int
     seconds: float
     outgoing: Array
+    reduction: Reduction | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +55,8 @@ class Iterate:
         W^ of the local stage, same shape, bit by bit as the laws gave it.
     local_incoming
         W - F/k that the local stage read, which is its own W^ - F^/k.
+    reduction
+        The separated bases that hold the linear stage, if any do.
     """
 
     number: int
@@ -61,11 +67,17 @@ class Iterate:
     incoming: Array
     local_displacement: Array
     local_incoming: Array
+    reduction: Reduction | None = None
 
     @property
     def checkpoint(self) -> Checkpoint:
         """What is needed to go on from here."""
-        return Checkpoint(self.number, self.seconds, self.outgoing)
+        return Checkpoint(self.number, self.seconds, self.outgoing, self.reduction)
+
+    @property
+    def bases(self) -> tuple[Modes, ...]:
+        """Modes of every substructure; none when the linear stage is full."""
+        return self.reduction.modes if self.reduction else ()
 
     @property
     def boundary_displacement(self) -> Array:

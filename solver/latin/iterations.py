@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from typing import Any
 
 from solver.discrete.problem import Array, Problem, space_time
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint, Iterate
-from solver.latin.linear import LinearStage
+from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.local import LocalStage
+from solver.reduction.pgd import ReducedLinearStage
 from solver.settings import Settings
 
 
@@ -33,8 +35,8 @@ def iterations(
     k = search_direction(problem, settings)
     k.flags.writeable = False
     local_stage = LocalStage(problem, k)
-    linear_stage = LinearStage(problem, k, multiscale=settings.multiscale)
-    state = linear_stage.from_boundary(start.outgoing) if start else linear_stage.zero()
+    linear_stage = _linear_stage(problem, k, settings)
+    state = linear_stage.start(start)
     incoming = linear_stage.incoming(state, space_time(problem.n_rows, problem.n_instants))
     number = start.number if start else 0
     clock.stop()
@@ -56,8 +58,15 @@ def iterations(
             incoming=given,
             local_displacement=_frozen(local_stage.displacement),
             local_incoming=read,
+            reduction=linear_stage.reduction(state),
         )
         read = given
+
+
+def _linear_stage(problem: Problem, k: Array, settings: Settings) -> LinearStage[Any]:
+    if settings.linear_stage == "pgd":
+        return ReducedLinearStage(problem, k, settings)
+    return FullLinearStage(problem, k, multiscale=settings.multiscale)
 
 
 class _Clock:

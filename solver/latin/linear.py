@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Substructure, space_time
 from solver.latin.coarse import CoarseProblem
+from solver.latin.iterate import Checkpoint
+from solver.reduction.basis import Reduction
 
 DENSE_UP_TO = 150
 """Boundary rows up to which a dense product is no slower than a sparse solution.
@@ -16,37 +22,61 @@ Measured for 101 instants: 0.17 against 0.13 ms at 200 rows, 4.2 against 0.7 ms 
 """
 
 
-class LinearStage:
+State = TypeVar("State")
+
+
+class LinearStage(Generic[State]):
     """Elasticity along the search direction E-, factored for one problem and one k.
 
     With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
     comes from body forces; then W - F/k = 2 W - y (theory.md, 2). Its state is y: it is what
-    relaxation mixes, and everything else follows from it.
+    relaxation mixes, and everything else follows from it. How y is held is the groups' business:
+    in full, or on separated bases.
+
+    Parameters
+    ----------
+    problem, k
+        What to solve; k has shape (n_rows,).
+    multiscale
+        Whether the coarse problem is part of it.
+    make_group
+        Makes a group of identical substructures with the same k.
     """
 
-    def __init__(self, problem: Problem, k: Array, *, multiscale: bool) -> None:
-        self.groups = [Group(problem, parts, k) for parts in _alike(problem, k)]
+    def __init__(
+        self,
+        problem: Problem,
+        k: Array,
+        *,
+        multiscale: bool,
+        make_group: Callable[[Problem, list[Substructure], Array], Group[State]],
+    ) -> None:
+        self.groups: list[Group[State]] = [
+            make_group(problem, parts, k) for parts in _alike(problem, k)
+        ]
         self._coarse = (
             CoarseProblem(problem, self.groups) if multiscale and problem.has_cuts else None
         )
         self._shape = (problem.n_rows, problem.n_instants)
 
-    def zero(self) -> list[Array]:
-        """Give the state in which all displacements and forces are zero, one array per group."""
-        return [group.field() for group in self.groups]
+    def start(self, checkpoint: Checkpoint | None) -> list[State]:
+        """Give the state of a checkpoint, or that in which all is zero; one entry per group."""
+        if checkpoint is None:
+            return [group.zero() for group in self.groups]
+        return [group.from_boundary(checkpoint.outgoing) for group in self.groups]
 
-    def from_boundary(self, outgoing: Array) -> list[Array]:
-        """Give the state with this W + F/k, shape (n_rows, n_instants)."""
-        return [np.copy(outgoing[group.rows], order="F") for group in self.groups]
+    def reduction(self, state: list[State]) -> Reduction | None:
+        """Show the separated bases of a state, if it has any."""
+        return None
 
-    def to_boundary(self, state: list[Array]) -> Array:
+    def to_boundary(self, state: list[State]) -> Array:
         """Give W + F/k of a state, shape (n_rows, n_instants)."""
         field = space_time(*self._shape)
         for group, own in zip(self.groups, state, strict=True):
-            group.scatter(own, field)
+            group.scatter(group.outgoing(own), field)
         return field
 
-    def advance(self, state: list[Array], target: Array, relaxation: float) -> None:
+    def advance(self, state: list[State], target: Array, relaxation: float) -> None:
         """Solve the linear stage and relax: the state becomes a mean of the new and the old.
 
         Parameters
@@ -65,17 +95,30 @@ class LinearStage:
         for group, own in zip(self.groups, state, strict=True):
             group.relax(own, relaxation)
 
-    def incoming(self, state: list[Array], field: Array) -> Array:
+    def incoming(self, state: list[State], field: Array) -> Array:
         """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
         for group, own in zip(self.groups, state, strict=True):
             group.scatter(group.reflect(own), field)
         return field
 
 
-class Group:
-    """Identical substructures with the same k: one operator and one matrix product for all.
+class Group(ABC, Generic[State]):
+    """Identical substructures with the same k, which share one operator.
 
     Fields of a group have shape (n_boundary, n_substructures, n_instants), contiguous in space.
+
+    Attributes
+    ----------
+    rows
+        Boundary rows of the substructures, shape (n_boundary, n_substructures).
+    k
+        Shape (n_boundary,).
+    response
+        The boundary operator.
+    body
+        W_f, a field of the group, or None without body forces.
+    target
+        The field that the state is brought to.
     """
 
     def __init__(self, problem: Problem, parts: list[Substructure], k: Array) -> None:
@@ -112,24 +155,67 @@ class Group:
         else:
             np.take(flat, self._back, axis=1, out=field.T, mode="clip")
 
-    def relax(self, own: Array, relaxation: float) -> None:
+    @abstractmethod
+    def zero(self) -> State:
+        """Give the state in which all is zero."""
+
+    @abstractmethod
+    def from_boundary(self, outgoing: Array) -> State:
+        """Give the state with this W + F/k, shape (n_rows, n_instants)."""
+
+    @abstractmethod
+    def outgoing(self, state: State) -> Array:
+        """Give W + F/k of a state, a field of the group."""
+
+    @abstractmethod
+    def relax(self, state: State, relaxation: float) -> None:
+        """Mix the target into a state."""
+
+    @abstractmethod
+    def reflect(self, state: State) -> Array:
+        """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it."""
+
+
+class FullGroup(Group[Array]):
+    """A group whose state is y in full: one matrix product for all substructures and instants."""
+
+    def zero(self) -> Array:
+        """Give the zero field."""
+        return self.field()
+
+    def from_boundary(self, outgoing: Array) -> Array:
+        """Give the group's rows of W + F/k, shape (n_rows, n_instants)."""
+        return np.copy(outgoing[self.rows], order="F")
+
+    def outgoing(self, state: Array) -> Array:
+        """Give the state itself."""
+        return state
+
+    def relax(self, state: Array, relaxation: float) -> None:
         """Mix the target into a state."""
         if relaxation == 1.0:
-            np.copyto(own, self.target)
+            np.copyto(state, self.target)
             return
-        np.subtract(self.target, own, out=self.target)
+        np.subtract(self.target, state, out=self.target)
         np.multiply(self.target, relaxation, out=self.target)
-        np.add(own, self.target, out=own)
+        np.add(state, self.target, out=state)
 
-    def reflect(self, own: Array) -> Array:
+    def reflect(self, state: Array) -> Array:
         """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it."""
         flat = (len(self.k), -1)
         self.response.reflect(
-            own.reshape(flat, order="F"), self._reflected.reshape(flat, order="F")
+            state.reshape(flat, order="F"), self._reflected.reshape(flat, order="F")
         )
         if self.body is not None:
             self._reflected += 2.0 * self.body
         return self._reflected
+
+
+class FullLinearStage(LinearStage[Array]):
+    """The linear stage with full space-time fields."""
+
+    def __init__(self, problem: Problem, k: Array, *, multiscale: bool) -> None:
+        super().__init__(problem, k, multiscale=multiscale, make_group=FullGroup)
 
 
 class DenseResponse:

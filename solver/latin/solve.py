@@ -11,6 +11,7 @@ from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
+from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 from solver.settings import Settings
 
@@ -52,6 +53,8 @@ class Record:
         The k-free indicator, and the largest entry of its map.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
+    reduction
+        What the iteration did to the separated basis of every substructure; empty without bases.
     """
 
     iteration: int
@@ -61,6 +64,7 @@ class Record:
     behaviour_largest: float
     error_displacement: float
     error_force: float
+    reduction: tuple[ReductionRecord, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +87,7 @@ def record(iterate: Iterate, distance: Distance | None) -> Record:
         behaviour_largest=behaviour.largest,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
+        reduction=iterate.reduction.records if iterate.reduction else (),
     )
 
 
@@ -112,8 +117,7 @@ class StopRules:
         if iteration >= settings.max_iterations:
             return Status(
                 Ending.EXHAUSTED,
-                "The iterations are used up. Raise max_iterations, loosen the tolerance, or try "
-                "another k_scale.",
+                f"The iterations are used up. {self._remedy()}",
             )
         return None
 
@@ -122,7 +126,12 @@ class StopRules:
             return "The indicator is down to rounding: this is as near as it gets."
         if self._settings.relaxation > 0.9:
             return "The indicator does not fall any more. Lower the relaxation to 0.8."
-        return "The indicator does not fall any more. Try another k_scale."
+        return f"The indicator does not fall any more. {self._remedy()}"
+
+    def _remedy(self) -> str:
+        if self._settings.linear_stage == "pgd":
+            return "The separated bases may be too small: raise pgd_modes, lower pgd_tolerance."
+        return "Raise max_iterations, loosen the tolerance, or try another k_scale."
 
 
 def _advice_at_tolerance(behaviour: float) -> str:

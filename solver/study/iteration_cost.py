@@ -12,7 +12,7 @@ import numpy as np
 from solver.discrete import discretise
 from solver.discrete.problem import Problem, space_time
 from solver.latin.direction import search_direction
-from solver.latin.linear import DenseResponse, LinearStage
+from solver.latin.linear import DenseResponse, FullLinearStage
 from solver.latin.local import LocalStage
 from solver.scenes.bar import BarSettings
 
@@ -59,13 +59,13 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     problem = discretise(settings)
     k = search_direction(problem, settings)
     local = LocalStage(problem, k)
-    multi = LinearStage(problem, k, multiscale=True)
-    mono = LinearStage(problem, k, multiscale=False)
-    state = multi.zero()
+    multi = FullLinearStage(problem, k, multiscale=True)
+    mono = FullLinearStage(problem, k, multiscale=False)
+    state = multi.start(None)
     incoming = space_time(problem.n_rows, problem.n_instants)
     target = local(incoming)
 
-    def linear_stage(stage: LinearStage) -> Callable[[], None]:
+    def linear_stage(stage: FullLinearStage) -> Callable[[], None]:
         def step() -> None:
             stage.advance(state, target, settings.relaxation)
             stage.incoming(state, incoming)
@@ -87,7 +87,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     return Cost(nodes, instants, local_s, max(multi_s - mono_s, 0.0), mono_s, floor_s)
 
 
-def _floor(problem: Problem, stage: LinearStage) -> Callable[[], None]:
+def _floor(problem: Problem, stage: FullLinearStage) -> Callable[[], None]:
     law = problem.friction
     friction = np.zeros((4, problem.n_instants, len(law.rows)))
     low, high, before, after = friction

@@ -1,0 +1,226 @@
+"""A separated basis: space modes times time functions (theory.md, 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solver.discrete.problem import Array
+
+
+@dataclass
+class SeparatedBasis:
+    """A field as a sum of space modes times time functions.
+
+    The modes are orthonormal in the inner product of the search direction, a^T k b; for the
+    boundary fields g = k u of theory.md, 3 that is the 1/k inner product.
+
+    Attributes
+    ----------
+    modes
+        Shape (n_boundary, n_modes).
+    time_functions
+        Shape (n_modes, n_columns). The columns are instants; of a basis that several
+        substructures share, those of all of them.
+    k
+        Weights in space, shape (n_boundary,), positive.
+    weights
+        Weights of the columns, shape (n_columns,), positive.
+    """
+
+    modes: Array
+    time_functions: Array
+    k: Array
+    weights: Array
+
+    @classmethod
+    def empty(cls, k: Array, weights: Array) -> SeparatedBasis:
+        """Make the basis of a zero field."""
+        return cls(np.zeros((len(k), 0), order="F"), np.zeros((0, len(weights))), k, weights)
+
+    @classmethod
+    def of_field(cls, field: Array, k: Array, weights: Array, tolerance: float) -> SeparatedBasis:
+        """Make the basis of a field, shape (n_boundary, n_columns), by its singular values.
+
+        What is dropped is at most `tolerance` of its norm.
+        """
+        basis = cls.empty(k, weights)
+        root = np.sqrt(k)[:, None]
+        left, values, right = np.linalg.svd(root * field * np.sqrt(weights), full_matrices=False)
+        rank = kept(values, tolerance, len(values))
+        basis.modes = np.asfortranarray(left[:, :rank] / root)
+        basis.time_functions = values[:rank, None] * right[:rank] / np.sqrt(weights)
+        return basis
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return int(self.modes.shape[1])
+
+    def field(self) -> Array:
+        """Rebuild the field, shape (n_boundary, n_columns)."""
+        return np.asarray(self.modes @ self.time_functions)
+
+    def coefficients(self, field: Array) -> Array:
+        """Project a field on the modes; give its time functions, shape (n_modes, n_columns)."""
+        return np.asarray((self.k[:, None] * self.modes).T @ field)
+
+    def squared(self, field: Array) -> float:
+        """Compute the squared norm of a field of shape (n_boundary, n_columns)."""
+        return float(self.k @ (field * field @ self.weights))
+
+    def squared_of(self, time_functions: Array) -> float:
+        """Compute the squared norm of what these time functions make with the modes."""
+        return float(np.sum(time_functions * time_functions @ self.weights))
+
+    def append(self, mode: Array, time_function: Array) -> None:
+        """Add a pair whose mode is orthonormal to the others."""
+        self.modes = np.asfortranarray(np.column_stack([self.modes, mode]))
+        self.time_functions = np.vstack([self.time_functions, time_function])
+
+    def orthonormal(self, mode: Array) -> Array | None:
+        """Make a mode orthonormal to the others; None if nothing of it is left."""
+        size = np.sqrt(float(self.k @ (mode * mode)))
+        if size == 0.0:
+            return None
+        mode = mode / size
+        # Twice is enough: the second pass removes what rounding left in the first.
+        for _ in range(2):
+            mode = mode - self.modes @ self.coefficients(mode[:, None])[:, 0]
+            rest = np.sqrt(float(self.k @ (mode * mode)))
+            if rest < 1e-8:
+                return None
+            mode = mode / rest
+        return mode
+
+    def downsize(self, tolerance: float, largest: int) -> float:
+        """Make the modes those of the field's singular values, sorted, and drop the smallest.
+
+        As the modes are orthonormal, the singular values of the field are those of the small
+        matrix of time functions.
+
+        Parameters
+        ----------
+        tolerance
+            Share of the field's norm that may be dropped.
+        largest
+            Number of modes beyond which the smallest are dropped in any case.
+
+        Returns
+        -------
+        Share of the field's norm that was dropped.
+        """
+        if self.n_modes == 0:
+            return 0.0
+        root = np.sqrt(self.weights)
+        turn, values, right = np.linalg.svd(self.time_functions * root, full_matrices=False)
+        rank = kept(values, tolerance, largest)
+        self.modes = np.asfortranarray(self.modes @ turn[:, :rank])
+        self.time_functions = values[:rank, None] * right[:rank] / root
+        total = float(values @ values)
+        return float(np.sqrt(values[rank:] @ values[rank:] / total)) if total > 0.0 else 0.0
+
+    def outside(self, other: SeparatedBasis) -> float:
+        """Give the share of this field that lies outside another's modes, in norm."""
+        whole = self.squared_of(self.time_functions)
+        if whole == 0.0:
+            return 0.0
+        inside = other.coefficients(self.modes) @ self.time_functions
+        return float(np.sqrt(max(1.0 - self.squared_of(inside) / whole, 0.0)))
+
+
+def kept(values: Array, tolerance: float, largest: int) -> int:
+    """Count the singular values to keep, so that the rest is below a share of all, in norm."""
+    tails = np.sqrt(np.cumsum(values[::-1] ** 2)[::-1])
+    whole = tails[0] if len(tails) else 0.0
+    return min(int(np.count_nonzero(tails > tolerance * whole)), largest) if whole > 0.0 else 0
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """What a substructure's basis holds, for whoever looks: read-only, scaled, largest first.
+
+    Attributes
+    ----------
+    outgoing
+        Modes of W + F/k, shape (n_boundary, n_modes), rows as `Substructure.rows`.
+    incoming
+        Modes of W - F/k, same shape; both belong to one admissible pair (paper, eq. 3).
+    time_functions
+        Shape (n_modes, n_instants).
+    k
+        Shape (n_boundary,).
+    stored
+        Which stored basis it reads: equal for substructures that share.
+    """
+
+    outgoing: Array
+    incoming: Array
+    time_functions: Array
+    k: Array
+    stored: int
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return int(self.outgoing.shape[1])
+
+    @cached_property
+    def displacement_modes(self) -> Array:
+        """Z, shape (n_boundary, n_modes)."""
+        return 0.5 * (self.outgoing + self.incoming)
+
+    @cached_property
+    def force_modes(self) -> Array:
+        """G = k (u - Z), shape (n_boundary, n_modes): the force that Z needs (paper, eq. 3)."""
+        return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
+
+
+@dataclass(frozen=True)
+class ReductionRecord:
+    """What one iteration did to one substructure's basis.
+
+    Attributes
+    ----------
+    modes
+        Modes after the iteration.
+    added
+        Pairs that enrichment added; downsizing may have dropped as many.
+    updated, enriched
+        Shares of the squared residual that the update of the time functions, and enrichment,
+        explained.
+    dropped
+        Share of the field's norm that downsizing dropped.
+    """
+
+    modes: int
+    added: int
+    updated: float
+    enriched: float
+    dropped: float
+
+
+@dataclass(frozen=True, eq=False)
+class Reduction:
+    """The separated bases of all substructures, in order, and what the iteration did to them.
+
+    Attributes
+    ----------
+    modes, records
+        One entry per substructure.
+    """
+
+    modes: tuple[Modes, ...]
+    records: tuple[ReductionRecord, ...]
+
+    @property
+    def stored(self) -> int:
+        """Modes stored, a shared basis counted once."""
+        return sum({shown.stored: shown.n_modes for shown in self.modes}.values())
+
+    @property
+    def saved(self) -> int:
+        """Modes that sharing saves."""
+        return sum(shown.n_modes for shown in self.modes) - self.stored

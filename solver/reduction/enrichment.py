@@ -1,0 +1,76 @@
+"""Finding the pair that a residual asks for (paper, problem 2.3; theory.md, 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.discrete.problem import Array
+from solver.settings import Settings
+
+
+@dataclass(frozen=True)
+class Enrichment:
+    """How pairs are found, and when.
+
+    Attributes
+    ----------
+    threshold
+        Share of the residual, in norm, that may be left without a new pair.
+    tolerance
+        Share of the field, in norm, below which a residual is left alone.
+    pairs
+        Most pairs per iteration.
+    steps, stagnation
+        Of the fixed point; no steps stand for the leading singular pair at once.
+    """
+
+    threshold: float
+    tolerance: float
+    pairs: int
+    steps: int
+    stagnation: float
+
+    @classmethod
+    def from_settings(cls, settings: Settings) -> Enrichment:
+        """Read the settings."""
+        fixed_point = settings.pgd_solver == "fixed_point"
+        return cls(
+            threshold=settings.pgd_enrichment,
+            tolerance=settings.pgd_tolerance,
+            pairs=settings.pgd_pairs,
+            steps=settings.pgd_fixed_point_steps if fixed_point else 0,
+            stagnation=settings.pgd_stagnation,
+        )
+
+    def mode(self, residual: Array, k: Array, weights: Array) -> Array:
+        """Give the space mode of the pair that is nearest to a residual, of any length.
+
+        With G + k Z = g for every boundary field g, problem 2.3 asks for the pair g phi nearest to
+        the residual; the paper's fixed point alternates between both factors, and is a power
+        iteration towards the leading singular pair.
+
+        Parameters
+        ----------
+        residual
+            delta / k, shape (n_boundary, n_columns), not zero.
+        k, weights
+            Weights of space and of the columns.
+        """
+        if self.steps == 0:
+            root = np.sqrt(k)[:, None]
+            gram = root * residual * weights @ (root * residual).T
+            return np.asarray(np.linalg.eigh(gram)[1][:, -1] / root[:, 0])
+        # The instant at which the residual is largest: nearer to the pair than any fixed start.
+        mode = residual[:, int(np.argmax((k @ (residual * residual)) * weights))]
+        size = 0.0
+        for _ in range(self.steps):
+            time_function = (k * mode) @ residual / float(k @ (mode * mode))
+            mode = residual @ (weights * time_function)
+            mode /= float(weights @ (time_function * time_function))
+            before, size = size, float(k @ (mode * mode))
+            size *= float(weights @ (time_function * time_function))
+            if abs(size - before) <= self.stagnation * size:
+                break
+        return mode
