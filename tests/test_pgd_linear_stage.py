@@ -188,7 +188,7 @@ def random_basis(rows: int, columns: int, seed: int) -> tuple[SeparatedBasis, np
         * sizes
         @ generator.normal(size=(len(sizes), columns))
     )
-    return SeparatedBasis.of_field(field, k, weights, 0.0), field
+    return SeparatedBasis.of_field(field, k, weights, 0.0, 100), field
 
 
 @given(fields)

@@ -41,15 +41,17 @@ class SeparatedBasis:
         return cls(np.zeros((len(k), 0), order="F"), np.zeros((0, len(weights))), k, weights)
 
     @classmethod
-    def of_field(cls, field: Array, k: Array, weights: Array, tolerance: float) -> SeparatedBasis:
+    def of_field(
+        cls, field: Array, k: Array, weights: Array, tolerance: float, largest: int
+    ) -> SeparatedBasis:
         """Make the basis of a field, shape (n_boundary, n_columns), by its singular values.
 
-        What is dropped is at most `tolerance` of its norm.
+        What is dropped is as in `downsize`.
         """
         basis = cls.empty(k, weights)
         root = np.sqrt(k)[:, None]
         left, values, right = np.linalg.svd(root * field * np.sqrt(weights), full_matrices=False)
-        rank = kept(values, tolerance, len(values))
+        rank = kept(values, tolerance, largest)
         basis.modes = np.asfortranarray(left[:, :rank] / root)
         basis.time_functions = values[:rank, None] * right[:rank] / np.sqrt(weights)
         return basis

@@ -46,7 +46,10 @@ class Family:
     record: ReductionRecord
 
     def columns(self, field: Array) -> Array:
-        """Take the members of a group field as one matrix, shape (n_boundary, n_columns)."""
+        """Take the members of a group field as one matrix, shape (n_boundary, n_columns).
+
+        It is a view of the field if there is one member, otherwise a copy.
+        """
         return _members(field, self.members).reshape(len(field), -1, order="F")
 
     def time_functions(self, place: int) -> Array:
@@ -123,9 +126,7 @@ class ReducedGroup(Group[list[Family]]):
         return [
             self._family(
                 [place],
-                SeparatedBasis.of_field(
-                    self.target[:, place], self.k, self._weights, self._enrichment.tolerance
-                ),
+                self._basis_of(self.target[:, place], 1),
             )
             for place in range(self.rows.shape[1])
         ]
@@ -165,8 +166,10 @@ class ReducedGroup(Group[list[Family]]):
     def reflect(self, state: list[Family]) -> Array:
         """Give W - F/k of a state; the next call overwrites it."""
         for family in state:
-            columns = family.incoming_modes @ family.basis.time_functions
-            self._put(self._reflected, family.members, columns)
+            columns = family.columns(self._reflected)
+            np.matmul(family.incoming_modes, family.basis.time_functions, out=columns)
+            if len(family.members) > 1:
+                self._put(self._reflected, family.members, columns)
         if self.body is not None:
             self._reflected += 2.0 * self.body
         return self._reflected
@@ -185,7 +188,10 @@ class ReducedGroup(Group[list[Family]]):
         basis, rule = family.basis, self._enrichment
         target = family.columns(self.target)
         wanted = basis.coefficients(target)
-        whole = basis.squared(target)
+        # What was last reflected is read already, and its place is free.
+        squares = family.columns(self._reflected)
+        np.multiply(target, target, out=squares)
+        whole = float(self.k @ squares @ basis.weights)
         inside = basis.squared_of(wanted)
         change = wanted - basis.time_functions
         updated = basis.squared_of(change)
@@ -237,19 +243,19 @@ class ReducedGroup(Group[list[Family]]):
         target = self.field()
         for part in (family, other):
             self._put(target, part.members, part.basis.field())
-        basis = SeparatedBasis.of_field(
-            _members(target, members).reshape(len(target), -1, order="F"),
-            self.k,
-            self._tiled(len(members)),
-            self._enrichment.tolerance,
-        )
-        basis.downsize(self._enrichment.tolerance, self._largest)
+        columns = _members(target, members).reshape(len(target), -1, order="F")
+        basis = self._basis_of(columns, len(members))
         family.members, family.basis = members, basis
         family.incoming_modes = self._incoming(basis)
 
     def _family(self, members: list[int], basis: SeparatedBasis) -> Family:
         record = ReductionRecord(basis.n_modes, 0, 1.0, 0.0, 0.0)
         return Family(members, basis, self._incoming(basis), record)
+
+    def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
+        return SeparatedBasis.of_field(
+            columns, self.k, self._tiled(n_members), self._enrichment.tolerance, self._largest
+        )
 
     def _empty(self, n_members: int) -> SeparatedBasis:
         return SeparatedBasis.empty(self.k, self._tiled(n_members))

@@ -1,0 +1,193 @@
+"""What the linear stage costs on separated bases, against the full one, by size and modes."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import sparse
+from scipy.fft import idct
+
+from solver.discrete import Problem, discretise
+from solver.discrete.problem import Array, Elasticity, Scales, Substructure, space_time
+from solver.latin.direction import search_direction
+from solver.latin.iterate import Checkpoint
+from solver.latin.linear import FullLinearStage, LinearStage
+from solver.laws import Friction
+from solver.reduction.pgd import ReducedLinearStage
+from solver.scenes.bar import BarSettings
+from solver.settings import Settings
+
+MODES = (2, 4, 8, 16, 32, 64)
+BARS = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
+HALF_PLANES = (101, 1001)
+HALF_PLANE_POINTS = 400
+
+
+@dataclass(frozen=True)
+class ReductionCost:
+    """Seconds per linear stage, medians of repeats; and what the states hold.
+
+    Attributes
+    ----------
+    operator, points, instants
+        What is solved: a name, boundary rows of a substructure, instants.
+    full
+        Of the full stage.
+    reduced
+        By number of modes: projection and reconstruction, without enrichment.
+    enriched
+        By number of modes: with one pair added and one dropped in every substructure.
+    values, reduced_values
+        Numbers that the state holds: in full; by number of modes.
+    """
+
+    operator: str
+    points: int
+    instants: int
+    full: float
+    reduced: dict[int, float]
+    enriched: dict[int, float]
+    values: int
+    reduced_values: dict[int, int]
+
+    @property
+    def pays_up_to(self) -> int:
+        """Most of the measured modes with which projecting is cheaper than the full stage."""
+        return max((n for n, seconds in self.reduced.items() if seconds < self.full), default=0)
+
+
+def half_plane(points: int, instants: int) -> Problem:
+    """Make a body whose boundary response is dense: the surface of an elastic half plane.
+
+    Its surface stiffness is the root of the negative second derivative (Johnson, Contact
+    Mechanics, 1985, chapter 2), here with a spring to rest so that it cannot fly off. All points
+    rub; there is no cut.
+    """
+    shapes = idct(np.eye(points), axis=0, norm="ortho")
+    dense = shapes.T * (1.0 + np.pi * np.arange(points)) @ shapes
+    rows = np.arange(points)
+    positions = (rows + 0.5) / points
+    law = Friction(rows, rows, positions, np.full(points, 1.0 / points), np.full(points, 1e-3))
+    elasticity = Elasticity(sparse.csr_array(dense), rows, np.full(points, float(points)))
+    return Problem(
+        substructures=(Substructure(elasticity, rows, rows, None),),
+        interfaces={"surface": law},
+        positions=positions,
+        instants=np.linspace(0.0, 1.0, instants),
+        scales=Scales(1.0, 1.0, 1.0),
+    )
+
+
+def reduction_cost(
+    operator: str, problem: Problem, settings: Settings, modes: Sequence[int], repeats: int
+) -> ReductionCost:
+    """Measure the linear stage in full and on bases of given sizes, in turns.
+
+    The fields are random numbers of full rank, so that bases are as large as they may be.
+
+    Parameters
+    ----------
+    operator
+        Name of what is solved.
+    problem, settings
+        What to solve.
+    modes
+        Sizes of the bases; those larger than a substructure's boundary are left out.
+    repeats
+        Measurements of each, whose median is taken.
+    """
+    k = search_direction(problem, settings)
+    generator = np.random.default_rng(0)
+    shape = (problem.n_rows, problem.n_instants)
+    start = Checkpoint(0, 0.0, np.asfortranarray(generator.normal(size=shape)))
+    target = np.asfortranarray(generator.normal(size=shape))
+    smallest = min(len(part.rows) for part in problem.substructures)
+    sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
+    stages: list[Callable[[], None]] = [
+        _step(FullLinearStage(problem, k, multiscale=True), start, target)
+    ]
+    for threshold in (1.0, 0.0):
+        for size in sizes:
+            chosen = settings.replace(
+                linear_stage="pgd",
+                pgd_modes=size,
+                pgd_enrichment=threshold,
+                pgd_pairs=1,
+                pgd_tolerance=1e-14,
+            )
+            stages.append(_step(ReducedLinearStage(problem, k, chosen), start, target))
+    samples: list[list[float]] = [[] for _ in stages]
+    for _ in range(repeats):
+        for stage, times in zip(stages, samples, strict=True):
+            times.append(_seconds(stage, max(3, int(2e6 / np.prod(shape)))))
+    full, *rest = (statistics.median(times) for times in samples)
+    return ReductionCost(
+        operator,
+        smallest,
+        problem.n_instants,
+        full,
+        dict(zip(sizes, rest[: len(sizes)], strict=True)),
+        dict(zip(sizes, rest[len(sizes) :], strict=True)),
+        int(np.prod(shape)),
+        {
+            size: sum(
+                size * (len(part.rows) + problem.n_instants) for part in problem.substructures
+            )
+            for size in sizes
+        },
+    )
+
+
+def _step(stage: LinearStage[Any], start: Checkpoint, target: Array) -> Callable[[], None]:
+    state = stage.start(start)
+    incoming = space_time(*target.shape)
+
+    def step() -> None:
+        stage.advance(state, target, 0.8)
+        stage.incoming(state, incoming)
+
+    return step
+
+
+def _seconds(stage: Callable[[], None], number: int) -> float:
+    start = time.perf_counter()
+    for _ in range(number):
+        stage()
+    return (time.perf_counter() - start) / number
+
+
+def print_reduction_cost(repeats: int) -> None:
+    """Print the table of all sizes."""
+    print(f"one linear stage, ms; medians of {repeats}; bars have 5 substructures, multiscale")
+    print("in brackets: with a pair added and one dropped in every substructure")
+    print(f"{'operator':<11} {'rows x instants':>15} {'full':>9}", *(f"{n:>15}" for n in MODES))
+    for nodes, instants in BARS:
+        bar = BarSettings.checked({"elements": nodes - 1, "instants": instants, "substructures": 5})
+        _print(reduction_cost("bar", discretise(bar), bar, MODES, repeats))
+    for instants in HALF_PLANES:
+        settings = BarSettings.checked({"substructures": 1})
+        problem = half_plane(HALF_PLANE_POINTS, instants)
+        _print(reduction_cost("half plane", problem, settings, MODES, repeats))
+
+
+def _print(cost: ReductionCost) -> None:
+    cells = [
+        f"{1e3 * cost.reduced[size]:6.3f} ({1e3 * cost.enriched[size]:6.3f})"
+        if size in cost.reduced
+        else "-"
+        for size in MODES
+    ]
+    print(
+        f"{cost.operator:<11} {cost.points:>6} x {cost.instants:<6} {1e3 * cost.full:9.3f}",
+        *(f"{cell:>15}" for cell in cells),
+        f" pays up to {cost.pays_up_to} modes",
+    )
+    values = " ".join(
+        f"{size}: {100.0 * n / cost.values:.0f} %" for size, n in cost.reduced_values.items()
+    )
+    print(f"{'':<11} state against the full field: {values}")
