@@ -149,6 +149,10 @@ def _is_reduced(settings: Settings) -> bool:
     return bool(settings.linear_stage == "pgd")
 
 
+def _is_sampled(settings: Settings) -> bool:
+    return _is_reduced(settings) and settings.local_stage == "reduced"
+
+
 class Settings(param.Parameterized):
     """Settings of the method, common to all scenes; a scene adds its own.
 
@@ -285,6 +289,42 @@ class Settings(param.Parameterized):
         group="Method",
         title="PGD basis sharing",
         applies=lambda settings: _is_reduced(settings) and settings.substructures > 1,
+    )
+    local_stage = choice(
+        "full",
+        ["full", "reduced"],
+        "Where the interface laws are evaluated: at all points and instants, or at reference points "
+        "and instants alone, from which the basis rebuilds the field.",
+        group="Method",
+        title="Local stage",
+        applies=_is_reduced,
+    )
+    local_points = quantity(
+        0.5,
+        (0.0, 1.0),
+        (0.1, 1.0),
+        "Share of the friction points that are reference points, at least one for each mode.",
+        group="Method",
+        title="Reference points",
+        applies=_is_sampled,
+    )
+    local_instants = quantity(
+        0.5,
+        (0.0, 1.0),
+        (0.1, 1.0),
+        "Share of the instants that are reference instants, at least one for each mode.",
+        group="Method",
+        title="Reference instants",
+        applies=_is_sampled,
+    )
+    local_refresh = count(
+        5,
+        (1, 1000),
+        (1, 20),
+        "Every so many iterations the laws are evaluated everywhere, and new references chosen.",
+        group="Method",
+        title="Full local stage every",
+        applies=_is_sampled,
     )
     acceleration = choice(
         "none", ["none"], "Acceleration of the iteration.", group="Method", title="Acceleration"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.discrete.problem import Array, Problem
-from solver.reduction.basis import Modes, Reduction
+from solver.reduction.basis import Modes, Reduction, References
 
 NO_SLIP = 1e-9
 """Slip, as a share of the largest displacement, up to which a point counts as stuck."""
@@ -27,12 +27,15 @@ class Checkpoint:
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
     reduction
         The separated bases that hold it, if any do.
+    references
+        Where a reduced local stage evaluates the laws, if there is one.
     """
 
     number: int
     seconds: float
     outgoing: Array
     reduction: Reduction | None = None
+    references: References | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +60,11 @@ class Iterate:
         W - F/k that the local stage read, which is its own W^ - F^/k.
     reduction
         The separated bases that hold the linear stage, if any do.
+    references
+        Where a reduced local stage evaluates the laws, if there is one.
+    local_error
+        Relative distance of what the reduced local stage rebuilt from what the laws say
+        everywhere, in the norm of the search direction; 0 where they were evaluated everywhere.
     """
 
     number: int
@@ -68,11 +76,13 @@ class Iterate:
     local_displacement: Array
     local_incoming: Array
     reduction: Reduction | None = None
+    references: References | None = None
+    local_error: float = 0.0
 
     @property
     def checkpoint(self) -> Checkpoint:
         """What is needed to go on from here."""
-        return Checkpoint(self.number, self.seconds, self.outgoing, self.reduction)
+        return Checkpoint(self.number, self.seconds, self.outgoing, self.reduction, self.references)
 
     @property
     def bases(self) -> tuple[Modes, ...]:

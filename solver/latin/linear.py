@@ -72,6 +72,17 @@ class LinearStage(Generic[State]):
             return [group.zero() for group in self.groups]
         return [group.from_boundary(checkpoint.outgoing) for group in self.groups]
 
+    def distance_of_target(self, target: Array) -> float:
+        """Give the relative distance of the groups' targets from a field (n_rows, n_instants)."""
+        found = space_time(*self._shape)
+        weight = np.empty(self._shape[0])
+        for group in self.groups:
+            group.scatter(group.target, found)
+            weight[group.rows] = group.k[:, None]
+        root = np.sqrt(weight)[:, None]
+        size = float(np.linalg.norm(root * target))
+        return float(np.linalg.norm(root * (found - target))) / size if size > 0.0 else 0.0
+
     def reduction(self, state: list[State]) -> Reduction | None:
         """Show the separated bases of a state, if it has any."""
         return None
@@ -83,20 +94,21 @@ class LinearStage(Generic[State]):
             group.scatter(group.outgoing(own), field)
         return field
 
-    def advance(self, state: list[State], target: Array, relaxation: float) -> None:
+    def read(self, target: Array) -> None:
+        """Take W^ + F^/k of the local stage, shape (n_rows, n_instants), as all groups' target."""
+        for group in self.groups:
+            group.gather(target)
+
+    def advance(self, state: list[State], relaxation: float) -> None:
         """Solve the linear stage and relax: the state becomes a mean of the new and the old.
 
         Parameters
         ----------
         state
             Changed in place.
-        target
-            W^ + F^/k of the local stage, shape (n_rows, n_instants).
         relaxation
             Share of the new one.
         """
-        for group in self.groups:
-            group.gather(target)
         if self._coarse is not None:
             self._coarse.add_multiplier()
         for group, own in zip(self.groups, state, strict=True):

@@ -17,35 +17,49 @@ class LocalStage:
     It reads z = W - F/k of the linear stage alone, and what it gives is read as
     W^ + F^/k = 2 W^ - z (theory.md, 2). Laws of one kind are applied together.
 
+    Parameters
+    ----------
+    problem, k
+        Whose laws; k has shape (n_rows,).
+    where
+        Rows and instants to which the laws are confined, or None for all. Only rows of friction
+        may be left out; fields then have these rows and instants alone.
+
     Attributes
     ----------
     displacement
         W^ of the last call, shape (n_rows, n_instants); the next call overwrites it.
     """
 
-    def __init__(self, problem: Problem, k: Array) -> None:
-        shape = (problem.n_rows, problem.n_instants)
+    def __init__(
+        self, problem: Problem, k: Array, where: tuple[Indices, Indices] | None = None
+    ) -> None:
+        rows, instants = where or (np.arange(problem.n_rows), np.arange(problem.n_instants))
+        place = np.full(problem.n_rows, -1)
+        place[rows] = np.arange(len(rows))
+        shape = (len(rows), len(instants))
         self.displacement = space_time(*shape)
         self._outgoing = space_time(*shape)
         friction = problem.friction
-        self._friction = as_slice(friction.rows)
-        self._reach = (friction.bound / k[friction.rows])[:, None]
-        self._play = Play(len(friction.rows), problem.n_instants)
+        rubs = place[friction.rows] >= 0
+        self._friction = as_slice(place[friction.rows[rubs]])
+        self._reach = (friction.bound / k[friction.rows])[rubs, None]
+        self._play = Play(int(np.count_nonzero(rubs)), len(instants))
         cuts = [law for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
         self._cuts = None
         if cuts:
             first = np.concatenate([law.first for law in cuts])
             second = np.concatenate([law.second for law in cuts])
             share = (k[first] / (k[first] + k[second]))[:, None]
-            self._cuts = (as_slice(first), as_slice(second), share)
+            self._cuts = (as_slice(place[first]), as_slice(place[second]), share)
         self._loads = [
-            (as_slice(law.rows), law.force / k[law.rows, None])
+            (as_slice(place[law.rows]), law.force[:, instants] / k[law.rows, None])
             for law in problem.of_law(Neumann)
             if isinstance(law, Neumann)
         ]
         for law in problem.of_law(Dirichlet):
             assert isinstance(law, Dirichlet)
-            self.displacement[law.rows] = law.displacement
+            self.displacement[place[law.rows]] = law.displacement[:, instants]
 
     def __call__(self, incoming: Array) -> Array:
         """Obey all laws.

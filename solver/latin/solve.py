@@ -55,6 +55,8 @@ class Record:
         Relative L2 distance to the reference over space and time.
     reduction
         What the iteration did to the separated basis of every substructure; empty without bases.
+    local_error
+        Of the reduced local stage, as in `Iterate`.
     """
 
     iteration: int
@@ -65,6 +67,7 @@ class Record:
     error_displacement: float
     error_force: float
     reduction: tuple[ReductionRecord, ...] = ()
+    local_error: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +91,7 @@ def record(iterate: Iterate, distance: Distance | None) -> Record:
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
         reduction=iterate.reduction.records if iterate.reduction else (),
+        local_error=iterate.local_error,
     )
 
 

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.discrete.problem import Array
+from solver.discrete.problem import Array, Indices
 
 
 @dataclass
@@ -226,3 +226,20 @@ class Reduction:
     def saved(self) -> int:
         """Modes that sharing saves."""
         return sum(shown.n_modes for shown in self.modes) - self.stored
+
+
+@dataclass(frozen=True, eq=False)
+class References:
+    """Where the laws are evaluated.
+
+    Attributes
+    ----------
+    instants
+        Indices, in order.
+    places
+        For every basis, in order, the indices of its reference rows among the boundary rows of
+        its substructures.
+    """
+
+    instants: Indices
+    places: tuple[Indices, ...]

@@ -77,6 +77,8 @@ class ReducedLinearStage(LinearStage[list[Family]]):
 
     def start(self, checkpoint: Checkpoint | None) -> list[list[Family]]:
         """Give the state of a checkpoint: its bases, or the nearest ones to its fields."""
+        for group in self._reduced:
+            group.iterations = checkpoint.number if checkpoint else 0
         if checkpoint is None or checkpoint.reduction is None:
             return super().start(checkpoint)
         modes, records = checkpoint.reduction.modes, checkpoint.reduction.records
@@ -104,6 +106,11 @@ class ReducedGroup(Group[list[Family]]):
     """Identical substructures whose states are separated.
 
     The state is a list of families: one per substructure, fewer when bases are shared.
+
+    Attributes
+    ----------
+    iterations
+        Iterations done, which set the pace of looking for bases to share.
     """
 
     def __init__(
@@ -114,7 +121,7 @@ class ReducedGroup(Group[list[Family]]):
         self._largest = settings.pgd_modes
         self._sharing = settings.pgd_sharing
         self._weights = problem.time_weights
-        self._iterations = 0
+        self.iterations = 0
 
     def zero(self) -> list[Family]:
         """Give the state in which all is zero: bases without modes."""
@@ -159,8 +166,8 @@ class ReducedGroup(Group[list[Family]]):
         """Bring a state towards the target: update time functions, enrich, downsize."""
         for family in state:
             self._advance(family, relaxation)
-        self._iterations += 1
-        if self._sharing > 0.0 and self._iterations % SHARE_EVERY == 0:
+        self.iterations += 1
+        if self._sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share(state)
 
     def reflect(self, state: list[Family]) -> Array:
@@ -239,7 +246,7 @@ class ReducedGroup(Group[list[Family]]):
         return one.basis.outside(other.basis)
 
     def _join(self, family: Family, other: Family) -> None:
-        members = family.members + other.members
+        members = sorted(family.members + other.members)
         target = self.field()
         for part in (family, other):
             self._put(target, part.members, part.basis.field())

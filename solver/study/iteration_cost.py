@@ -67,7 +67,8 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
 
     def linear_stage(stage: FullLinearStage) -> Callable[[], None]:
         def step() -> None:
-            stage.advance(state, target, settings.relaxation)
+            stage.read(target)
+            stage.advance(state, settings.relaxation)
             stage.incoming(state, incoming)
 
         return step

@@ -6,6 +6,7 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.fft import idct
 
 from solver.discrete import Problem, discretise
 from solver.discrete.problem import Array, Elasticity, Scales, Substructure, space_time
+from solver.latin import iterations
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
@@ -143,12 +145,64 @@ def reduction_cost(
     )
 
 
+WHOLE = ((51, 101), (201, 101), (1001, 101), (1001, 1001), (4001, 401))
+FORMS: dict[str, dict[str, object]] = {
+    "full": {"linear_stage": "full"},
+    "pgd": {},
+    "sampled": {"local_stage": "reduced"},
+    "few samples": {
+        "local_stage": "reduced",
+        "local_points": 0.1,
+        "local_instants": 0.1,
+        "local_refresh": 10,
+    },
+}
+FIRST, LAST = 20, 60
+
+
+def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple[float, float]]:
+    """Measure whole iterations of the bar with 5 substructures, in full and in reduced forms.
+
+    Returns
+    -------
+    By form: seconds per iteration between two late iterations, median of repeats taken in turns;
+    and the relative L2 distance of the displacement from that of the full form.
+    """
+    seconds: dict[str, list[float]] = {form: [] for form in FORMS}
+    fields: dict[str, Array] = {}
+    for _ in range(repeats):
+        for form, changes in FORMS.items():
+            settings = BarSettings.checked(
+                {
+                    "linear_stage": "pgd",
+                    "elements": nodes - 1,
+                    "instants": instants,
+                    "substructures": 5,
+                    **changes,
+                }
+            )
+            clock = []
+            for iterate in islice(iterations(discretise(settings), settings), LAST):
+                clock.append(iterate.seconds)
+                fields[form] = iterate.boundary_displacement
+            seconds[form].append((clock[-1] - clock[FIRST - 1]) / (LAST - FIRST))
+    full = fields["full"]
+    return {
+        form: (
+            statistics.median(times),
+            float(np.linalg.norm(fields[form] - full) / np.linalg.norm(full)),
+        )
+        for form, times in seconds.items()
+    }
+
+
 def _step(stage: LinearStage[Any], start: Checkpoint, target: Array) -> Callable[[], None]:
     state = stage.start(start)
     incoming = space_time(*target.shape)
 
     def step() -> None:
-        stage.advance(state, target, 0.8)
+        stage.read(target)
+        stage.advance(state, 0.8)
         stage.incoming(state, incoming)
 
     return step
@@ -173,6 +227,16 @@ def print_reduction_cost(repeats: int) -> None:
         settings = BarSettings.checked({"substructures": 1})
         problem = half_plane(HALF_PLANE_POINTS, instants)
         _print(reduction_cost("half plane", problem, settings, MODES, repeats))
+
+    print("\nwhole iterations, ms, of the bar with 5 substructures: local stage everywhere, or at")
+    print(
+        f"samples; in brackets: distance of the displacement from the full form's, iteration {LAST}"
+    )
+    print(f"{'nodes x instants':>17}", *(f"{form:>17}" for form in FORMS))
+    for nodes, instants in WHOLE:
+        found = whole_iterations(nodes, instants, min(repeats, 3))
+        cells = (f"{1e3 * time:8.2f} ({far:.1e})" for time, far in found.values())
+        print(f"{nodes:>8} x {instants:<6}", *(f"{cell:>17}" for cell in cells))
 
 
 def _print(cost: ReductionCost) -> None:
