@@ -1,4 +1,4 @@
-"""Commands of `python -m solver`: run a scene, list scenes and settings, measure an iteration."""
+"""Commands of `python -m solver`: run a scene, list what there is, measure, draw figures."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, about, allowed
 from solver.study.iteration_cost import print_iteration_cost
+from solver.study.paper_figures import paper_figures
+from solver.study.reduction_cost import print_reduction_cost
 
 REFUSED = 2
 
@@ -53,7 +55,13 @@ def _parser() -> argparse.ArgumentParser:
     settings.set_defaults(command=_settings)
     cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
     cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
+    cost.add_argument(
+        "--reduction", action="store_true", help="separated bases against full fields instead"
+    )
     cost.set_defaults(command=_benchmark)
+    figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
+    figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
+    figures.set_defaults(command=_figures)
     return parser
 
 
@@ -95,5 +103,31 @@ def _settings(chosen: argparse.Namespace) -> int:
 
 
 def _benchmark(chosen: argparse.Namespace) -> int:
-    print_iteration_cost(chosen.repeats)
+    measure = print_reduction_cost if chosen.reduction else print_iteration_cost
+    measure(chosen.repeats)
+    return 0
+
+
+def _figures(chosen: argparse.Namespace) -> int:
+    try:
+        from solver.study.drawing import write_figures
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").split(".")[0] != "matplotlib":
+            raise
+        print(
+            "slipfront: figures need matplotlib: pip install 'slipfront[figures]'", file=sys.stderr
+        )
+        return REFUSED
+    try:
+        chosen.out.mkdir(parents=True, exist_ok=True)
+        figures = paper_figures()
+        files = write_figures(figures, chosen.out)
+    except OSError as problem:
+        allowed_folder = "a folder that can be made and written to"
+        raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
+    for figure in figures:
+        print(f"Fig. {figure.number}: {figure.title} ({figure.verdict})")
+        for found in figure.findings:
+            print(f"  {'+' if found.holds else '-'} {found.text}")
+    print(f"{len(files)} files in {chosen.out}")
     return 0

@@ -293,8 +293,8 @@ class Settings(param.Parameterized):
     local_stage = choice(
         "full",
         ["full", "reduced"],
-        "Where the interface laws are evaluated: at all points and instants, or at reference points "
-        "and instants alone, from which the basis rebuilds the field.",
+        "Where the interface laws are evaluated: everywhere, or at reference points and instants "
+        "alone, from which the basis rebuilds the field.",
         group="Method",
         title="Local stage",
         applies=_is_reduced,

@@ -10,7 +10,7 @@ from solver.discrete.problem import space_time
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import DenseResponse, FullLinearStage
-from solver.reduction.pgd import ReducedLinearStage
+from solver.latin.reduced_linear import ReducedLinearStage
 from solver.scenes.bar import BarSettings
 from solver.study.reduction_cost import half_plane, reduction_cost, whole_iterations
 

@@ -11,8 +11,8 @@ from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.local import LocalStage
-from solver.reduction.pgd import ReducedLinearStage
-from solver.reduction.references import ReducedLocalStage
+from solver.latin.reduced_linear import ReducedLinearStage
+from solver.latin.reduced_local import ReducedLocalStage
 from solver.settings import Settings
 
 

@@ -1,27 +1,184 @@
-"""Singular values of interface fields, per substructure (paper, section 3.2)."""
+"""Singular values and modes of interface fields, per substructure (paper, section 3.2).
+
+A field is decomposed in the L2 inner product of the place and the time that it lives on: lengths of
+the friction rows and trapezoidal weights of the instants. Fields of a whole boundary, whose ends
+have no length, take the norm of the paper's eq. 2 instead.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+from typing import Protocol
+
 import numpy as np
 
-from solver.discrete.problem import Array, Problem
-from solver.latin.iterate import Iterate
+from solver.discrete.problem import Array, Indices, Problem
+
+ALIKE = 1e-9
+"""Relative difference up to which two entries count as equally large when a sign is fixed."""
 
 
-def friction_spectra(iterate: Iterate) -> list[Array]:
-    """Compute the singular values of the friction force in every substructure.
+class InterfaceFields(Protocol):
+    """What is analysed: an iterate, or whatever else has fields on the boundary rows.
 
-    The field is the force per length, in L2 over the substructure's friction rows and time.
+    Shapes are those of `Iterate`: (n_rows,) for k, (n_rows, n_instants) for the fields; scaled.
+    """
+
+    @property
+    def problem(self) -> Problem:
+        """The problem whose rows they live on."""
+
+    @property
+    def k(self) -> Array:
+        """Search direction."""
+
+    @property
+    def boundary_displacement(self) -> Array:
+        """Displacement W."""
+
+    @property
+    def boundary_force(self) -> Array:
+        """Nodal force F."""
+
+
+class InterfaceField(StrEnum):
+    """A field that can be decomposed, and the unit of its singular values.
+
+    The first two live on the friction rows, as L2 fields over length and time: N sqrt(s/m) and
+    m sqrt(m s). The last two live on all boundary rows, in the norm of the paper's eq. 2 (k W^2 and
+    F^2/k): sqrt(N m s).
+    """
+
+    FRICTION_FORCE = "friction_force"
+    DISPLACEMENT = "displacement"
+    BOUNDARY_FORCE = "boundary_force"
+    BOUNDARY_DISPLACEMENT = "boundary_displacement"
+
+
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """A space-time field as a sum of value times space mode times time mode.
+
+    Attributes
+    ----------
+    values
+        Singular values, shape (n_modes,), descending; n_modes is the smaller of n_points and
+        n_instants, and a field of lower rank has zeros at the end.
+    space_modes
+        Shape (n_points, n_modes), orthonormal in `space_weights`; the largest entry of each is
+        positive.
+    time_modes
+        Shape (n_modes, n_instants), orthonormal in `time_weights`.
+    positions
+        Shape (n_points,), m.
+    space_weights, time_weights
+        Shapes (n_points,) and (n_instants,), positive.
+    """
+
+    values: Array
+    space_modes: Array
+    time_modes: Array
+    positions: Array
+    space_weights: Array
+    time_weights: Array
+
+    @cached_property
+    def errors(self) -> Array:
+        """Error of the best approximation of every rank from 0 on, shape (n_modes + 1,).
+
+        Relative to the norm of the field; zero for a field that vanishes. The root of the sum of
+        the squared values left out (Eckart and Young).
+        """
+        errors = np.zeros(len(self.values) + 1)
+        if self.values[0] > 0.0:
+            squares = (self.values / self.values[0]) ** 2
+            errors[:-1] = np.sqrt(np.cumsum(squares[::-1])[::-1] / squares.sum())
+        return errors
+
+    def modes_for(self, share: float) -> int:
+        """Count the modes that bring the error down to a share of the field's norm."""
+        return int(np.argmax(self.errors <= share))
+
+    def approximation(self, rank: int) -> Array:
+        """Sum the first modes, shape (n_points, n_instants)."""
+        return (self.space_modes[:, :rank] * self.values[:rank]) @ self.time_modes[:rank]
+
+    def correlations(self, modes: Array) -> Array:
+        """Give the cosines between modes and the space modes of the same place in the order.
+
+        Parameters
+        ----------
+        modes
+            Shape (n_points, n), of any length but zero.
+
+        Returns
+        -------
+        Shape (n,), in the inner product of `space_weights`, from -1 to 1; the sign tells whether
+        the modes point the same way.
+        """
+        lengths = np.sqrt(self.space_weights @ modes**2)
+        own = self.space_modes[:, : modes.shape[1]]
+        cosines: Array = self.space_weights @ (own * modes) / lengths
+        return cosines
+
+
+def decompose(
+    field: Array, space_weights: Array, time_weights: Array, positions: Array
+) -> Decomposition:
+    """Decompose a space-time field in weighted inner products.
+
+    Parameters
+    ----------
+    field
+        Shape (n_points, n_instants).
+    space_weights, time_weights, positions
+        As in `Decomposition`.
+    """
+    space_root, time_root = np.sqrt(space_weights)[:, None], np.sqrt(time_weights)
+    left, values, right = np.linalg.svd(space_root * field * time_root, full_matrices=False)
+    space_modes, time_modes = left / space_root, right / time_root
+    signs = _signs(space_modes)
+    return Decomposition(
+        values=values,
+        space_modes=space_modes * signs,
+        time_modes=time_modes * signs[:, None],
+        positions=positions,
+        space_weights=space_weights,
+        time_weights=time_weights,
+    )
+
+
+def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomposition]:
+    """Decompose one interface field in every substructure (paper, section 3.2).
 
     Returns
     -------
-    One array of descending singular values per substructure, numbered from the clamp, N/sqrt(m)
-    times the root of scaled time.
+    One decomposition in SI units per substructure, numbered from the clamp.
     """
-    problem = iterate.problem
-    law = problem.friction
-    density = iterate.boundary_force[law.rows] * problem.scales.force
-    weighted = density / np.sqrt(law.weights)[:, None] * np.sqrt(problem.time_weights)
+    problem = fields.problem
+    field, weights = _field_and_weights(fields, name)
+    on_friction = name in (InterfaceField.FRICTION_FORCE, InterfaceField.DISPLACEMENT)
+    own = friction_rows(problem) if on_friction else [part.rows for part in problem.substructures]
+    time_weights = problem.time_weights * problem.scales.time
+    places = problem.positions[problem.row_dofs]
+    return [decompose(field[rows], weights[rows], time_weights, places[rows]) for rows in own]
+
+
+def friction_spectra(fields: InterfaceFields) -> list[Array]:
+    """Compute the singular values of the friction force in every substructure.
+
+    The values of `decompositions`, without their modes and for substructures of one size at once.
+
+    Returns
+    -------
+    One array of descending singular values per substructure, numbered from the clamp, N sqrt(s/m).
+    """
+    problem = fields.problem
+    field, lengths = _field_and_weights(fields, InterfaceField.FRICTION_FORCE)
+    time_root = np.sqrt(problem.time_weights * problem.scales.time)
+    weighted = field * np.sqrt(lengths)[:, None] * time_root
     own = friction_rows(problem)
     values: dict[int, Array] = {}
     for size in sorted({len(rows) for rows in own}):
@@ -32,8 +189,68 @@ def friction_spectra(iterate: Iterate) -> list[Array]:
     return [values[number] for number in range(len(own))]
 
 
-def friction_rows(problem: Problem) -> list[np.ndarray]:
-    """Give, per substructure, the places of its rows in the friction interface."""
-    place = np.full(problem.n_rows, -1)
-    place[problem.friction.rows] = np.arange(len(problem.friction.rows))
-    return [place[part.rows][place[part.rows] >= 0] for part in problem.substructures]
+def friction_rows(problem: Problem) -> list[Indices]:
+    """Give the boundary rows that rub, per substructure, in the order of its own rows."""
+    rubs = np.zeros(problem.n_rows, dtype=bool)
+    rubs[problem.friction.rows] = True
+    return [part.rows[rubs[part.rows]] for part in problem.substructures]
+
+
+def constant_speed_front(n_points: int, n_instants: int) -> Decomposition:
+    """Decompose a front that crosses its domain at constant speed in the time there is.
+
+    Scaled to the unit square the field is H(x - t), the kernel of an integration, whose singular
+    values are 2/((2n - 1) pi). Here it is sampled in the middle of cells; on the front itself it is
+    one half.
+    """
+    positions = (np.arange(n_points) + 0.5) / n_points
+    instants = (np.arange(n_instants) + 0.5) / n_instants
+    field = np.heaviside(positions[:, None] - instants, 0.5)
+    weights = np.full(n_points, 1.0 / n_points)
+    return decompose(field, weights, np.full(n_instants, 1.0 / n_instants), positions)
+
+
+def front_decay(count: int) -> Array:
+    """Give sigma_n/sigma_1 = 1/(2n - 1) of a constant-speed front, (count,) (theory.md, 3)."""
+    return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
+
+
+def against_front(values: Array) -> Array:
+    """Divide the decay of singular values by that of a constant-speed front.
+
+    Parameters
+    ----------
+    values
+        Shape (n_modes,), descending.
+
+    Returns
+    -------
+    (2n - 1) sigma_n/sigma_1, same shape: 1 throughout for a constant-speed front, falling for a
+    field that is easier to reduce. Zero where all values are.
+    """
+    if values[0] == 0.0:
+        return np.zeros_like(values)
+    found: Array = values / values[0] / front_decay(len(values))
+    return found
+
+
+def _signs(modes: Array) -> Array:
+    size = np.abs(modes)
+    largest = np.argmax(size >= (1.0 - ALIKE) * size.max(axis=0), axis=0)
+    return np.where(modes[largest, np.arange(modes.shape[1])] < 0.0, -1.0, 1.0)
+
+
+def _field_and_weights(fields: InterfaceFields, name: InterfaceField) -> tuple[Array, Array]:
+    """Give a field in SI and the weights of its rows; rows beyond it have no meaning."""
+    problem, scales = fields.problem, fields.problem.scales
+    law = problem.friction
+    k = fields.k * scales.force / scales.displacement
+    lengths = np.ones(problem.n_rows)
+    lengths[law.rows] = law.weights
+    if name is InterfaceField.FRICTION_FORCE:
+        return fields.boundary_force * scales.force / lengths[:, None], lengths
+    if name is InterfaceField.DISPLACEMENT:
+        return fields.boundary_displacement * scales.displacement, lengths
+    if name is InterfaceField.BOUNDARY_FORCE:
+        return fields.boundary_force * scales.force, 1.0 / k
+    return fields.boundary_displacement * scales.displacement, k

@@ -19,8 +19,8 @@ from solver.latin import iterations
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
+from solver.latin.reduced_linear import ReducedLinearStage
 from solver.laws import Friction
-from solver.reduction.pgd import ReducedLinearStage
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 

@@ -10,8 +10,8 @@ from scipy.linalg import qr
 from solver.discrete.problem import Array, Indices, Problem
 from solver.latin.linear import Group
 from solver.latin.local import LocalStage
+from solver.latin.reduced_linear import Family, ReducedLinearStage
 from solver.reduction.basis import References, SeparatedBasis
-from solver.reduction.pgd import Family, ReducedLinearStage
 from solver.settings import Settings
 
 

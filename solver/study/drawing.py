@@ -1,0 +1,157 @@
+"""Figures as PNG files, and as one HTML page that needs nothing beside it.
+
+The only module that needs matplotlib; import it when something is to be drawn.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
+from PIL import Image
+
+from solver.study.figure_data import Line, Panel, PaperFigure
+
+HUES = ("#404040", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
+"""Okabe and Ito's palette, told apart by the colour-blind; the first is the neutral hue."""
+LINES: dict[Line, dict[str, Any]] = {
+    "solid": {"linestyle": "-"},
+    "dashed": {"linestyle": (0, (5, 2))},
+    "dotted": {"linestyle": (0, (1, 1.5))},
+    "points": {"linestyle": "-", "linewidth": 0.8, "marker": "o", "markersize": 4},
+}
+WIDTH, HEIGHT, RESOLUTION = 4.2, 3.6, 130
+"""Size of a panel, inches, and dots an inch."""
+COLOURS = 128
+"""Colours of a PNG; lines need few, and the file is a third as large."""
+LETTERS = 13
+"""Letters of a legend that an inch holds; the mark beside each entry takes eight."""
+SAYS = {True: "Bears it out.", False: "Speaks against it."}
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Slipfront: the paper's figures</title>
+<style>
+body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
+  color: #222; background: #fff; }}
+figure {{ margin: 0 0 3.5rem; }}
+img {{ max-width: 100%; height: auto; }}
+li b {{ font-weight: 600; }}
+.caption {{ color: #555; font-size: 0.9rem; }}
+</style>
+<h1>The paper's figures, drawn again</h1>
+<p>Computed by Slipfront. The paper prints curves without numbers; each figure here stands with
+what the paper says of it, and with the numbers that bear it out or do not.</p>
+{figures}
+</html>
+"""
+FIGURE = """<figure id="figure-{number}">
+<h2>Fig. {number}: {title}</h2>
+<img src="data:image/png;base64,{image}" alt="{title}">
+<figcaption>
+<p><b>The paper's claim:</b> {claim} <b>Here it {verdict}.</b></p>
+<ul>
+{findings}
+</ul>
+<p class="caption">{caption}</p>
+</figcaption>
+</figure>
+"""
+
+
+def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
+    """Write `figure-N.png` for each figure, and `figures.html` with all of them.
+
+    Parameters
+    ----------
+    figures
+        What to draw.
+    folder
+        An existing folder; files of these names are replaced.
+
+    Returns
+    -------
+    The files, in the order written.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
+    """
+    images = [png(figure) for figure in figures]
+    files = [folder / f"figure-{figure.number}.png" for figure in figures]
+    for file, image in zip(files, images, strict=True):
+        file.write_bytes(image)
+    together = folder / "figures.html"
+    together.write_text(html(figures, images), encoding="utf-8")
+    return [*files, together]
+
+
+def png(figure: PaperFigure) -> bytes:
+    """Draw a figure, its panels side by side, as a PNG."""
+    size = (WIDTH * max(len(figure.panels), 1.5), HEIGHT)
+    sheet = Figure(figsize=size, layout="constrained")
+    grid = sheet.subplots(1, len(figure.panels), squeeze=False)
+    entries: dict[str, Line2D] = {}
+    for axes, panel in zip(grid[0], figure.panels, strict=True):
+        entries |= _draw(axes, panel)
+    sheet.suptitle(f"Fig. {figure.number}: {figure.title}", fontsize=11)
+    sheet.legend(
+        entries.values(),
+        entries.keys(),
+        loc="outside lower center",
+        ncols=min(len(entries), int(LETTERS * size[0] / (max(map(len, entries)) + 8))),
+        fontsize=9,
+        frameon=False,
+        handlelength=2.6,
+    )
+    drawn, small = io.BytesIO(), io.BytesIO()
+    sheet.savefig(drawn, format="png", dpi=RESOLUTION)
+    image = Image.open(drawn).convert("RGB")
+    image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE).save(small, format="png", optimize=True)
+    return small.getvalue()
+
+
+def html(figures: Sequence[PaperFigure], images: Sequence[bytes]) -> str:
+    """Write the page, with the images inside it."""
+    parts = [
+        FIGURE.format(
+            number=figure.number,
+            title=escape(figure.title),
+            image=base64.b64encode(image).decode("ascii"),
+            claim=escape(figure.claim),
+            verdict=figure.verdict,
+            findings="\n".join(
+                f"<li>{escape(found.text)} <b>{SAYS[found.holds]}</b></li>"
+                for found in figure.findings
+            ),
+            caption=escape(figure.caption),
+        )
+        for figure, image in zip(figures, images, strict=True)
+    ]
+    return PAGE.format(figures="\n".join(parts))
+
+
+def _draw(axes: Axes, panel: Panel) -> dict[str, Line2D]:
+    """Draw a panel; give its lines by label."""
+    lines = {}
+    for curve in panel.curves:
+        style = {"linewidth": 1.6, **LINES[curve.line], "color": HUES[curve.hue]}
+        (lines[curve.label],) = axes.plot(curve.x, curve.y, **style)
+    axes.set(xlabel=panel.x.label, xscale=panel.x.scale, ylabel=panel.y.label, yscale=panel.y.scale)
+    axes.set_title(panel.title, fontsize=10)
+    if panel.x.whole:
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    if panel.y.limits is not None:
+        axes.set_ylim(*panel.y.limits)
+    axes.grid(color="#DDDDDD", linewidth=0.6)
+    return lines

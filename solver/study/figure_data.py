@@ -1,0 +1,125 @@
+"""What a figure of a report is: curves, the claim that it tests, and the numbers that decide."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from solver.discrete.problem import Array
+
+Line = Literal["solid", "dashed", "dotted", "points"]
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """A quantity, its unit (empty for a pure number), and whether decades are evenly spaced.
+
+    Attributes
+    ----------
+    limits
+        What is shown; all of the curves without it.
+    whole
+        Whether only whole numbers have a meaning.
+    """
+
+    quantity: str
+    unit: str = ""
+    logarithmic: bool = False
+    limits: tuple[float, float] | None = None
+    whole: bool = False
+
+    @property
+    def label(self) -> str:
+        """Quantity and unit."""
+        return f"{self.quantity} ({self.unit})" if self.unit else self.quantity
+
+    @property
+    def scale(self) -> Literal["log", "linear"]:
+        """How it is divided."""
+        return "log" if self.logarithmic else "linear"
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One line of a panel.
+
+    Attributes
+    ----------
+    label
+        Entry of the legend.
+    x, y
+        Shape (n,), in the units of the axes.
+    hue
+        Curves of one hue belong together; 0 is the neutral one, of references.
+    line
+        How it is drawn; "points" are joined by a thin line.
+    """
+
+    label: str
+    x: Array
+    y: Array
+    hue: int
+    line: Line = "solid"
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One pair of axes with its curves."""
+
+    title: str
+    x: Axis
+    y: Axis
+    curves: tuple[Curve, ...]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A measured answer to a claim, or to a part of it.
+
+    Attributes
+    ----------
+    text
+        One sentence with the numbers in it.
+    values
+        The same numbers by name.
+    holds
+        Whether they bear out the claim.
+    """
+
+    text: str
+    values: Mapping[str, float]
+    holds: bool
+
+
+@dataclass(frozen=True, eq=False)
+class PaperFigure:
+    """A figure of the paper, drawn again.
+
+    Attributes
+    ----------
+    number
+        Its number in the paper.
+    claim
+        What the paper says that it shows, in one sentence.
+    caption
+        What is drawn, and the choices that the paper leaves.
+    """
+
+    number: int
+    title: str
+    panels: tuple[Panel, ...]
+    claim: str
+    findings: tuple[Finding, ...]
+    caption: str
+
+    @property
+    def values(self) -> dict[str, float]:
+        """All numbers of the findings, by name."""
+        return {name: value for found in self.findings for name, value in found.values.items()}
+
+    @property
+    def verdict(self) -> str:
+        """Whether the claim holds: "holds", "holds in part" or "does not hold"."""
+        held = [found.holds for found in self.findings]
+        return "holds" if all(held) else "holds in part" if any(held) else "does not hold"

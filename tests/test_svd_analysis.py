@@ -1,0 +1,211 @@
+"""Singular values and modes of interface fields are what their weighted inner products say."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from solver.discrete import discretise
+from solver.latin import iterations
+from solver.reduction.svd import (
+    InterfaceField,
+    against_front,
+    constant_speed_front,
+    decompose,
+    decompositions,
+    friction_spectra,
+    front_decay,
+)
+from solver.reference.closed_form import closed_form
+from solver.scenes.bar import BarSettings, bar
+
+DEGENERATE = {
+    "one instant": {"instants": 1, "load": "ramp"},
+    "no load": {"peak": 0.0},
+    "one element per substructure": {"elements": 5, "substructures": 5},
+    "one substructure": {"substructures": 1},
+    "sizes that differ": {"elements": 52, "substructures": 5},
+    "no sliding": {"peak": 1e-3},
+    "all sliding": {"peak": 2000.0},
+}
+
+
+@st.composite
+def weighted_fields(draw):
+    shape = draw(st.tuples(st.integers(1, 8), st.integers(1, 8)))
+    field = draw(arrays.arrays(float, shape, elements=st.floats(-1e3, 1e3, width=32)))
+    weights = [
+        draw(arrays.arrays(float, length, elements=st.floats(0.01, 100.0))) for length in shape
+    ]
+    return field, *weights
+
+
+def squared_norm(field, space_weights, time_weights):
+    return space_weights @ field**2 @ time_weights
+
+
+def iterate_of(number=15, **changes):
+    chosen = BarSettings.checked({"substructures": 5, **changes})
+    problem = discretise(chosen)
+    return next(islice(iterations(problem, chosen), number - 1, None))
+
+
+@given(weighted_fields())
+@settings(deadline=None)
+def test_modes_are_orthonormal_in_their_own_inner_products(case):
+    field, space, time = case
+    found = decompose(field, space, time, np.arange(len(space)))
+    same = np.eye(len(found.values))
+    np.testing.assert_allclose((found.space_modes.T * space) @ found.space_modes, same, atol=1e-10)
+    np.testing.assert_allclose((found.time_modes * time) @ found.time_modes.T, same, atol=1e-10)
+    assert np.all(np.diff(found.values) <= 0.0)
+
+
+@given(weighted_fields())
+@settings(deadline=None)
+def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(case):
+    field, space, time = case
+    found = decompose(field, space, time, np.arange(len(space)))
+    whole = squared_norm(field, space, time)
+    for rank, error in enumerate(found.errors):
+        left = squared_norm(field - found.approximation(rank), space, time)
+        assert np.sqrt(left) == pytest.approx(error * np.sqrt(whole), abs=1e-9 * np.sqrt(whole))
+    assert np.all(np.diff(found.errors) <= 0.0)
+
+
+@given(weighted_fields(), st.floats(0.0, 1.0))
+@settings(deadline=None)
+def test_no_fewer_modes_than_counted_reach_the_error(case, share):
+    field, space, time = case
+    found = decompose(field, space, time, np.arange(len(space)))
+    count = found.modes_for(share)
+    assert found.errors[count] <= share
+    assert count == 0 or found.errors[count - 1] > share
+
+
+def test_a_point_split_in_two_of_half_the_weight_changes_no_singular_value():
+    field = np.random.default_rng(0).normal(size=(6, 9))
+    space, time = np.linspace(0.5, 2.0, 6), np.linspace(1.0, 3.0, 9)
+    once = decompose(field, space, time, np.arange(6))
+    split = decompose(
+        np.vstack([field, field[2]]),
+        np.append(np.where(np.arange(6) == 2, 0.5, 1.0) * space, 0.5 * space[2]),
+        time,
+        np.arange(7),
+    )
+    np.testing.assert_allclose(split.values, [*once.values, 0.0], rtol=1e-12, atol=1e-12)
+
+
+def test_signs_are_fixed_by_the_largest_entry_and_not_by_the_sign_of_the_field():
+    field = np.random.default_rng(1).normal(size=(7, 5))
+    space, time = np.linspace(0.5, 2.0, 7), np.ones(5)
+    one, other = (decompose(sign * field, space, time, np.arange(7)) for sign in (1.0, -1.0))
+    np.testing.assert_allclose(one.space_modes, other.space_modes, atol=1e-12)
+    largest = np.argmax(np.abs(one.space_modes), axis=0)
+    assert np.all(one.space_modes[largest, range(5)] > 0.0)
+
+
+def test_correlation_knows_a_mode_by_its_direction_alone():
+    field = np.random.default_rng(2).normal(size=(7, 5))
+    found = decompose(field, np.linspace(0.5, 2.0, 7), np.ones(5), np.arange(7))
+    turned = found.space_modes[:, [1, 0, 2]] * [3.0, 3.0, -0.1]
+    np.testing.assert_allclose(found.correlations(turned), [0.0, 0.0, -1.0], atol=1e-12)
+
+
+def test_a_zero_field_has_rank_zero_and_needs_no_mode():
+    found = decompose(np.zeros((4, 6)), np.ones(4), np.ones(6), np.arange(4))
+    assert not found.values.any()
+    assert not found.errors.any()
+    assert found.modes_for(0.0) == 0
+    assert not against_front(found.values).any()
+
+
+@pytest.mark.parametrize("field", list(InterfaceField))
+@pytest.mark.parametrize("changes", DEGENERATE.values(), ids=DEGENERATE.keys())
+def test_every_field_is_decomposed_whatever_the_bar(changes, field):
+    iterate = iterate_of(**changes)
+    found = decompositions(iterate, field)
+    parts = iterate.problem.substructures
+    ends = 0 if field in (InterfaceField.FRICTION_FORCE, InterfaceField.DISPLACEMENT) else 2
+    assert len(found) == len(parts)
+    for each, part in zip(found, parts, strict=True):
+        n_points, n_instants = len(part.rows) - 2 + ends, iterate.problem.n_instants
+        assert each.space_modes.shape == (n_points, min(n_points, n_instants))
+        assert each.time_modes.shape == (min(n_points, n_instants), n_instants)
+        assert each.positions.shape == (n_points,)
+        places = iterate.problem.positions[part.dofs]
+        assert set(each.positions) == set(places)
+        assert np.isfinite(each.errors).all()
+
+
+@pytest.mark.parametrize("changes", DEGENERATE.values(), ids=DEGENERATE.keys())
+def test_the_short_way_gives_the_singular_values_of_the_long_one(changes):
+    iterate = iterate_of(**changes)
+    for short, each in zip(
+        friction_spectra(iterate),
+        decompositions(iterate, InterfaceField.FRICTION_FORCE),
+        strict=True,
+    ):
+        np.testing.assert_allclose(short, each.values, rtol=1e-9, atol=1e-9 * each.values[0])
+
+
+def test_singular_values_of_one_substructure_add_up_to_the_norm_in_si_units():
+    iterate = iterate_of(substructures=1, length=2.0, duration=3.0)
+    (force,) = decompositions(iterate, InterfaceField.FRICTION_FORCE)
+    (displacement,) = decompositions(iterate, InterfaceField.DISPLACEMENT)
+    assert force.space_weights.sum() == pytest.approx(2.0)
+    assert force.time_weights.sum() == pytest.approx(3.0)
+    density = iterate.friction_force / force.space_weights[:, None]
+    for found, field in ((force, density), (displacement, iterate.displacement)):
+        whole = squared_norm(field, found.space_weights, found.time_weights)
+        assert np.sum(found.values**2) == pytest.approx(whole)
+
+
+def test_fields_of_the_whole_boundary_add_up_to_the_norm_of_the_indicator():
+    iterate = iterate_of()
+    problem = iterate.problem
+    total = sum(
+        float(np.sum(each.values**2))
+        for field in (InterfaceField.BOUNDARY_DISPLACEMENT, InterfaceField.BOUNDARY_FORCE)
+        for each in decompositions(iterate, field)
+    )
+    k = iterate.k
+    scaled = squared_norm(iterate.boundary_displacement, k, problem.time_weights)
+    scaled += squared_norm(iterate.boundary_force, 1.0 / k, problem.time_weights)
+    unit = problem.scales.force * problem.scales.displacement * problem.scales.time
+    assert total == pytest.approx(scaled * unit)
+
+
+def test_friction_spectra_do_not_see_the_elastic_modulus():
+    soft, hard = (friction_spectra(iterate_of(young=young)) for young in (1e3, 1e15))
+    for one, other in zip(soft, hard, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-9 * one[0])
+
+
+def test_a_front_sampled_finely_has_the_spectrum_of_an_integration():
+    found = constant_speed_front(400, 400).values[:10]
+    orders = np.arange(1, 11)
+    np.testing.assert_allclose(found, 2.0 / ((2 * orders - 1) * np.pi), rtol=1e-3)
+    np.testing.assert_allclose(found / found[0], front_decay(10), rtol=1e-3)
+
+
+def test_a_front_sampled_twice_as_finely_is_four_times_as_near():
+    misses = [
+        abs(constant_speed_front(cells, cells).values[4] - 2.0 / (9.0 * np.pi))
+        for cells in (50, 100, 200)
+    ]
+    np.testing.assert_allclose(np.diff(np.log2(misses)), -2.0, atol=0.1)
+
+
+def test_a_bar_that_a_steady_front_crosses_decays_like_that_front():
+    scene = bar(BarSettings.checked({"load": "ramp", "peak": 1500.0, "elements": 200}))
+    lengths = np.full(201, 1.0 / 200)
+    lengths[[0, -1]] *= 0.5
+    force = closed_form(scene).friction_force / lengths[:, None]
+    found = decompose(force, lengths, np.full(101, 0.01), scene.nodes)
+    np.testing.assert_allclose(against_front(found.values)[:5], 1.0, rtol=0.05)
