@@ -178,13 +178,22 @@ class Settings(param.Parameterized):
         applies=lambda settings: settings.substructures > 1,
         essential=True,
     )
+    search_direction = choice(
+        "paper",
+        ["paper", "auto"],
+        "Rule for the search direction of friction points: the paper's, from the length of a "
+        "substructure, or from the length that is expected to slide.",
+        group="Method",
+        title="Search direction",
+        essential=True,
+    )
     k_scale = quantity(
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Search direction k, times the paper's ES/l_sub. Changes the path, not the limit.",
+        "Factor on the search direction k. Changes the path, not the limit.",
         group="Method",
-        title="Search direction k (× ES/l_sub)",
+        title="Factor on k",
         logarithmic=True,
         essential=True,
     )
@@ -327,7 +336,40 @@ class Settings(param.Parameterized):
         applies=_is_sampled,
     )
     acceleration = choice(
-        "none", ["none"], "Acceleration of the iteration.", group="Method", title="Acceleration"
+        "none",
+        ["none", "anderson"],
+        "Anderson mixes the newest iterate with those before, so that their residual is least.",
+        group="Method",
+        title="Acceleration",
+        applies=lambda settings: not _is_reduced(settings),
+        essential=True,
+    )
+    anderson_memory = count(
+        15,
+        (1, 100),
+        (2, 30),
+        "Iterates that Anderson acceleration remembers.",
+        group="Method",
+        title="Anderson memory",
+        applies=lambda settings: not _is_reduced(settings) and settings.acceleration == "anderson",
+    )
+    start = choice(
+        "zero",
+        ["zero", "nested"],
+        "Where the iteration starts: from zero, or from the solution of coarser meshes, each "
+        "started so itself. Their time is billed to the run.",
+        group="Method",
+        title="Start",
+        essential=True,
+    )
+    nested_iterations = count(
+        40,
+        (1, 10_000),
+        (5, 100),
+        "Iterations on every coarser mesh.",
+        group="Method",
+        title="Iterations per coarser mesh",
+        applies=lambda settings: settings.start == "nested",
     )
     k_update = choice(
         "none",
@@ -413,6 +455,10 @@ class Settings(param.Parameterized):
     def with_change(self, name: str, value: object) -> Self:
         """Change one setting and bring along those that could not stand beside it."""
         return self.replace(**{name: value})
+
+    def coarser(self) -> Self | None:
+        """Give the same scene on the next coarser mesh, or None where that makes no sense."""
+        return None
 
     def applies(self, name: str) -> bool:
         """Tell whether a setting does anything under the present values."""

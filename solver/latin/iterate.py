@@ -29,6 +29,10 @@ class Checkpoint:
         The separated bases that hold it, if any do.
     references
         Where a reduced local stage evaluates the laws, if there is one.
+    history
+        The states before, oldest first, that an acceleration remembers.
+    memory
+        What it counts: states seen, differences, and the smallest residual.
     """
 
     number: int
@@ -36,6 +40,13 @@ class Checkpoint:
     outgoing: Array
     reduction: Reduction | None = None
     references: References | None = None
+    history: tuple[Array, ...] = ()
+    memory: tuple[int, int, float] | None = None
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes that it keeps, though others may share them."""
+        return self.outgoing.nbytes * (1 + len(self.history))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +76,8 @@ class Iterate:
     local_error
         Relative distance of what the reduced local stage rebuilt from what the laws say
         everywhere, in the norm of the search direction; 0 where they were evaluated everywhere.
+    history, memory
+        Of an acceleration, as in `Checkpoint`.
     """
 
     number: int
@@ -78,11 +91,21 @@ class Iterate:
     reduction: Reduction | None = None
     references: References | None = None
     local_error: float = 0.0
+    history: tuple[Array, ...] = ()
+    memory: tuple[int, int, float] | None = None
 
     @property
     def checkpoint(self) -> Checkpoint:
         """What is needed to go on from here."""
-        return Checkpoint(self.number, self.seconds, self.outgoing, self.reduction, self.references)
+        return Checkpoint(
+            self.number,
+            self.seconds,
+            self.outgoing,
+            self.reduction,
+            self.references,
+            self.history,
+            self.memory,
+        )
 
     @property
     def bases(self) -> tuple[Modes, ...]:

@@ -6,13 +6,19 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
+from solver.discrete import discretise
 from solver.discrete.problem import Array, Problem, space_time
+from solver.latin.acceleration import Anderson
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.local import LocalStage
+from solver.latin.nested import prolong
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import ReducedLocalStage
+from solver.reduction.basis import Reduction, References
 from solver.settings import Settings
 
 
@@ -33,67 +39,175 @@ def iterations(
     Snapshots, one per iteration; the clock stands still while the consumer has one.
     """
     clock = _Clock(start.seconds if start else 0.0)
-    k = search_direction(problem, settings)
-    k.flags.writeable = False
-    local_stage = LocalStage(problem, k)
-    linear_stage = _linear_stage(problem, k, settings)
-    sampled = _reduced_local_stage(problem, k, settings, linear_stage)
-    state = linear_stage.start(start)
-    if sampled is not None and start is not None and start.references is not None:
-        sampled.adopt(start.references, state)
-    incoming = linear_stage.incoming(state, space_time(problem.n_rows, problem.n_instants))
+    engine = _Engine(problem, settings, start)
     number = start.number if start else 0
     clock.stop()
-    read = _frozen(incoming)
+    read = _frozen(engine.incoming)
+    history = list(start.history) if start else []
+    outgoing = start.outgoing if start else _frozen(engine.outgoing)
     while True:
-        clock.go_on()
         number += 1
-        local_error = 0.0
-        if sampled is not None and sampled.is_reduced(number):
-            sampled(state)
-            clock.stop()
-            # What the laws say everywhere is for those who look, and for the error of the few.
-            local_error = linear_stage.distance_of_target(local_stage(incoming))
-            clock.go_on()
-        else:
-            linear_stage.read(local_stage(incoming))
-        linear_stage.advance(state, settings.relaxation)
-        if sampled is not None:
-            sampled.keep_up(number, state)
-            if sampled.is_reduced(number + 1):
-                # Read by the full local stage alone.
-                clock.stop()
-        linear_stage.incoming(state, incoming)
-        clock.stop()
-        given = _frozen(incoming)
+        local_error = engine.step(number, clock)
+        given = _frozen(engine.incoming)
+        history = [*history, outgoing][-engine.remembered :] if engine.remembered else []
+        outgoing = _frozen(engine.outgoing)
         yield Iterate(
             number=number,
             seconds=clock.seconds,
             problem=problem,
-            k=k,
-            outgoing=_frozen(linear_stage.to_boundary(state)),
+            k=engine.k,
+            outgoing=outgoing,
             incoming=given,
-            local_displacement=_frozen(local_stage.displacement),
+            local_displacement=_frozen(engine.local_displacement),
             local_incoming=read,
-            reduction=linear_stage.reduction(state),
-            references=sampled.references if sampled else None,
+            reduction=engine.reduction,
+            references=engine.references,
             local_error=local_error,
+            history=tuple(history),
+            memory=engine.memory,
         )
         read = given
 
 
-def _linear_stage(problem: Problem, k: Array, settings: Settings) -> LinearStage[Any]:
-    if settings.linear_stage == "pgd":
-        return ReducedLinearStage(problem, k, settings)
-    return FullLinearStage(problem, k, multiscale=settings.multiscale)
+class _Engine:
+    """Both stages at work, with what the options add to them."""
+
+    def __init__(self, problem: Problem, settings: Settings, start: Checkpoint | None) -> None:
+        self._settings = settings
+        self.k = search_direction(problem, settings)
+        self.k.flags.writeable = False
+        self._local_stage = LocalStage(problem, self.k)
+        self._sampled: ReducedLocalStage | None = None
+        self._anderson: Anderson | None = None
+        self._linear_stage: LinearStage[Any]
+        if settings.linear_stage == "pgd":
+            reduced = ReducedLinearStage(problem, self.k, settings)
+            if settings.local_stage == "reduced":
+                self._sampled = ReducedLocalStage(problem, self.k, settings, reduced)
+            self._linear_stage = reduced
+        else:
+            full = FullLinearStage(problem, self.k, multiscale=settings.multiscale)
+            if settings.acceleration == "anderson":
+                self._anderson = _anderson(problem, full, settings)
+            self._linear_stage = full
+        if start is None and settings.start == "nested":
+            start = nested_start(problem, settings, self.k)
+        stage: LinearStage[Any] = self._linear_stage
+        self._state = stage.start(start)
+        self.incoming = space_time(problem.n_rows, problem.n_instants)
+        if start is not None:
+            self._recall(start)
+        stage.incoming(self._state, self.incoming)
+
+    def step(self, number: int, clock: _Clock) -> float:
+        """Do one iteration; give the error of a reduced local stage, or 0."""
+        clock.go_on()
+        local_error = 0.0
+        if self._sampled is not None and self._sampled.is_reduced(number):
+            self._sampled(self._state)
+            clock.stop()
+            # What the laws say everywhere is for those who look, and for the error of the few.
+            everywhere = self._local_stage(self.incoming)
+            local_error = self._linear_stage.distance_of_target(everywhere)
+            clock.go_on()
+        else:
+            self._linear_stage.read(self._local_stage(self.incoming))
+        self._advance()
+        if self._sampled is not None:
+            self._sampled.keep_up(number, self._state)
+            if self._sampled.is_reduced(number + 1):
+                # Read by the full local stage alone.
+                clock.stop()
+        self._linear_stage.incoming(self._state, self.incoming)
+        clock.stop()
+        return local_error
+
+    @property
+    def outgoing(self) -> Array:
+        """W + F/k, shape (n_rows, n_instants)."""
+        return self._linear_stage.to_boundary(self._state)
+
+    @property
+    def local_displacement(self) -> Array:
+        """W^ of the local stage; the next step overwrites it."""
+        return self._local_stage.displacement
+
+    @property
+    def reduction(self) -> Reduction | None:
+        """The separated bases, if any."""
+        return self._linear_stage.reduction(self._state)
+
+    @property
+    def references(self) -> References | None:
+        """Reference points and instants, if any."""
+        return self._sampled.references if self._sampled else None
+
+    @property
+    def remembered(self) -> int:
+        """States before the present one that shape the next."""
+        return self._anderson.remembered if self._anderson else 0
+
+    @property
+    def memory(self) -> tuple[int, int, float] | None:
+        """What the acceleration counts."""
+        found = self._anderson
+        return (found.seen, found.count, found.smallest) if found else None
+
+    def _advance(self) -> None:
+        if self._anderson is None:
+            self._linear_stage.advance(self._state, self._settings.relaxation)
+            return
+        before = [part.copy(order="F") for part in self._state]
+        self._linear_stage.advance(self._state, self._settings.relaxation)
+        self._anderson(before, self._state)
+
+    def _recall(self, start: Checkpoint) -> None:
+        """Bring back what the options remember, from a checkpoint of the same run."""
+        if self._sampled is not None and start.references is not None:
+            self._sampled.adopt(start.references, self._state)
+        if self._anderson is None or start.memory is None:
+            return
+        seen, count, smallest = start.memory
+        self._anderson.count = max(count - len(start.history) + 1, 0)
+        for outgoing in start.history:
+            state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
+            before = [part.copy(order="F") for part in state]
+            self._linear_stage.incoming(state, self.incoming)
+            self._linear_stage.read(self._local_stage(self.incoming))
+            self._linear_stage.advance(state, self._settings.relaxation)
+            self._anderson.observe(before, state)
+        self._anderson.seen, self._anderson.count = seen, count
+        self._anderson.smallest = smallest
 
 
-def _reduced_local_stage(
-    problem: Problem, k: Array, settings: Settings, linear_stage: LinearStage[Any]
-) -> ReducedLocalStage | None:
-    if settings.local_stage == "full" or not isinstance(linear_stage, ReducedLinearStage):
+def nested_start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
+    """Iterate on the next coarser mesh, itself started so, and carry the result over.
+
+    Returns
+    -------
+    None if the mesh is not to be coarsened.
+    """
+    coarser = settings.coarser()
+    if coarser is None:
         return None
-    return ReducedLocalStage(problem, k, settings, linear_stage)
+    coarser = coarser.replace(linear_stage="full")
+    coarse = discretise(coarser)
+    engine = _Engine(coarse, coarser, None)
+    clock = _Clock(0.0)
+    for number in range(1, settings.nested_iterations + 1):
+        engine.step(number, clock)
+    outgoing, incoming = engine.outgoing, engine.incoming
+    displacement = 0.5 * (outgoing + incoming)
+    force = 0.5 * engine.k[:, None] * (outgoing - incoming)
+    return Checkpoint(0, 0.0, prolong(coarse, displacement, force, problem, k))
+
+
+def _anderson(problem: Problem, stage: FullLinearStage, settings: Settings) -> Anderson:
+    weights = [
+        group.k[:, None, None] * np.ones((1, group.rows.shape[1], 1)) * problem.time_weights
+        for group in stage.groups
+    ]
+    return Anderson(weights, [part.shape for part in weights], settings.anderson_memory)
 
 
 class _Clock:

@@ -16,6 +16,8 @@ PROFILES = {
     "gap": ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
 }
 LARGEST_FIELD = 25_000_000
+COARSEST = 6
+"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 
 
 class BarSettings(Settings):
@@ -189,6 +191,13 @@ class BarSettings(Settings):
         if name == "elements" and isinstance(value, int) and value < self.substructures:
             return self.replace(elements=value, substructures=max(value, 1))
         return self.replace(**{name: value})
+
+    def coarser(self) -> BarSettings | None:
+        """Give the same bar with half the elements, and no more substructures than these."""
+        elements = self.elements // 2
+        if elements < COARSEST:
+            return None
+        return self.replace(elements=elements, substructures=min(self.substructures, elements))
 
     def check_together(self) -> None:
         """Refuse more substructures than elements, negative factors, and fields beyond memory."""

@@ -1,0 +1,165 @@
+"""Automatic k, Anderson acceleration and nested meshes: a shorter path to the same limit."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from solver.discrete import discretise
+from solver.latin import Ending, iterations, solve
+from solver.latin.acceleration import GROWTH, Anderson
+from solver.latin.direction import search_direction, sliding_share
+from solver.latin.nested import prolong
+from solver.loads import PRESETS
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.scenes.bar import BarSettings
+
+FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
+
+
+def options(**changes: object) -> BarSettings:
+    return BarSettings.checked({**FAST, **changes})
+
+
+def run(settings: BarSettings):
+    problem = discretise(settings)
+    return solve(problem, settings, distance=distance_to(incremental(problem), problem))
+
+
+def within(solution, level: float) -> int:
+    return next(entry.iteration for entry in solution.records if entry.error_force <= level)
+
+
+@pytest.mark.parametrize("load", [name for name in PRESETS if name != "random"])
+def test_all_together_reach_one_percent_of_friction_force_early(load):
+    assert within(run(options(load=load, max_iterations=60)), 0.01) <= 30
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_and_so_on_random_paths(seed):
+    assert within(run(options(load="random", seed=seed, max_iterations=60)), 0.01) <= 35
+
+
+@pytest.mark.parametrize("change", [{}, {"load": "random"}, {"load": "decaying"}], ids=str)
+def test_the_limit_is_the_same(change):
+    solution = run(options(tolerance=1e-24, max_iterations=3000, **change))
+    assert solution.status.ending is Ending.CONVERGED
+    assert solution.records[-1].error_force < 1e-8
+    assert solution.records[-1].error_displacement < 1e-8
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"elements": 1, "substructures": 1},
+        {"elements": 13, "substructures": 13},
+        {"instants": 1},
+        {"peak": 0.0},
+        {"friction": 0.0},
+        {"friction": 1e6},
+        {"peak": 5000.0},
+        {"multiscale": False},
+        {"relaxation": 1.0},
+        {"elements": 53, "body_force": 700.0, "peak": 300.0},
+        {"support_displacement": 1e-4},
+        {"pressure_profile": "gap"},
+        {"anderson_memory": 1},
+        {"linear_stage": "pgd"},
+    ],
+    ids=str,
+)
+def test_on_every_kind_of_input_it_ends_well(change):
+    solution = run(options(max_iterations=300, tolerance=1e-14, **change))
+    assert solution.status.ending is not Ending.DIVERGED
+    assert np.isfinite(solution.iterate.friction_force).all()
+    if change.get("linear_stage") != "pgd":
+        assert solution.records[-1].error_displacement < 1e-3
+
+
+def test_a_run_goes_on_from_a_checkpoint_to_the_bit():
+    chosen = options(anderson_memory=4)
+    problem = discretise(chosen)
+    straight = list(islice(iterations(problem, chosen), 30))
+    for place in (1, 3, 12, 20):
+        again = next(
+            islice(iterations(problem, chosen, straight[place].checkpoint), 28 - place, None)
+        )
+        assert again.number == straight[29].number
+        assert np.array_equal(again.outgoing, straight[29].outgoing)
+
+
+def test_the_automatic_direction_does_not_know_mesh_or_substructures():
+    found = set()
+    for elements, substructures in ((50, 10), (200, 1), (50, 50)):
+        chosen = options(elements=elements, substructures=substructures)
+        problem = discretise(chosen)
+        k = search_direction(problem, chosen)
+        found |= set(k[problem.friction.rows].round(9))
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "share"),
+    [
+        ({}, 0.6),
+        ({"peak": 300.0}, 0.2),
+        ({"peak": -300.0}, 0.2),
+        ({"peak": 4000.0}, 1.0),
+        ({"peak": 0.0}, 2.0 / 51.0),
+        ({"friction": 0.0}, 1.0),
+        ({"support_displacement": 1e-3}, 1.0),
+        ({"load": "ramp", "peak": 300.0, "body_force": 300.0}, 0.4),
+    ],
+    ids=str,
+)
+def test_the_sliding_share_is_load_over_capacity(change, share):
+    assert sliding_share(discretise(options(**change))) == pytest.approx(share)
+
+
+def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimensions():
+    generator = np.random.default_rng(5)
+    matrix, shift = 0.9 * np.linalg.qr(generator.normal(size=(6, 6)))[0], generator.normal(size=6)
+    state = [np.zeros((6, 1, 1), order="F")]
+    mix = Anderson([np.ones((6, 1, 1))], [(6, 1, 1)], memory=10)
+    for _ in range(9):
+        before = [part.copy() for part in state]
+        state[0][:, 0, 0] = matrix @ state[0][:, 0, 0] + shift
+        mix(before, state)
+    exact = np.linalg.solve(np.eye(6) - matrix, shift)
+    assert np.allclose(state[0][:, 0, 0], exact, atol=1e-5)
+
+
+def test_the_memory_is_given_up_when_the_residual_grows():
+    mix = Anderson([np.ones((2, 1, 1))], [(2, 1, 1)], memory=5)
+    for size in (1.0, 0.5, 0.4, GROWTH):
+        before = [np.zeros((2, 1, 1))]
+        mix(before, [np.full((2, 1, 1), size)])
+    assert mix.seen == 1
+    assert mix.count == 0
+
+
+def test_what_is_linear_is_carried_over_exactly():
+    """A bar that does not slide at one end and slides evenly at the other, on two meshes."""
+    coarse, fine = (
+        discretise(options(elements=number, substructures=5, peak=4000.0, instants=3))
+        for number in (20, 40)
+    )
+    chosen = options(substructures=5)
+    k = search_direction(fine, chosen)
+    stretch = np.linspace(0.0, 1.0, 3)
+    displacement = (coarse.positions[coarse.row_dofs])[:, None] * stretch
+    force = np.zeros_like(displacement)
+    found = prolong(coarse, displacement, force, fine, k)
+    for part in fine.substructures:
+        own = fine.positions[part.dofs][:, None] * stretch
+        needed = part.elasticity.stiffness @ own
+        trace = part.elasticity.trace
+        rubs = np.isin(part.rows, fine.friction.rows)
+        assert np.allclose(found[part.rows[rubs]], own[trace[rubs]])
+        ends = part.rows[~rubs]
+        assert np.allclose(
+            (found[ends] - own[trace[~rubs]]) * k[ends, None], needed[trace[~rubs]], atol=1e-12
+        )
