@@ -4,33 +4,45 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 from panel.util import edit_readonly
 
-from app.address import query_of
-from app.controls import Control, make_control
 from app.pulse import Pulse, send_without_delay
 from app.session import Session
+from app.sidebar import Sidebar
 from app.transport import Transport
+from app.views.basis_size import BasisSize
 from app.views.convergence import Convergence
 from app.views.drawing import Picture, View
 from app.views.error_time import ErrorTime
 from app.views.friction import FrictionForce
 from app.views.loop import Loop
+from app.views.modes import SpaceModes, TimeFunctions
+from app.views.paper_figures import PaperFigures
 from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
 from app.words import card_title, key_figures, status_line
-from solver.files import settings_from_toml
-from solver.loads import load_path
-from solver.scenes.bar import PROFILES
-from solver.settings import Curve, SettingError, Settings, about, dump, read_table
 
+LIVE, PAPER = "Live", "Figures"
+TABS = {
+    "& button": {
+        "color": "#fff",
+        "borderColor": "rgba(255, 255, 255, 0.6)",
+        "textTransform": "none",
+        "whiteSpace": "nowrap",
+        "padding": "3px 14px",
+        "fontSize": "15px",
+    },
+    "& button.Mui-selected, & button.Mui-selected:hover": {
+        "color": "#0b3d66",
+        "backgroundColor": "#fff",
+    },
+}
+"""White on the blue of the header, in both themes."""
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 IN_FLIGHT = 1
@@ -73,25 +85,35 @@ class Dashboard:
             Convergence(),
             Spectra(),
             ErrorTime(),
+            SpaceModes(),
+            TimeFunctions(),
+            BasisSize(self.transport.choose_substructure),
         ]
         self._titles: dict[str, Any] = {}
         self._cards = {view.name: self._card(view) for view in self._views}
-        self._chosen = pmui.CheckBoxGroup(
-            options=[view.name for view in self._views],
-            value=[view.name for view in self._views],
-        )
-        self._chosen.param.watch(lambda event: self._arrange(), "value")
-        self._side = pmui.Column(sizing_mode="stretch_width", margin=0)
-        self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
-        self._controls = self._make_controls(essential=True)
+        self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
         self._status = self._html("status")
         self._figures = self._html("figures")
         self._plots = pn.Column(
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
+        self._paper = PaperFigures(self._style)
+        self._live = pn.Column(
+            self.transport.view,
+            self._status,
+            self._figures,
+            self._plots,
+            self._pulse,
+            sizing_mode="stretch_width",
+            margin=(4, 10),
+        )
+        self._tabs = pmui.RadioButtonGroup(
+            options=[LIVE, PAPER], value=LIVE, size="small", margin=(0, 12), sx=TABS
+        )
+        self._tabs.param.watch(self._on_tab, "value")
         self.page = self._make_page()
+        self._sidebar.show(session.wanted)
         self._arrange()
-        self._show_controls()
 
     def prepare(self) -> None:
         """Put the first iterate into the page before it is sent, if a worker is quick enough.
@@ -113,7 +135,7 @@ class Dashboard:
         self._loaded = True
         send_without_delay()
         # The first row comes first: two thirds of what the page is made of are not in it.
-        self._side[:] = self._sidebar()
+        self._sidebar.fill()
         self._arrange()
         self._on_narrow()
 
@@ -139,20 +161,10 @@ class Dashboard:
             title="Slipfront",
             favicon=STATIC / "logo.svg",
             logo=STATIC / "logo.svg",
-            sidebar=[self._side],
+            sidebar=[self._sidebar.view],
             sidebar_width=310,
-            header=[],
-            main=[
-                pn.Column(
-                    self.transport.view,
-                    self._status,
-                    self._figures,
-                    self._plots,
-                    self._pulse,
-                    sizing_mode="stretch_width",
-                    margin=(4, 10),
-                )
-            ],
+            header=[self._tabs],
+            main=[pn.Column(self._live, self._paper.view, sizing_mode="stretch_width")],
             busy_indicator=None,
             meta_description="A laboratory for frictional contact: LATIN iterations, live.",
         )
@@ -161,77 +173,6 @@ class Dashboard:
         with edit_readonly(page):
             page.busy = False
         return page
-
-    def _sidebar(self) -> list[Any]:
-        """Put the essential controls under their headings, the others behind "more"."""
-        groups: dict[str, list[Any]] = {}
-        for control in self._controls.values():
-            groups.setdefault(about(control.definition).group, []).append(control.view)
-        order = ("Load", "Contact", "Bar", "Decomposition", "Method", "Stop")
-        items: list[Any] = []
-        for group in order:
-            if group in groups:
-                items += [self._heading(group), *groups[group]]
-        more = pmui.Accordion(("More settings", self._more), sizing_mode="stretch_width")
-        more.param.watch(self._open_more, "active")
-        items.append(more)
-        return [
-            *items,
-            self._heading("Views"),
-            self._chosen,
-            self._heading("Share"),
-            *self._share(),
-        ]
-
-    def _share(self) -> list[Any]:
-        link = pmui.Button(
-            label="Link",
-            icon="link",
-            variant="outlined",
-            size="small",
-            description="Put the settings into the address bar, and copy it.",
-        )
-        link.on_click(lambda event: self._copy_link())
-        save = pmui.FileDownload(
-            label="Save",
-            callback=self._saved,
-            filename="slipfront.toml",
-            size="small",
-            variant="outlined",
-            description="Save the settings; the command line reads them too.",
-        )
-        default = pmui.Button(
-            label="Defaults",
-            icon="undo",
-            variant="outlined",
-            size="small",
-            description="Bring all settings back to their defaults.",
-        )
-        default.on_click(lambda event: self._adopt(type(self.session.settings).checked({})))
-        upload = pmui.FileInput(
-            label="Open settings (.toml) or load (.csv)",
-            accept=".toml,.csv",
-            size="small",
-            sizing_mode="stretch_width",
-        )
-        upload.param.watch(self._on_upload, "value")
-        return [pmui.Row(link, save, default), upload]
-
-    def _make_controls(self, *, essential: bool) -> dict[str, Control]:
-        made = {
-            name: make_control(name, definition, self._on_setting, self._points_of)
-            for name, definition in self.session.settings.definitions().items()
-            if about(definition).essential is essential
-        }
-        return {name: control for name, control in made.items() if control is not None}
-
-    def _open_more(self, event: Any) -> None:
-        """Make the controls behind "more" when they are first looked at: few ever are."""
-        if event.new and not self._more.objects:
-            more = self._make_controls(essential=False)
-            self._controls.update(more)
-            self._show_controls()
-            self._more[:] = [control.view for control in more.values()]
 
     def _card(self, view: View) -> Any:
         title = pn.pane.HTML(
@@ -252,9 +193,6 @@ class Dashboard:
             margin=0,
         )
 
-    def _heading(self, text: str) -> Any:
-        return pmui.Typography(text, variant="overline", margin=(6, 10, -6, 10))
-
     def _html(self, role: str) -> Any:
         return pn.pane.HTML(
             "",
@@ -264,67 +202,17 @@ class Dashboard:
             margin=(2, 10),
         )
 
-    def _points_of(self, name: str) -> list[tuple[float, float]]:
-        """Give points that stand for the preset of a curve setting."""
-        values = self.session.settings.values()
-        if name in ("friction_profile", "pressure_profile"):
-            return [(x * values["length"], factor) for x, factor in PROFILES[values[name]]]
-        instants = np.linspace(0.0, values["duration"], 9)
-        forces = load_path(
-            values[name], instants, values["duration"], values["peak"], values["seed"]
-        )
-        return [(float(t), float(round(f, 6))) for t, f in zip(instants, forces, strict=True)]
-
-    def _on_setting(self, name: str, value: Any) -> None:
-        try:
-            self.session.change(name, value)
-        except SettingError as refusal:
-            self.complain(str(refusal))
-        self._show_controls()
-        self._mark()
-
-    def _adopt(self, settings: Settings) -> None:
-        self.session.adopt(settings)
-        self._show_controls()
-        self._mark()
-
-    def _on_upload(self, event: Any) -> None:
-        if event.new is None:
-            return
-        try:
-            text = event.new.decode("utf-8-sig")
-            if event.obj.filename.endswith(".toml"):
-                self._adopt(settings_from_toml(text))
-            else:
-                definition = self.session.settings.definitions()["load"]
-                assert isinstance(definition, Curve)
-                rows = read_table(text, definition, "load", event.obj.filename)
-                self._on_setting("load", rows)
-        except SettingError as refusal:
-            self.complain(str(refusal))
-        except UnicodeDecodeError:
-            self.complain("The file is not text: give a settings file (.toml) or a table (.csv).")
-
-    def _saved(self) -> StringIO:
-        return StringIO(dump(self.session.settings))
-
-    def _copy_link(self) -> None:
-        self._pulse.copy = f"{query_of(self.session.settings)}#{time.monotonic()}"
-
-    def _show_controls(self) -> None:
-        settings = self.session.wanted
-        for control in self._controls.values():
-            control.show(settings)
-        self._arrange()
+    def _copy(self, query: str) -> None:
+        """Put a query into the address bar and the clipboard, even the same one again."""
+        self._pulse.copy = f"{query}#{time.monotonic()}"
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply; frames carry what they need."""
         settings = self.session.wanted
-        shown = [
-            view
-            for view in self._views
-            if view.name in self._chosen.value and view.applies(settings)
-        ]
+        fitting = [view for view in self._views if view.applies(settings)]
+        wanted = self._sidebar.offer([view.name for view in fitting])
+        shown = [view for view in fitting if view.name in wanted]
+        self.transport.arrange(settings)
         cards = [self._cards[view.name] for view in shown[: None if self._loaded else FIRST_ROW]]
         if list(self._plots) != cards:
             self._plots[:] = cards
@@ -341,7 +229,8 @@ class Dashboard:
             self._dirty = True
         now = time.monotonic()
         in_flight = self._pulse.frame - self._pulse.painted
-        waiting = self._loaded and (self._dirty or bool(self._owed))
+        looked_at = self._loaded and bool(self._live.visible)
+        waiting = looked_at and (self._dirty or bool(self._owed))
         # The first picture of a run overtakes what is still on its way.
         first = self.session.shown is not None and self.session.run.ticket != self._drawn_ticket
         free = in_flight < IN_FLIGHT and now >= self._rest_until
@@ -394,6 +283,14 @@ class Dashboard:
         now = time.monotonic()
         if event.new == self._pulse.frame:
             self._rest_until = now + REST * (now - self._sent_at)
+
+    def _on_tab(self, event: Any) -> None:
+        """Show the live run, which goes on in any case, or the paper's figures."""
+        self._live.visible = event.new == LIVE
+        self._paper.view.visible = event.new == PAPER
+        if event.new == PAPER:
+            self._paper.open()
+        self._mark()
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,7 +24,20 @@ HISTORY = (
 
 @dataclass
 class Recording:
-    """One run, filled by the reports of its worker."""
+    """One run, filled by the reports of its worker.
+
+    Attributes
+    ----------
+    records
+        Of all iterations done.
+    sizes
+        Modes of the substructures `thinned(number, MOST_SIZES)`, one array per record, shape
+        (n_shown,); empty with the full linear stage.
+    beside
+        Records of the full linear stage beside a run on separated bases.
+    newest, sought
+        The newest frame, and the one last sought.
+    """
 
     ticket: int
     settings: Settings
@@ -31,6 +45,8 @@ class Recording:
     begun: Begun | None = None
     reference: Reference | None = None
     records: list[Record] = field(default_factory=list)
+    sizes: list[NDArray[np.int16]] = field(default_factory=list)
+    beside: list[Record] = field(default_factory=list)
     newest: Frame | None = None
     sought: Frame | None = None
     status: Status | None = None
@@ -45,6 +61,9 @@ class Recording:
                 self.reference = report
             case Progress():
                 self.records.extend(report.records)
+                self.beside.extend(report.beside)
+                if report.sizes is not None:
+                    self.sizes.extend(report.sizes)
             case Frame(sought=True):
                 self.sought = report
             case Frame():
@@ -54,7 +73,8 @@ class Recording:
             case Refused():
                 self.notice = report.reason
             case Died():
-                self.records.clear()
+                for kept in (self.records, self.sizes, self.beside):
+                    kept.clear()
                 self.newest = self.sought = self.status = None
                 self.notice = report.reason
             case _:
@@ -72,8 +92,7 @@ class Recording:
 
     def history(self, since: int = 0) -> dict[str, NDArray[np.float64]]:
         """Give the columns of the records from a place on, for plots."""
-        chosen = self.records[since:]
-        return {name: np.array([getattr(entry, name) for entry in chosen]) for name in HISTORY}
+        return columns(self.records[since:])
 
     def first_within(self, level: float) -> Record | None:
         """Find the first record whose friction force error is at most `level`."""
@@ -83,3 +102,8 @@ class Recording:
         """Find the record of a frame's iteration."""
         place = frame.iteration - 1
         return self.records[place] if 0 <= place < len(self.records) else None
+
+
+def columns(records: Sequence[Record]) -> dict[str, NDArray[np.float64]]:
+    """Give records as columns, for plots."""
+    return {name: np.array([getattr(entry, name) for entry in records]) for name in HISTORY}

@@ -33,6 +33,8 @@ class Session:
         Finished runs, oldest first, for error against run time.
     instant
         Index of the chosen instant among those that frames carry.
+    substructure
+        The one whose modes are looked at, from 0 at the clamp; None is the last one.
     running, pace
         Whether iterations go on by themselves, and how many a second (None: all it can).
     follows
@@ -48,6 +50,7 @@ class Session:
         self.past: deque[Recording] = deque(maxlen=PAST_RUNS)
         self.instant = 0
         self.phase = 0.75
+        self.substructure: int | None = None
         self.running = True
         self.pace: float | None = DEFAULT_PACE
         self.watch: frozenset[str] = frozenset()
@@ -82,6 +85,7 @@ class Session:
                 pace=self.pace,
                 pause_after=None if self.running and not waits else 1,
                 watch=self.watch,
+                substructure=self.substructure,
             )
         )
 
@@ -160,7 +164,15 @@ class Session:
         """Set what frames carry beyond the fields."""
         if watch != self.watch:
             self.watch = watch
-            self._seat.send(Watch(self.run.ticket, watch))
+            self._look_again()
+
+    def choose_substructure(self, number: int) -> None:
+        """Choose the substructure whose modes are looked at, from 0 at the clamp."""
+        last = int(self.settings.values()["substructures"]) - 1
+        chosen = None if number >= last else max(number, 0)
+        if chosen != self.substructure:
+            self.substructure = chosen
+            self._look_again()
 
     def close(self) -> None:
         """Leave: the run stops and its process is free."""
@@ -182,6 +194,12 @@ class Session:
         if self.follows or self.run.sought is None:
             return self.run.newest
         return self.run.sought
+
+    def _look_again(self) -> None:
+        """Have frames carry what is watched, and the one that is looked at sent again."""
+        self._seat.send(Watch(self.run.ticket, self.watch, self.substructure))
+        if not self.follows and self.run.sought is not None:
+            self._seat.send(Seek(self.run.ticket, self.run.sought.iteration))
 
     def _retire(self) -> None:
         if self.run.is_worth_keeping:

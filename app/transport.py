@@ -9,6 +9,7 @@ import panel_material_ui as pmui
 
 from app.scrubber import Scrubber
 from app.session import DEFAULT_PACE, Session
+from solver.settings import Settings
 
 PACES = {
     "1 iteration/s": 1.0,
@@ -61,16 +62,21 @@ class Transport:
             size="small",
             description="Iterations per second that are shown; the method itself is not slowed.",
         )
-        slim = {"sizing_mode": "stretch_width", "margin": (0, 14)}
-        self._iteration = Scrubber(
+        self._iteration = _slider(
+            155,
             label="Iteration",
             help="Go back to any iteration done; at the right end it follows the run.",
-            **slim,
         )
-        self._instant = Scrubber(
+        self._instant = _slider(
+            125,
             label="Instant",
             help="The instant at which forces are drawn; a tap on the map chooses it too.",
-            **slim,
+        )
+        self._substructure = _slider(
+            118,
+            label="Substructure",
+            help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
+            start=1,
         )
         self._run.on_click(lambda event: self.toggle())
         self._step.on_click(lambda event: self.step())
@@ -78,19 +84,21 @@ class Transport:
         self._pace.param.watch(lambda event: session.set_pace(PACES[event.new]), "value")
         self._iteration.param.watch(self._on_iteration, "wanted")
         self._instant.param.watch(self._on_instant, "wanted")
+        self._substructure.param.watch(self._on_substructure, "wanted")
+        self._sliders = pn.FlexBox(
+            self._iteration,
+            self._instant,
+            flex_wrap="wrap",
+            min_width=320,
+            sizing_mode="stretch_width",
+            styles={"flex": "1 1 320px"},
+        )
         self.view = pn.FlexBox(
             self._run,
             self._step,
             self._reset,
             self._pace,
-            pmui.Row(
-                self._iteration,
-                self._instant,
-                margin=0,
-                min_width=320,
-                sizing_mode="stretch_width",
-                styles={"flex": "1 1 320px"},
-            ),
+            self._sliders,
             align_items="center",
             flex_wrap="wrap",
             sizing_mode="stretch_width",
@@ -121,6 +129,20 @@ class Transport:
             self._session.look_at(int(abs(begun.instants - time).argmin()))
             self._refresh()
 
+    def choose_substructure(self, number: int) -> None:
+        """Look at the modes of another substructure, from 0 at the clamp."""
+        self._session.choose_substructure(number)
+        self._refresh()
+
+    def arrange(self, settings: Settings) -> None:
+        """Show the sliders that apply."""
+        sliders = [self._iteration, self._instant]
+        if settings.values()["linear_stage"] == "pgd" and settings.values()["substructures"] > 1:
+            sliders.append(self._substructure)
+        if list(self._sliders) != sliders:
+            self._show_substructure(settings)
+            self._sliders[:] = sliders
+
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
         session = self._session
@@ -139,6 +161,14 @@ class Transport:
                 text=f"t = {float(begun.instants[session.instant]):.3g} s",
             )
 
+        if self._substructure in self._sliders:
+            self._show_substructure(session.run.settings)
+
+    def _show_substructure(self, settings: Settings) -> None:
+        last, chosen = int(settings.values()["substructures"]), self._session.substructure
+        at = last if chosen is None else min(chosen + 1, last)
+        self._substructure.param.update(end=max(last, 2), shown=at, text=str(at))
+
     def _on_iteration(self, event: Any) -> None:
         self._session.seek(event.new)
         self._refresh()
@@ -146,3 +176,17 @@ class Transport:
     def _on_instant(self, event: Any) -> None:
         self._session.look_at(event.new)
         self._refresh()
+
+    def _on_substructure(self, event: Any) -> None:
+        self.choose_substructure(event.new - 1)
+
+
+def _slider(width: int, **options: Any) -> Scrubber:
+    """Make a slider whose label needs this width, px."""
+    return Scrubber(
+        margin=(0, 8),
+        min_width=width,
+        sizing_mode="stretch_width",
+        styles={"flex": f"1 1 {width}px"},
+        **options,
+    )

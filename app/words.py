@@ -38,6 +38,10 @@ def status_line(run: Recording, running: bool, sought: int | None) -> str:
     else:
         state = f"<b>running</b>, iteration {run.iteration}"
     line = f"{state} · {scale}"
+    if run.newest is not None and run.newest.bases is not None:
+        bases = run.newest.bases
+        counted = "1 mode" if bases.largest == 1 else f"{bases.largest} modes"
+        line += f" · {counted} at most, {bases.stored} stored"
     if run.records:
         last = run.records[-1]
         line += f" · η = {number(last.indicator)}"

@@ -44,7 +44,7 @@ def test_the_first_picture_is_in_the_page_and_the_controls_are_not_yet(
     assert dashboard.session.run.newest is not None
     assert "iteration" in dashboard._status.object
     assert len(dashboard._plots) == 3
-    assert not dashboard._side.objects
+    assert not dashboard._sidebar.view.objects
     dashboard.loaded()
     assert len(dashboard._plots) == 6
-    assert dashboard._side.objects
+    assert dashboard._sidebar.view.objects

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from bokeh.models import Range1d, Span
 
+from app.recording import columns
 from app.views.drawing import (
     BLUE,
     GREEN,
@@ -20,6 +21,7 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
+from solver.latin import Record
 from solver.settings import Settings
 
 CURVES = (
@@ -31,14 +33,20 @@ CURVES = (
 FLOOR = 1e-18
 
 
+KEYS = tuple(
+    Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
+)
+
+
 class Convergence:
-    """What the method knows of itself (dashed), and how far it really is (solid)."""
+    """What the method knows of itself (dashed), and how far it really is (solid).
+
+    The ghost is the run before, or with separated bases, the full linear stage beside them.
+    """
 
     name = "Convergence"
     watches = ""
-    keys = tuple(
-        Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
-    )
+    keys = KEYS
 
     def __init__(self) -> None:
         self.figure = make_figure(
@@ -48,11 +56,12 @@ class Convergence:
             y_range=Range1d(1e-4, 10),
             y_axis_type="log",
         )
-        columns = [name for name, *_ in CURVES]
-        self._now = empty("iteration", *columns)
-        self._ghost = empty("iteration", *columns)
+        names = [name for name, *_ in CURVES]
+        self._now = empty("iteration", *names)
+        self._ghost = empty("iteration", *names)
         self._ticket = -1
         self._count = 0
+        self._count_beside = 0
         self._lowest = 1.0
         made = self.figure
         for name, color, _, dash in CURVES:
@@ -85,12 +94,17 @@ class Convergence:
         run = picture.run
         if run.ticket != self._ticket or len(run.records) < self._count:
             self._begin(picture)
-        elif len(run.records) > self._count:
-            new = run.history(self._count)
-            self._now.stream({name: new[name] for name in self._now.data})
-            self._fit(new)
-        self._count = len(run.records)
-        widest = max(run.iteration, picture.before.iteration if picture.before else 0, 20)
+        else:
+            if len(run.records) > self._count:
+                new = run.history(self._count)
+                self._now.stream({name: new[name] for name in self._now.data})
+                self._fit(new)
+            if len(run.beside) > self._count_beside:
+                new = columns(run.beside[self._count_beside :])
+                self._ghost.stream({name: new[name] for name in self._ghost.data})
+        self._count, self._count_beside = len(run.records), len(run.beside)
+        before = picture.before.iteration if picture.before and not _is_reduced(picture) else 0
+        widest = max(run.iteration, before, 20)
         set_range(self.figure.x_range, 0, round_up(widest))
         at = picture.frame.iteration if picture.frame else 0
         if self._shown.location != at:
@@ -102,9 +116,13 @@ class Convergence:
         now = picture.run.history()
         self._now.data = {name: now[name] for name in self._now.data}
         self._fit(now)
-        if picture.before is not None:
-            past = picture.before.history()
-            self._ghost.data = {name: past[name] for name in self._ghost.data}
+        past: list[Record] = picture.before.records if picture.before else []
+        self.keys = KEYS
+        if _is_reduced(picture):
+            past = picture.run.beside
+            self.keys = (*KEYS, Key(BLUE, "pale", "full stage"))
+        ghost = columns(past)
+        self._ghost.data = {name: ghost[name] for name in self._ghost.data}
 
     def _fit(self, new: dict[str, np.ndarray]) -> None:
         values = [value for name, *_ in CURVES for value in new[name]]
@@ -112,3 +130,7 @@ class Convergence:
         self._lowest = min(self._lowest, lowest)
         set_range(self.figure.y_range, self._lowest, 10.0)
         mark_decades(self.figure.yaxis[0], self.figure.y_range)
+
+
+def _is_reduced(picture: Picture) -> bool:
+    return bool(picture.run.settings.values()["linear_stage"] == "pgd")

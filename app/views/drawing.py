@@ -27,7 +27,7 @@ class Key:
     Attributes
     ----------
     mark
-        "line", "dashed", "dotted", "band", "square" or "dot".
+        "line", "dashed", "dotted", "pale", "band", "square", "ring", "cross", or "bare" for none.
     """
 
     color: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from bokeh.models import Range1d, Span
 
-from app.recording import Recording
+from app.recording import Recording, columns
 from app.views.drawing import (
     BLUE,
     GREEN,
@@ -22,6 +22,7 @@ from app.views.drawing import (
     mark_decades,
     set_range,
 )
+from solver.latin import Record
 from solver.settings import Settings
 
 PAST_COLORS = (GREEN, VERMILION, PURPLE, SKY, ORANGE, GREY)
@@ -29,7 +30,10 @@ FLOOR = 1e-14
 
 
 class ErrorTime:
-    """Error over the method's own time, set-up included: what settings are compared by."""
+    """Error over the method's own time, set-up included: what settings are compared by.
+
+    A run on separated bases has the full linear stage beside it, on a clock of its own.
+    """
 
     name = "Error against run time"
     watches = ""
@@ -45,10 +49,19 @@ class ErrorTime:
             y_axis_type="log",
         )
         self._now = empty("seconds", "error_force")
+        self._full = empty("seconds", "error_force")
         self._past = empty("xs", "ys", "color")
         self._drawn: tuple[object, ...] = ()
         made = self.figure
         made.multi_line("xs", "ys", source=self._past, line_color="color", line_width=2)
+        made.line(
+            "seconds",
+            "error_force",
+            source=self._full,
+            line_color=BLUE,
+            line_dash="dashed",
+            line_width=2.5,
+        )
         made.line("seconds", "error_force", source=self._now, line_color=BLUE, line_width=3)
         self._incremental = Span(
             dimension="height", line_color=GREY, line_dash="dotted", line_width=2, visible=False
@@ -65,30 +78,37 @@ class ErrorTime:
         if known != self._drawn:
             self._drawn = known
             self._draw_past(picture)
+            self._full.data = {"seconds": [], "error_force": []}
         now = picture.run.history()
         self._now.data = {name: now[name] for name in self._now.data}
+        if picture.run.beside:
+            seconds, errors = _thinned(picture.run.beside)
+            self._full.data = {"seconds": seconds, "error_force": errors}
         self._fit(picture)
 
     def _draw_past(self, picture: Picture) -> None:
         runs = [run for run in picture.past if run.records]
-        thin = [_thinned(run) for run in runs]
+        thin = [_thinned(run.records) for run in runs]
         self._past.data = {
             "xs": [xs for xs, _ in thin],
             "ys": [ys for _, ys in thin],
             "color": [_color(run) for run in runs],
         }
+        is_reduced = picture.run.settings.values()["linear_stage"] == "pgd"
         self.keys = (
             Key(BLUE, "line", "now"),
+            *((Key(BLUE, "dashed", "full stage"),) if is_reduced else ()),
             *(Key(_color(run), "line", run.label or "before") for run in reversed(runs)),
             Key(GREY, "dotted", "incremental"),
         )
 
     def _fit(self, picture: Picture) -> None:
-        runs = [run for run in [*picture.past, picture.run] if run.records]
+        every = [run.records for run in [*picture.past, picture.run]] + [picture.run.beside]
+        runs = [records for records in every if records]
         if not runs:
             return
-        times = [run.records[0].seconds for run in runs] + [run.records[-1].seconds for run in runs]
-        errors = [run.records[-1].error_force for run in runs] + [0.1]
+        times = [records[place].seconds for records in runs for place in (0, -1)]
+        errors = [records[-1].error_force for records in runs] + [0.1]
         reference = picture.run.reference
         if reference is not None:
             self._incremental.update(location=reference.seconds, visible=True)
@@ -104,7 +124,7 @@ def _color(run: Recording) -> str:
     return PAST_COLORS[run.ticket % len(PAST_COLORS)]
 
 
-def _thinned(run: Recording) -> tuple[np.ndarray, np.ndarray]:
-    history = run.history()
-    keep = np.unique(np.linspace(0, len(run.records) - 1, 200).astype(int))
-    return history["seconds"][keep], history["error_force"][keep]
+def _thinned(records: list[Record]) -> tuple[np.ndarray, np.ndarray]:
+    keep = np.unique(np.linspace(0, len(records) - 1, 200).astype(int))
+    history = columns([records[place] for place in keep])
+    return history["seconds"], history["error_force"]

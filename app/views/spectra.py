@@ -1,12 +1,17 @@
-"""Singular values of the friction force in every substructure."""
+"""Singular values of the friction force in every substructure, and those of a separated basis."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from bokeh.models import ColorBar, FixedTicker, LinearColorMapper, Range1d
 from bokeh.palettes import Viridis256
 
 from app.views.drawing import (
+    GREY,
+    VERMILION,
+    Key,
     Picture,
     decades,
     empty,
@@ -15,17 +20,22 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
+from app.worker.protocol import Bases
 from solver.settings import Settings
 
 FLOOR = 1e-8
 
 
 class Spectra:
-    """How fast the singular values fall, substructures numbered from the clamp."""
+    """How fast the singular values fall, substructures numbered from the clamp.
+
+    Rings are the sizes of the chosen separated basis's modes; crosses are the singular values of
+    the field that it has to hold.
+    """
 
     name = "Singular values"
     watches = "spectra"
-    keys = ()
+    keys: Sequence[Key] = ()
 
     def __init__(self) -> None:
         self.figure = make_figure(
@@ -38,6 +48,8 @@ class Spectra:
             tooltips=[("substructure", "@number")],
         )
         self._lines = empty("xs", "ys", "number")
+        self._basis = empty("x", "y")
+        self._wanted = empty("x", "y")
         self._mapper = LinearColorMapper(palette=Viridis256[55:235], low=1, high=2)
         self.figure.multi_line(
             "xs",
@@ -45,6 +57,19 @@ class Spectra:
             source=self._lines,
             line_width=2.5,
             line_color={"field": "number", "transform": self._mapper},
+        )
+        self.figure.scatter(
+            "x", "y", source=self._wanted, marker="x", size=9, line_color=GREY, line_width=2
+        )
+        self.figure.scatter(
+            "x",
+            "y",
+            source=self._basis,
+            marker="circle",
+            size=11,
+            fill_color=None,
+            line_color=VERMILION,
+            line_width=2,
         )
         self._marks = FixedTicker(ticks=[1, 2])
         bar = ColorBar(
@@ -79,13 +104,30 @@ class Spectra:
             self._marks.ticks = marks
         largest = float(np.nanmax(spectra)) or 1.0
         scaled = np.maximum(spectra / largest, 1e-30)
-        low, _ = decades(scaled[np.isfinite(scaled)].tolist(), FLOOR)
+        more = self._draw_basis(frame.bases)
+        low, _ = decades([*scaled[np.isfinite(scaled)].tolist(), *more], FLOOR)
         set_range(self.figure.y_range, low, 2.0)
         mark_decades(self.figure.yaxis[0], self.figure.y_range)
-        set_range(self.figure.x_range, 0.5, round_up(width) + 0.5)
+        set_range(self.figure.x_range, 0.5, round_up(max(width, len(more))) + 0.5)
         modes = np.arange(1, width + 1)
         self._lines.data = {
             "xs": [modes] * count,
             "ys": list(scaled),
             "number": numbers,
         }
+
+    def _draw_basis(self, bases: Bases | None) -> list[float]:
+        """Draw the sizes of the chosen basis's modes, if there is one; give what it has to hold."""
+        values = bases.values if bases else None
+        if bases is None or values is None:
+            if self.keys:
+                self.keys = ()
+                self._basis.data = self._wanted.data = {"x": [], "y": []}
+            return []
+        for source, sizes in ((self._basis, values.basis), (self._wanted, values.wanted)):
+            source.data = {"x": np.arange(1, len(sizes) + 1), "y": np.maximum(sizes, 1e-30)}
+        self.keys = (
+            Key(VERMILION, "ring", f"PGD, sub. {bases.substructure + 1}"),
+            Key(GREY, "cross", "its field"),
+        )
+        return [float(size) for size in values.wanted]

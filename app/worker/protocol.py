@@ -9,9 +9,12 @@ reports about a ticket that is no longer wanted: nothing depends on who is first
     pool -> session    Begun, Reference, Progress, Frame, End, Refused, Died; the rest is internal
 
 Only the second Begun has the closed form, which must not hold up the first picture.
-Every record of a run is in exactly one Progress; frames are only the newest. A run that was
-parked and went on sends a complete Begun, Reference and a Frame again, and no record or End
-twice. Died alone breaks this: what was sent under its ticket before is to be forgotten.
+Every record of a run is in exactly one Progress, and so is every record of the full stage that is
+iterated beside a run on separated bases; frames are only the newest. A run that was parked and
+went on sends a complete Begun, Reference and a Frame again, and no record or End twice. Died alone
+breaks this: what was sent under its ticket before is to be forgotten.
+
+With the full linear stage, frames have no `bases`, and Progress neither `sizes` nor `beside`.
 """
 
 from __future__ import annotations
@@ -24,9 +27,11 @@ from numpy.typing import NDArray
 
 from app.worker.resume import Resume
 from solver.latin import Record, Status
+from solver.reduction.basis import ReductionRecord
 
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.int8]
+Counts = NDArray[np.int16]
 
 LARGEST_SIDE = 400
 """Points and instants of a field that are sent at most; a screen shows no more."""
@@ -39,6 +44,12 @@ MOST_SPECTRA = 60
 
 MOST_VALUES = 64
 """Singular values of a substructure that are sent at most."""
+
+MOST_SIZES = 60
+"""Substructures whose numbers of modes are sent at most, chosen by `thinned`."""
+
+MOST_MODES = 5
+"""Modes of the chosen substructure that are sent at most, the largest."""
 
 
 @dataclass(frozen=True)
@@ -57,9 +68,11 @@ class Run:
     resume
         Where to go on; records before it are not sent again.
     watch
-        Names of what frames carry beyond the fields: "spectra", "behaviour".
+        Names of what frames carry beyond the fields: "spectra", "behaviour", "modes".
     seek
         Iteration whose frame is sought first.
+    substructure
+        As in Watch.
     """
 
     ticket: int
@@ -70,6 +83,7 @@ class Run:
     resume: Resume | None = None
     watch: frozenset[str] = frozenset()
     seek: int | None = None
+    substructure: int | None = None
 
     @property
     def waits(self) -> bool:
@@ -111,10 +125,18 @@ class Seek:
 
 @dataclass(frozen=True)
 class Watch:
-    """Change what frames carry, and send one at once."""
+    """Change what frames carry, and send one at once.
+
+    Attributes
+    ----------
+    substructure
+        The one whose modes are carried, from 0 at the clamp; None is the last one, and so is a
+        number that is too large.
+    """
 
     ticket: int
     watch: frozenset[str]
+    substructure: int | None = None
 
 
 @dataclass(frozen=True)
@@ -198,10 +220,88 @@ class Reference:
 
 @dataclass(frozen=True)
 class Progress:
-    """Records of iterations, in order, none left out."""
+    """Records of iterations, in order, none left out, without their `reduction`.
+
+    Attributes
+    ----------
+    sizes
+        Modes of the substructures `thinned(number, MOST_SIZES)`, shape (n_records, n_shown).
+    beside
+        Records of the same run with the full linear stage, as far as it has not ended.
+    """
 
     ticket: int
     records: tuple[Record, ...]
+    sizes: Counts | None = None
+    beside: tuple[Record, ...] = ()
+
+
+@dataclass(frozen=True)
+class ShownModes:
+    """The largest displacement modes of one substructure's separated basis, without body forces.
+
+    Attributes
+    ----------
+    positions
+        Shape (n_points,), m.
+    space_modes
+        Shape (n_modes, n_points); the largest entry of each is 1 in size, and the last lobe that
+        is at least half as large is positive.
+    time_functions
+        Shape (n_modes, n_instants), m, at the instants of Begun; mode times function is the field.
+    born
+        Shape (n_modes,): whether more than half of the mode, in its energy, lies outside the modes
+        of the iteration before.
+    record
+        What the iteration did to the basis.
+    lost
+        Modes that downsizing dropped.
+    """
+
+    positions: Floats
+    space_modes: Floats
+    time_functions: Floats
+    born: NDArray[np.bool_]
+    record: ReductionRecord
+    lost: int
+
+
+@dataclass(frozen=True)
+class OwnValues:
+    """How large the modes of one substructure are, beside the field that they have to hold.
+
+    Attributes
+    ----------
+    basis
+        Norms of the time functions, shape (n_modes,), relative to the largest entry of both.
+    wanted
+        Singular values, at most `MOST_VALUES`, of what the local stage asks for, W^ + F^/k, in the
+        same inner product.
+    """
+
+    basis: Floats
+    wanted: Floats
+
+
+@dataclass(frozen=True)
+class Bases:
+    """The separated bases of one iterate.
+
+    Attributes
+    ----------
+    substructure
+        The chosen one, from 0 at the clamp.
+    largest, stored
+        Modes of the largest basis, and of all together, a shared one counted once.
+    modes, values
+        Of the chosen substructure, if "modes", or "spectra", is watched.
+    """
+
+    substructure: int
+    largest: int
+    stored: int
+    modes: ShownModes | None
+    values: OwnValues | None
 
 
 @dataclass(frozen=True)
@@ -223,6 +323,8 @@ class Frame:
         substructures `thinned(number, MOST_SPECTRA)`; or None.
     behaviour
         Map of the k-free indicator, shape as friction; or None.
+    bases
+        The separated bases, if there are any.
     """
 
     ticket: int
@@ -233,6 +335,7 @@ class Frame:
     end_displacement: Floats
     spectra: Floats | None
     behaviour: Floats | None
+    bases: Bases | None
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ class Recording:
         """Keep a checkpoint if its turn has come."""
         if checkpoint.number % self._stride == 0:
             self._kept[checkpoint.number] = checkpoint
-        while len(self._kept) * checkpoint.outgoing.nbytes > self._budget:
+        while len(self._kept) * _bytes_of(checkpoint) > self._budget:
             self._stride *= 2
             self._kept = {n: kept for n, kept in self._kept.items() if n % self._stride == 0}
 
@@ -82,6 +82,14 @@ def physics(settings: Settings) -> tuple[object, ...]:
         for name, definition in settings.definitions().items()
         if about(definition).group not in METHOD_GROUPS
     )
+
+
+def _bytes_of(checkpoint: Checkpoint) -> int:
+    bases = checkpoint.reduction.modes if checkpoint.reduction else ()
+    fields = (
+        field for modes in bases for field in (modes.outgoing, modes.incoming, modes.time_functions)
+    )
+    return checkpoint.nbytes + sum(field.nbytes for field in fields)
 
 
 def _size(reference: Reference) -> int:

@@ -9,6 +9,25 @@ from solver.reference.incremental import Reference
 
 
 @dataclass(frozen=True, eq=False)
+class ResumeBeside:
+    """How far the full linear stage beside a run on separated bases has come.
+
+    Attributes
+    ----------
+    checkpoint
+        From where it goes on; None before its first iteration.
+    rules
+        Its stop rules, with what they remember.
+    ended
+        Whether they have ended it.
+    """
+
+    checkpoint: Checkpoint | None
+    rules: StopRules
+    ended: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Resume:
     """What a run needs to go on elsewhere, to the bit as if nothing had happened.
 
@@ -28,6 +47,8 @@ class Resume:
     due
         When the next iteration is due, on the machine's monotonic clock, s; so a slow pace is
         kept across short turns.
+    beside
+        The full stage beside the run, if there is one.
     """
 
     before: Checkpoint | None
@@ -36,3 +57,4 @@ class Resume:
     reference: Reference
     status: Status | None
     due: float
+    beside: ResumeBeside | None = None

@@ -7,6 +7,8 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from app.worker.bases import sizes
+from app.worker.beside import beside
 from app.worker.protocol import (
     End,
     Frame,
@@ -24,7 +26,7 @@ from app.worker.resume import Resume
 from app.worker.sampler import Sampler
 from app.worker.tempo import Tempo
 from solver.discrete import discretise
-from solver.latin import Ending, Iterate, Record, StopRules, iterations, record
+from solver.latin import Checkpoint, Ending, Iterate, Record, StopRules, iterations, record
 from solver.latin.indicators import latin_indicator
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted, Reference
@@ -81,10 +83,14 @@ class WorkerRun:
         self._before = resume.before if resume else None
         self._newest: Iterate | None = None
         self._search: tuple[Iterator[Iterate], int] | None = None
+        self._passed: Checkpoint | None = None
         self._recording = Recording()
         self._tempo = Tempo(order.pace, order.pause_after, resume.due if resume else None)
         self._watch = order.watch
+        self._substructure = order.substructure
+        self._beside = beside(self._problem, self._settings, resume.beside if resume else None)
         self._unsent: list[Record] = []
+        self._unsent_beside: list[Record] = []
         self._stale = False
         self._publish_at = 0.0
 
@@ -121,9 +127,9 @@ class WorkerRun:
             case Seek():
                 self._seek(order.iteration)
             case Watch():
-                self._watch = order.watch
+                self._watch, self._substructure = order.watch, order.substructure
                 if self._newest is not None:
-                    self._send(self._frame(self._newest))
+                    self._send(self._frame(self._newest, self._before))
 
     def parked(self) -> Parked:
         """Give the order that goes on with the run, once all its records are sent."""
@@ -143,6 +149,7 @@ class WorkerRun:
                 self._reference,
                 self._status,
                 self._tempo.due,
+                self._beside.resume if self._beside else None,
             )
         pace, pause_after = self._tempo.carried(done)
         seek = self._search[1] if self._search else self._order.seek
@@ -153,6 +160,7 @@ class WorkerRun:
             resume=resume,
             watch=self._watch,
             seek=seek,
+            substructure=self._substructure,
         )
         return Parked(self.ticket, order)
 
@@ -170,7 +178,7 @@ class WorkerRun:
                 "nearer to 1."
             )
         self._newest = newest
-        self._send(self._frame(newest))
+        self._send(self._frame(newest, self._before))
         if resume is not None:
             self._refer(resume.reference)
             if self._before is not None:
@@ -210,6 +218,8 @@ class WorkerRun:
                 self._stale = True
             self._newest = newest = iterate
             self._unsent.append(entry)
+            if self._beside is not None:
+                self._unsent_beside += self._beside.follow(iterate.number, distance)
             self._recording.keep(iterate.checkpoint)
         if self._rest_of_iterations(newest.number) is None:
             self._publish()
@@ -225,30 +235,50 @@ class WorkerRun:
         wanted = min(max(iteration, 1), newest.number)
         if wanted == newest.number:
             self._search = None
-            self._send(self._frame(newest, sought=True))
+            self._send(self._frame(newest, self._before, sought=True))
         else:
             start = self._recording.before(wanted)
             self._search = (iterations(self._problem, self._settings, start), wanted)
+            self._passed = start
 
     def _search_on(self, generator: Iterator[Iterate], wanted: int) -> None:
         iterate = next(generator)
         self._recording.keep(iterate.checkpoint)
         if iterate.number == wanted:
             self._search = None
-            self._send(self._frame(iterate, sought=True))
+            self._send(self._frame(iterate, self._passed, sought=True))
+        self._passed = iterate.checkpoint
 
     def _publish(self) -> None:
         """Send all records not yet sent, and the newest frame if there is a newer one."""
         if self._unsent:
-            self._send(Progress(self.ticket, tuple(self._unsent)))
+            self._send(
+                Progress(
+                    self.ticket,
+                    tuple(
+                        replace(entry, reduction=()) if entry.reduction else entry
+                        for entry in self._unsent
+                    ),
+                    sizes(self._unsent),
+                    tuple(self._unsent_beside),
+                )
+            )
             self._unsent.clear()
+            self._unsent_beside.clear()
         if self._stale and self._newest is not None:
-            self._send(self._frame(self._newest))
+            self._send(self._frame(self._newest, self._before))
             self._stale = False
         self._publish_at = time.monotonic() + PUBLISH_EVERY
 
-    def _frame(self, iterate: Iterate, *, sought: bool = False) -> Frame:
-        return self._sampler.frame(self.ticket, iterate, self._watch, sought=sought)
+    def _frame(self, iterate: Iterate, before: Checkpoint | None, *, sought: bool = False) -> Frame:
+        return self._sampler.frame(
+            self.ticket,
+            iterate,
+            self._watch,
+            sought=sought,
+            before=before,
+            substructure=self._substructure,
+        )
 
     def _is_due(self) -> bool:
         return self._newest is not None and self._rest_of_iterations(self._newest.number) == 0.0

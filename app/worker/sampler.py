@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.worker.bases import show_bases
 from app.worker.protocol import (
     LONGEST_CURVE,
     MOST_SPECTRA,
@@ -20,7 +21,7 @@ from app.worker.protocol import (
     thinned,
 )
 from solver.discrete import Problem
-from solver.latin import Iterate
+from solver.latin import Checkpoint, Iterate
 from solver.latin.indicators import behaviour_indicator
 from solver.laws import Neumann, Perfect
 from solver.reduction.svd import friction_spectra
@@ -83,9 +84,19 @@ class Sampler:
         )
 
     def frame(
-        self, ticket: int, iterate: Iterate, watch: frozenset[str], *, sought: bool = False
+        self,
+        ticket: int,
+        iterate: Iterate,
+        watch: frozenset[str],
+        *,
+        sought: bool = False,
+        before: Checkpoint | None = None,
+        substructure: int | None = None,
     ) -> Frame:
-        """Show an iterate, with what is watched beyond its fields."""
+        """Show an iterate, with what is watched beyond its fields.
+
+        The iterate `before` tells what became of its modes; `substructure` is as in Watch.
+        """
         behaviour = "behaviour" in watch
         return Frame(
             ticket=ticket,
@@ -96,6 +107,7 @@ class Sampler:
             end_displacement=_floats(iterate.displacement[-1, self._curve]),
             spectra=_table(friction_spectra(iterate)) if "spectra" in watch else None,
             behaviour=_floats(self._thin(behaviour_indicator(iterate).map)) if behaviour else None,
+            bases=show_bases(iterate, before, watch, substructure),
         )
 
     def _thin(self, field: NDArray[Any]) -> NDArray[Any]:

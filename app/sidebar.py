@@ -1,0 +1,202 @@
+"""What stands at the side: the settings, the choice of views, and what carries settings away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from io import StringIO
+from typing import Any
+
+import numpy as np
+import panel_material_ui as pmui
+
+from app.address import query_of
+from app.controls import Control, make_control
+from app.session import Session
+from solver.files import settings_from_toml
+from solver.loads import load_path
+from solver.scenes.bar import PROFILES
+from solver.settings import Curve, SettingError, Settings, about, dump, read_table
+
+ORDER = ("Load", "Contact", "Bar", "Decomposition", "Method", "Stop")
+
+
+class Sidebar:
+    """The controls of a session.
+
+    Parameters
+    ----------
+    session
+        Is told what the user changes.
+    rearrange
+        Called when settings or the choice of views have changed.
+    complain
+        Tells the user what was refused and why.
+    copy
+        Puts a query into the address bar and the clipboard.
+
+    Attributes
+    ----------
+    view
+        What stands on the page; it is empty until `fill`.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        rearrange: Callable[[], None],
+        complain: Callable[[str], None],
+        copy: Callable[[str], None],
+    ) -> None:
+        self._session = session
+        self._rearrange = rearrange
+        self._complain = complain
+        self._copy = copy
+        self._unwanted: set[str] = set()
+        self._views = pmui.CheckBoxGroup(options=[], value=[])
+        self._views.param.watch(self._on_views, "value")
+        self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
+        self._controls = self._make_controls(essential=True)
+        self.view = pmui.Column(sizing_mode="stretch_width", margin=0)
+
+    def fill(self) -> None:
+        """Put the controls into the page."""
+        self.view[:] = self._items()
+
+    def show(self, settings: Settings) -> None:
+        """Show the settings that hold."""
+        for control in self._controls.values():
+            control.show(settings)
+
+    def offer(self, views: Sequence[str]) -> list[str]:
+        """Offer these views, and give those of them that are wanted."""
+        wanted = [name for name in views if name not in self._unwanted]
+        if self._views.options != list(views):
+            self._views.param.update(options=list(views), value=wanted)
+        return wanted
+
+    def _on_views(self, event: Any) -> None:
+        offered = set(self._views.options)
+        unwanted = (self._unwanted - offered) | (offered - set(event.new))
+        if unwanted != self._unwanted:
+            self._unwanted = unwanted
+            self._rearrange()
+
+    def _items(self) -> list[Any]:
+        """Put the essential controls under their headings, the others behind "more"."""
+        groups: dict[str, list[Any]] = {}
+        for control in self._controls.values():
+            groups.setdefault(about(control.definition).group, []).append(control.view)
+        items: list[Any] = []
+        for group in ORDER:
+            if group in groups:
+                items += [_heading(group), *groups[group]]
+        more = pmui.Accordion(("More settings", self._more), sizing_mode="stretch_width")
+        more.param.watch(self._open_more, "active")
+        return [
+            *items,
+            more,
+            _heading("Views"),
+            self._views,
+            _heading("Share"),
+            *self._share(),
+        ]
+
+    def _share(self) -> list[Any]:
+        link = pmui.Button(
+            label="Link",
+            icon="link",
+            variant="outlined",
+            size="small",
+            description="Put the settings into the address bar, and copy it.",
+        )
+        link.on_click(lambda event: self._copy(query_of(self._session.settings)))
+        save = pmui.FileDownload(
+            label="Save",
+            callback=self._saved,
+            filename="slipfront.toml",
+            size="small",
+            variant="outlined",
+            description="Save the settings; the command line reads them too.",
+        )
+        default = pmui.Button(
+            label="Defaults",
+            icon="undo",
+            variant="outlined",
+            size="small",
+            description="Bring all settings back to their defaults.",
+        )
+        default.on_click(lambda event: self._adopt(type(self._session.settings).checked({})))
+        upload = pmui.FileInput(
+            label="Open settings (.toml) or load (.csv)",
+            accept=".toml,.csv",
+            size="small",
+            sizing_mode="stretch_width",
+        )
+        upload.param.watch(self._on_upload, "value")
+        return [pmui.Row(link, save, default), upload]
+
+    def _make_controls(self, *, essential: bool) -> dict[str, Control]:
+        made = {
+            name: make_control(name, definition, self._on_setting, self._points_of)
+            for name, definition in self._session.settings.definitions().items()
+            if about(definition).essential is essential
+        }
+        return {name: control for name, control in made.items() if control is not None}
+
+    def _open_more(self, event: Any) -> None:
+        """Make the controls behind "more" when they are first looked at: few ever are."""
+        if event.new and not self._more.objects:
+            more = self._make_controls(essential=False)
+            self._controls.update(more)
+            self.show(self._session.wanted)
+            self._more[:] = [control.view for control in more.values()]
+
+    def _points_of(self, name: str) -> list[tuple[float, float]]:
+        """Give points that stand for the preset of a curve setting."""
+        values = self._session.settings.values()
+        if name in ("friction_profile", "pressure_profile"):
+            return [(x * values["length"], factor) for x, factor in PROFILES[values[name]]]
+        instants = np.linspace(0.0, values["duration"], 9)
+        forces = load_path(
+            values[name], instants, values["duration"], values["peak"], values["seed"]
+        )
+        return [(float(t), float(round(f, 6))) for t, f in zip(instants, forces, strict=True)]
+
+    def _on_setting(self, name: str, value: Any) -> None:
+        try:
+            self._session.change(name, value)
+        except SettingError as refusal:
+            self._complain(str(refusal))
+        self._after_change()
+
+    def _adopt(self, settings: Settings) -> None:
+        self._session.adopt(settings)
+        self._after_change()
+
+    def _after_change(self) -> None:
+        self.show(self._session.wanted)
+        self._rearrange()
+
+    def _on_upload(self, event: Any) -> None:
+        if event.new is None:
+            return
+        try:
+            text = event.new.decode("utf-8-sig")
+            if event.obj.filename.endswith(".toml"):
+                self._adopt(settings_from_toml(text))
+            else:
+                definition = self._session.settings.definitions()["load"]
+                assert isinstance(definition, Curve)
+                rows = read_table(text, definition, "load", event.obj.filename)
+                self._on_setting("load", rows)
+        except SettingError as refusal:
+            self._complain(str(refusal))
+        except UnicodeDecodeError:
+            self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
+
+    def _saved(self) -> StringIO:
+        return StringIO(dump(self._session.settings))
+
+
+def _heading(text: str) -> Any:
+    return pmui.Typography(text, variant="overline", margin=(6, 10, -6, 10))

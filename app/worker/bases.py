@@ -1,0 +1,115 @@
+"""From separated bases to what a screen shows of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.worker.protocol import (
+    MOST_MODES,
+    MOST_SIZES,
+    MOST_VALUES,
+    Bases,
+    Counts,
+    Floats,
+    OwnValues,
+    ShownModes,
+    thinned,
+)
+from solver.latin import Checkpoint, Iterate, Record
+from solver.reduction.basis import Modes, Reduction
+
+BORN = 0.5
+"""Share of a mode's energy outside the modes before, from which it counts as born."""
+LOBE = 0.5
+"""Share of a mode's largest entry, from which an entry may fix the sign."""
+
+Array = NDArray[np.float64]
+
+
+def show_bases(
+    iterate: Iterate, before: Checkpoint | None, watch: frozenset[str], substructure: int | None
+) -> Bases | None:
+    """Show the bases of an iterate, if it has any; `before` is the iterate before."""
+    found = iterate.reduction
+    if found is None:
+        return None
+    last = len(found.modes) - 1
+    place = last if substructure is None else min(max(substructure, 0), last)
+    return Bases(
+        substructure=place,
+        largest=max(modes.n_modes for modes in found.modes),
+        stored=found.stored,
+        modes=_modes(iterate, found, before, place) if "modes" in watch else None,
+        values=_values(iterate, found.modes[place], place) if "spectra" in watch else None,
+    )
+
+
+def sizes(records: list[Record]) -> Counts | None:
+    """Give the numbers of modes in these records, shape (n_records, n_shown); None without any."""
+    if not records or not records[0].reduction:
+        return None
+    shown = thinned(len(records[0].reduction), MOST_SIZES)
+    table = [[entry.reduction[place].modes for place in shown] for entry in records]
+    return np.array(table, dtype=np.int16)
+
+
+def _modes(
+    iterate: Iterate, reduction: Reduction, before: Checkpoint | None, place: int
+) -> ShownModes:
+    problem, modes, record = iterate.problem, reduction.modes[place], reduction.records[place]
+    past = before.reduction.modes[place] if before and before.reduction else None
+    rows = problem.substructures[place].rows
+    # Rows of two interfaces that meet at a point move together.
+    dofs, first = np.unique(problem.row_dofs[rows], return_index=True)
+    order = np.argsort(problem.positions[dofs])
+    points = order[thinned(len(order))]
+    space = modes.displacement_modes[first[points], :MOST_MODES].T
+    size = _signed_size(space)
+    instants = thinned(problem.n_instants)
+    time = modes.time_functions[:MOST_MODES, instants] * problem.scales.displacement
+    return ShownModes(
+        positions=_floats(problem.positions[dofs[points]]),
+        space_modes=_floats(space / size[:, None]),
+        time_functions=_floats(time * size[:, None]),
+        born=_outside(modes, past)[:MOST_MODES] > BORN,
+        record=record,
+        lost=max((past.n_modes if past else 0) + record.added - record.modes, 0),
+    )
+
+
+def _signed_size(space: Array) -> Array:
+    """Give the largest entry of every mode, with the sign of its last large lobe.
+
+    The sign of the largest entry itself would flip whenever two lobes change places.
+    """
+    found = np.ones(len(space))
+    for number, mode in enumerate(space):
+        largest = float(np.abs(mode).max())
+        if largest > 0.0:
+            last = np.flatnonzero(np.abs(mode) >= LOBE * largest)[-1]
+            found[number] = np.copysign(largest, mode[last])
+    return found
+
+
+def _outside(modes: Modes, past: Modes | None) -> Array:
+    """Give the share of every mode's energy outside the modes before, shape (n_modes,)."""
+    if past is None:
+        return np.ones(modes.n_modes)
+    inside = (modes.k[:, None] * past.outgoing).T @ modes.outgoing
+    return np.asarray(1.0 - np.sum(inside**2, axis=0))
+
+
+def _values(iterate: Iterate, modes: Modes, place: int) -> OwnValues:
+    problem = iterate.problem
+    rows, weights = problem.substructures[place].rows, problem.time_weights
+    wanted = 2.0 * iterate.local_displacement[rows] - iterate.local_incoming[rows]
+    weighted = np.sqrt(modes.k)[:, None] * wanted * np.sqrt(weights)
+    values = np.linalg.svd(weighted, compute_uv=False)[:MOST_VALUES]
+    own = np.sqrt(modes.time_functions**2 @ weights)
+    largest = max(float(values.max()), float(own.max(initial=0.0))) or 1.0
+    return OwnValues(basis=_floats(own / largest), wanted=_floats(values / largest))
+
+
+def _floats(values: Array) -> Floats:
+    return values.astype(np.float32, order="C")

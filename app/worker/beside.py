@@ -1,0 +1,55 @@
+"""The full linear stage beside a run on separated bases: what the bases are measured against."""
+
+from __future__ import annotations
+
+from app.worker.resume import ResumeBeside
+from solver.discrete import Problem
+from solver.latin import Ending, Record, StopRules, iterations, record
+from solver.reference.distance import Distance
+from solver.settings import Settings
+
+
+class Beside:
+    """The same run with the full linear stage, iteration by iteration, on a clock of its own.
+
+    Parameters
+    ----------
+    problem, settings
+        Of the run on separated bases.
+    resume
+        Where to go on.
+    """
+
+    def __init__(self, problem: Problem, settings: Settings, resume: ResumeBeside | None) -> None:
+        full = settings.replace(linear_stage="full")
+        self._checkpoint = resume.checkpoint if resume else None
+        self._rules = resume.rules if resume else StopRules(full)
+        self._ended = resume.ended if resume else False
+        self._generator = iterations(problem, full, self._checkpoint)
+
+    def follow(self, number: int, distance: Distance) -> list[Record]:
+        """Catch up with an iteration, unless it has ended before; give the new records."""
+        records: list[Record] = []
+        while not self._ended and self._number < number:
+            iterate = next(self._generator)
+            entry = record(iterate, distance)
+            status = self._rules.judge(iterate.number, entry.indicator, entry.behaviour)
+            self._ended = status is not None
+            if status is None or status.ending is not Ending.DIVERGED:
+                self._checkpoint = iterate.checkpoint
+                records.append(entry)
+        return records
+
+    @property
+    def resume(self) -> ResumeBeside:
+        """What is needed to go on from here."""
+        return ResumeBeside(self._checkpoint, self._rules, self._ended)
+
+    @property
+    def _number(self) -> int:
+        return self._checkpoint.number if self._checkpoint else 0
+
+
+def beside(problem: Problem, settings: Settings, resume: ResumeBeside | None) -> Beside | None:
+    """Give what is iterated beside a run, if anything is."""
+    return Beside(problem, settings, resume) if settings.linear_stage == "pgd" else None
