@@ -7,7 +7,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from solver.discrete import discretise
@@ -17,9 +17,24 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, about, allowed
+from solver.study.error_against_time import Study, error_against_time
+from solver.study.growth import Growth, growth
 from solver.study.iteration_cost import print_iteration_cost
+from solver.study.machine import one_blas_thread
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
+from solver.study.stability import invariance, stability
+from solver.study.stability_cases import cases
+from solver.study.stability_report import HEAD, line, notes, passes, prepare, write_report
+from solver.study.stability_report import summary as summary_of
+from solver.study.study_report import (
+    aligned,
+    conditions,
+    growth_table,
+    table,
+    verdicts,
+    write_tables,
+)
 
 REFUSED = 2
 
@@ -62,6 +77,19 @@ def _parser() -> argparse.ArgumentParser:
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
     figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
     figures.set_defaults(command=_figures)
+    study = commands.add_parser("study", help="error against run time, all methods side by side")
+    study.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    study.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    study.add_argument("--out", type=Path, default=Path("study"), metavar="DIR")
+    study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
+    study.add_argument(
+        "--no-growth", action="store_false", dest="growth", help="leave out other sizes"
+    )
+    study.set_defaults(command=_study)
+    stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
+    stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
+    stable.add_argument("--quick", action="store_true", help="a third of the cases")
+    stable.set_defaults(command=_stability)
     return parser
 
 
@@ -131,3 +159,57 @@ def _figures(chosen: argparse.Namespace) -> int:
             print(f"  {'+' if found.holds else '-'} {found.text}")
     print(f"{len(files)} files in {chosen.out}")
     return 0
+
+
+def _study(chosen: argparse.Namespace) -> int:
+    settings = settings_from_command(chosen.scene, chosen.changes)
+    if chosen.repeats < 1:
+        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+    try:
+        chosen.out.mkdir(parents=True, exist_ok=True)
+        with one_blas_thread():
+            found = error_against_time(settings, chosen.repeats)
+            sizes = growth(settings) if chosen.growth else []
+        files = write_tables(found, sizes, chosen.out)
+        page = _study_page()
+        files += [page(found, sizes, chosen.out)] if page else []
+    except OSError as problem:
+        allowed_folder = "a folder that can be made and written to"
+        raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
+    print("\n".join(conditions(found)), end="\n\n")
+    print(aligned(table(found)), end="\n\n")
+    print("\n".join(verdicts(found)))
+    if sizes:
+        print(f"\n{aligned(growth_table(sizes))}")
+    if page is None:
+        print("The page needs matplotlib: pip install 'slipfront[figures]'")
+    print(f"{len(files)} files in {chosen.out}")
+    return 0
+
+
+def _stability(chosen: argparse.Namespace) -> int:
+    matrix = [case for case in cases() if case.quick or not chosen.quick]
+    try:
+        prepare(chosen.out)
+        print(HEAD)
+        rows = stability(matrix, lambda row: print(line(row), flush=True))
+        apart = invariance()
+        files = write_report(rows, apart, chosen.out)
+    except BrokenPipeError:
+        raise
+    except OSError as problem:
+        allowed_folder = "a folder that can be made and written to"
+        raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
+    print("\n".join(["", summary_of(rows), *notes(apart), f"{len(files)} files in {chosen.out}"]))
+    return 0 if passes(rows, apart) else 1
+
+
+def _study_page() -> Callable[[Study, Sequence[Growth], Path], Path] | None:
+    """Give what writes the page, or None without matplotlib."""
+    try:
+        from solver.study.study_page import write_page
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").split(".")[0] not in ("matplotlib", "PIL"):
+            raise
+        return None
+    return write_page

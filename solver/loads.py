@@ -19,6 +19,9 @@ def interpolate(points: Pairs | Array, where: Array) -> Array:
     """Evaluate a table of (abscissa, value), linear in between and held outside."""
     abscissae, values = np.array(points).T
     found: Array = np.interp(where, abscissae, values)
+    steep = ~np.isfinite(found)
+    if steep.any():  # a slope beyond the largest number: points that all but coincide
+        found[steep] = values[np.searchsorted(abscissae, where[steep], side="right") - 1]
     return found
 
 

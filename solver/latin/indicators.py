@@ -30,6 +30,10 @@ def latin_indicator(iterate: Iterate) -> float:
     return ratio(2.0 * distance, size)
 
 
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""Share of the largest displacement, or of that under the largest force, that rounding blurs."""
+
+
 @dataclass(frozen=True)
 class BehaviourIndicator:
     """How far the linear stage is from the behaviour of the interfaces, without k.
@@ -38,7 +42,9 @@ class BehaviourIndicator:
     ----------
     total
         Violation of friction as a share of the energy in play, plus the relative gap of
-        displacements and of forces at all other interfaces. Zero if and only if all laws hold.
+        displacements and of forces at all other interfaces; over the share of the largest force
+        that friction can carry, if below one, so that a small friction force is held to the same
+        standard. Zero if and only if all laws hold, up to the rounding of the fields.
     map
         Local violation of friction, shape (n_points, n_instants), a share of the energy in play
         for each point and instant, times their number: 1 means as much as the mean energy.
@@ -64,7 +70,8 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     problem = iterate.problem
     displacement, force = iterate.boundary_displacement, iterate.boundary_force
     law = problem.friction
-    slip = np.diff(displacement[law.rows], axis=1, prepend=0.0)
+    noise = _rounding(displacement, force)
+    slip = _beyond(np.diff(displacement[law.rows], axis=1, prepend=0.0), 2.0 * noise)
     bound = law.bound[:, None]
     friction = force[law.rows]
     held = np.clip(friction, -bound, bound)
@@ -78,17 +85,44 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     np.add.at(map_, law.points, np.maximum(violation, 0.0))
     total = ratio(float(map_.sum()), energy)
     map_ *= ratio(map_.size, energy) if energy else 0.0
-    return BehaviourIndicator(total + _gap_of_bonds(problem, displacement, force), map_)
+    total += _gap_of_bonds(problem, displacement, force, noise)
+    return BehaviourIndicator(total / _share_of_friction(problem, force), map_)
 
 
-def _gap_of_bonds(problem: Problem, displacement: Array, force: Array) -> float:
+def _rounding(displacement: Array, force: Array) -> float:
+    """Give the displacement that rounding alone makes; a scaled structure's compliance is near 1.
+
+    It knows no k, so that the indicator sees none.
+    """
+    return ROUNDING * float(np.abs(displacement).max() + np.abs(force).max())
+
+
+def _beyond(field: Array, noise: float) -> Array:
+    """Give a field with what may be rounding taken as zero."""
+    return np.where(np.abs(field) > noise, field, 0.0)
+
+
+def _share_of_friction(problem: Problem, force: Array) -> float:
+    """Give the share of the largest force that friction can carry beside the supports, at most 1.
+
+    It is 1 where there is no friction.
+    """
+    law = problem.friction
+    held = np.isin(problem.row_dofs[law.rows], problem.prescribed[0])
+    capacity, largest = float(law.bound[~held].sum()), float(np.abs(force).max())
+    return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0
+
+
+def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: float) -> float:
     gap_w, gap_f = 0.0, 0.0
     for law in problem.interfaces.values():
         if isinstance(law, Perfect):
-            gap_w += _squared(displacement[law.first] - displacement[law.second])
+            gap_w += _squared(
+                _beyond(displacement[law.first] - displacement[law.second], 2.0 * noise)
+            )
             gap_f += _squared(force[law.first] + force[law.second])
         elif isinstance(law, Dirichlet):
-            gap_w += _squared(displacement[law.rows] - law.displacement)
+            gap_w += _squared(_beyond(displacement[law.rows] - law.displacement, noise))
         elif isinstance(law, Neumann):
             gap_f += _squared(force[law.rows] - law.force)
     return float(

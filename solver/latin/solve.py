@@ -146,6 +146,12 @@ class StopRules:
     def _stall_advice(self, agreed: bool) -> str:
         if self._best < ROUNDING and agreed:
             return "The indicator is down to rounding: this is as near as it gets."
+        if self._best < ROUNDING:
+            return (
+                "The LATIN indicator is down to rounding, but the interface laws do not hold: the "
+                "friction force is too small beside the load, or k too far from the stiffness, "
+                "for more digits. Bring friction, the load and k_scale nearer to each other."
+            )
         if self._best <= self._settings.tolerance:
             return (
                 "The LATIN indicator is below the tolerance, but the interface laws do not hold: "

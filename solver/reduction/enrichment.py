@@ -54,10 +54,15 @@ class Enrichment:
         Parameters
         ----------
         residual
-            delta / k, shape (n_boundary, n_columns), not zero.
+            delta / k, shape (n_boundary, n_columns); zero gives a mode that is zero.
         k, weights
             Weights of space and of the columns.
         """
+        # Only the shape matters, and the squares of very small numbers are zero.
+        largest = float(np.abs(residual).max())
+        if largest == 0.0:
+            return residual[:, 0]
+        residual = residual / largest
         if self.steps == 0:
             root = np.sqrt(k)[:, None]
             gram = root * residual * weights @ (root * residual).T

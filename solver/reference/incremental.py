@@ -124,8 +124,8 @@ class _Structure:
         rubbing = problem.row_dofs[law.rows]
         self.point_dofs = np.zeros(len(law.positions), dtype=np.intp)
         self.point_dofs[law.points] = rubbing
-        self.band = _Band(_stiffness(problem))
-        self.load_steps = np.diff(_external_force(problem).T, axis=0, prepend=0.0)
+        self.band = _Band(assembled_stiffness(problem))
+        self.load_steps = np.diff(external_force(problem).T, axis=0, prepend=0.0)
         self._fixed, prescribed = problem.prescribed
         self.moves = np.diff(prescribed.T, axis=0, prepend=0.0)
         self._movable, bound = np.ones(problem.n_dofs), np.zeros(problem.n_dofs)
@@ -280,7 +280,8 @@ def _pairs(field: Array) -> Array:
     return np.add.reduceat(field, np.arange(0, len(field), 2))
 
 
-def _stiffness(problem: Problem) -> sparse.csr_array:
+def assembled_stiffness(problem: Problem) -> sparse.csr_array:
+    """Give K of the whole structure, shape (n_dofs, n_dofs), scaled."""
     parts = [(part.dofs, part.elasticity.stiffness.tocoo()) for part in problem.substructures]
     rows, columns = (
         np.concatenate([dofs[own.coords[axis]] for dofs, own in parts]) for axis in (0, 1)
@@ -289,7 +290,8 @@ def _stiffness(problem: Problem) -> sparse.csr_array:
     return sparse.csr_array((values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs))
 
 
-def _external_force(problem: Problem) -> Array:
+def external_force(problem: Problem) -> Array:
+    """Give the forces on the whole structure, shape (n_dofs, n_instants), scaled."""
     total = space_time(problem.n_dofs, problem.n_instants)
     for part in problem.substructures:
         if part.body_force is not None:

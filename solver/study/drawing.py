@@ -15,7 +15,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 from PIL import Image
 
 from solver.study.figure_data import Line, Panel, PaperFigure
@@ -34,12 +34,14 @@ COLOURS = 128
 """Colours of a PNG; lines need few, and the file is a third as large."""
 LETTERS = 13
 """Letters of a legend that an inch holds; the mark beside each entry takes eight."""
+ROWS, ROW = 3, 0.2
+"""Rows of a legend that the height leaves room for, and what each further one adds, inches."""
 SAYS = {True: "Bears it out.", False: "Speaks against it."}
 PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: the paper's figures</title>
+<title>Slipfront: {title}</title>
 <style>
 body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
   color: #222; background: #fff; }}
@@ -47,16 +49,21 @@ figure {{ margin: 0 0 3.5rem; }}
 img {{ max-width: 100%; height: auto; }}
 li b {{ font-weight: 600; }}
 .caption {{ color: #555; font-size: 0.9rem; }}
+table {{ border-collapse: collapse; font-size: 0.9rem; }}
+th, td {{ padding: 0.2rem 0.8rem 0.2rem 0; text-align: right; border-bottom: 1px solid #ddd; }}
+th:first-child, td:first-child {{ text-align: left; }}
 </style>
-<h1>The paper's figures, drawn again</h1>
-<p>Computed by Slipfront. The paper prints curves without numbers; each figure here stands with
-what the paper says of it, and with the numbers that bear it out or do not.</p>
-{figures}
+{body}
 </html>
 """
+"""A page of the given title and body, which carries its own style."""
+BODY = """<h1>The paper's figures, drawn again</h1>
+<p>Computed by Slipfront. The paper prints curves without numbers; each figure here stands with
+what the paper says of it, and with the numbers that bear it out or do not.</p>
+{figures}"""
 FIGURE = """<figure id="figure-{number}">
 <h2>Fig. {number}: {title}</h2>
-<img src="data:image/png;base64,{image}" alt="{title}">
+{image}
 <figcaption>
 <p><b>The paper's claim:</b> {claim} <b>Here it {verdict}.</b></p>
 <ul>
@@ -87,7 +94,7 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
     OSError
         When a file cannot be written.
     """
-    images = [png(figure) for figure in figures]
+    images = [png(figure.panels, f"Fig. {figure.number}: {figure.title}") for figure in figures]
     files = [folder / f"figure-{figure.number}.png" for figure in figures]
     for file, image in zip(files, images, strict=True):
         file.write_bytes(image)
@@ -96,20 +103,23 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
     return [*files, together]
 
 
-def png(figure: PaperFigure) -> bytes:
-    """Draw a figure, its panels side by side, as a PNG."""
-    size = (WIDTH * max(len(figure.panels), 1.5), HEIGHT)
-    sheet = Figure(figsize=size, layout="constrained")
-    grid = sheet.subplots(1, len(figure.panels), squeeze=False)
+def png(panels: Sequence[Panel], heading: str) -> bytes:
+    """Draw panels side by side under a heading, as a PNG."""
+    width = WIDTH * max(len(panels), 1.5)
+    sheet = Figure(layout="constrained")
+    grid = sheet.subplots(1, len(panels), squeeze=False)
     entries: dict[str, Line2D] = {}
-    for axes, panel in zip(grid[0], figure.panels, strict=True):
+    for axes, panel in zip(grid[0], panels, strict=True):
         entries |= _draw(axes, panel)
-    sheet.suptitle(f"Fig. {figure.number}: {figure.title}", fontsize=11)
+    sheet.suptitle(heading, fontsize=11)
+    columns = max(1, min(len(entries), int(LETTERS * width / (max(map(len, entries)) + 8))))
+    more = max(-(-len(entries) // columns) - ROWS, 0)
+    sheet.set_size_inches(width, HEIGHT + ROW * more)
     sheet.legend(
         entries.values(),
         entries.keys(),
         loc="outside lower center",
-        ncols=min(len(entries), int(LETTERS * size[0] / (max(map(len, entries)) + 8))),
+        ncols=columns,
         fontsize=9,
         frameon=False,
         handlelength=2.6,
@@ -127,7 +137,7 @@ def html(figures: Sequence[PaperFigure], images: Sequence[bytes]) -> str:
         FIGURE.format(
             number=figure.number,
             title=escape(figure.title),
-            image=base64.b64encode(image).decode("ascii"),
+            image=inline(image, figure.title),
             claim=escape(figure.claim),
             verdict=figure.verdict,
             findings="\n".join(
@@ -138,7 +148,13 @@ def html(figures: Sequence[PaperFigure], images: Sequence[bytes]) -> str:
         )
         for figure, image in zip(figures, images, strict=True)
     ]
-    return PAGE.format(figures="\n".join(parts))
+    return PAGE.format(title="the paper's figures", body=BODY.format(figures="\n".join(parts)))
+
+
+def inline(image: bytes, words: str) -> str:
+    """Write a PNG into a page, with words for those who cannot see it."""
+    data = base64.b64encode(image).decode("ascii")
+    return f'<img src="data:image/png;base64,{data}" alt="{escape(words)}">'
 
 
 def _draw(axes: Axes, panel: Panel) -> dict[str, Line2D]:
@@ -149,7 +165,11 @@ def _draw(axes: Axes, panel: Panel) -> dict[str, Line2D]:
         (lines[curve.label],) = axes.plot(curve.x, curve.y, **style)
     axes.set(xlabel=panel.x.label, xscale=panel.x.scale, ylabel=panel.y.label, yscale=panel.y.scale)
     axes.set_title(panel.title, fontsize=10)
-    if panel.x.whole:
+    if panel.x.whole and panel.x.logarithmic:
+        ticks = sorted({int(x) for curve in panel.curves for x in curve.x})
+        axes.set_xticks(ticks, [str(tick) for tick in ticks])
+        axes.xaxis.set_minor_locator(NullLocator())
+    elif panel.x.whole:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     if panel.y.limits is not None:
         axes.set_ylim(*panel.y.limits)

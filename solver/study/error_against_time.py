@@ -1,0 +1,245 @@
+"""Errors of all methods against the time that they take, from settings to result.
+
+Each method pays for what it needs: discretisation, factorisation, coarser meshes, iterations. One
+pass without the clock finds the errors, and warms up; then timed passes run every method once, in
+turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Literal
+
+import numpy as np
+
+from solver.discrete import discretise
+from solver.discrete.problem import Array
+from solver.latin import iterations
+from solver.reference.distance import Distance, distance_to
+from solver.reference.incremental import incremental
+from solver.settings import Settings
+from solver.study.machine import machine
+from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
+
+LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
+"""Errors of the friction force whose times make the table."""
+GOAL = 1e-7
+"""Error of the friction force at which an iteration ends."""
+MOST_ITERATIONS = 600
+PLAIN: dict[str, Any] = {
+    "multiscale": True,
+    "search_direction": "paper",
+    "linear_stage": "full",
+    "local_stage": "full",
+    "acceleration": "none",
+    "start": "zero",
+}
+AUTO: dict[str, Any] = {**PLAIN, "search_direction": "auto"}
+ANDERSON: dict[str, Any] = {**AUTO, "acceleration": "anderson"}
+FORMS: dict[str, dict[str, Any]] = {
+    "LATIN monoscale": {**PLAIN, "multiscale": False},
+    "LATIN multiscale": PLAIN,
+    "LATIN auto k": AUTO,
+    "LATIN auto k, Anderson": ANDERSON,
+    "LATIN auto k, Anderson, nested": {**ANDERSON, "start": "nested"},
+    "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
+}
+"""Settings that make the forms of LATIN; all others are those of the run."""
+INCREMENTAL = "incremental solver"
+Kind = Literal["latin", "incremental", "peer"]
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """What a method reaches, and when.
+
+    Attributes
+    ----------
+    method, kind
+        What it is.
+    steps
+        Iterations done (latin), Newton steps (incremental) or tolerances asked for (peer), (n,).
+    seconds
+        Time from settings to result, medians of the passes, shape (n,).
+    error_displacement, error_force
+        Relative L2 distances to the incremental reference, shape (n,); 0 by definition for itself.
+    """
+
+    method: str
+    kind: Kind
+    steps: Array
+    seconds: Array
+    error_displacement: Array
+    error_force: Array
+
+    @property
+    def seconds_per_iteration(self) -> float | None:
+        """Median time between two iterations; None for a method that has none."""
+        if self.kind != "latin" or len(self.seconds) < 2:
+            return None
+        return float(np.median(np.diff(self.seconds)))
+
+    def reached(self, level: float) -> tuple[float, float] | None:
+        """Give the least time at which the friction force is so near, and the step it was."""
+        near = np.flatnonzero(self.error_force <= level)
+        if not len(near):
+            return None
+        first = near[self.seconds[near].argmin()]
+        return float(self.seconds[first]), float(self.steps[first])
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """All courses of one scene, and under which conditions they were measured.
+
+    Attributes
+    ----------
+    settings
+        The scene; the forms of LATIN change what `FORMS` names.
+    repeats
+        Timed passes.
+    machine
+        Processors, BLAS threads, versions.
+    courses
+        One per method that ran.
+    absent
+        Public solvers that are not installed.
+    troubles
+        What a public solver said where it gave up.
+    """
+
+    settings: Settings
+    repeats: int
+    machine: str
+    courses: tuple[Course, ...]
+    absent: tuple[str, ...]
+    troubles: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Entry:
+    """A method's errors and steps, and how to time it again."""
+
+    method: str
+    kind: Kind
+    steps: list[float]
+    errors: list[tuple[float, float]]
+    timed: Callable[[], list[float]]
+
+
+def error_against_time(settings: Settings, repeats: int) -> Study:
+    """Run every method `repeats` times, in turns.
+
+    Parameters
+    ----------
+    settings
+        Checked settings of a scene.
+    repeats
+        Timed passes, at least 1.
+    """
+    problem = discretise(settings)
+    reference = incremental(problem)
+    distance = distance_to(reference, problem)
+    entries = [
+        _latin_entry(method, settings.replace(**form), distance) for method, form in FORMS.items()
+    ]
+    steps = [float(reference.steps)]
+    entries.append(
+        _Entry(INCREMENTAL, "incremental", steps, [(0.0, 0.0)], lambda: [by_increments(settings)])
+    )
+    troubles: list[str] = []
+    for peer in PEERS:
+        if peer.installed:
+            entries += _peer_entry(peer, settings, distance, troubles)
+    samples: list[list[list[float]]] = [[] for _ in entries]
+    for _ in range(repeats):
+        for entry, times in zip(entries, samples, strict=True):
+            times.append(entry.timed())
+    courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
+    absent = tuple(peer.name for peer in PEERS if not peer.installed)
+    return Study(settings, repeats, machine(), tuple(courses), absent, tuple(troubles))
+
+
+def _latin_entry(
+    method: str,
+    settings: Settings,
+    distance: Distance,
+    goal: float = GOAL,
+    most: int = MOST_ITERATIONS,
+    least: int = 2,
+) -> _Entry:
+    """Find the errors of a form of LATIN, until its friction force is as near as the goal."""
+    errors: list[tuple[float, float]] = []
+    for iterate in islice(iterations(discretise(settings), settings), most):
+        errors.append((distance.of_displacement(iterate), distance.of_friction_force(iterate)))
+        force = errors[-1][1]
+        if not math.isfinite(force) or (force <= goal and iterate.number >= least):
+            break
+    steps = [float(number) for number in range(1, len(errors) + 1)]
+    return _Entry(method, "latin", steps, errors, lambda: _by_iterations(settings, len(steps)))
+
+
+def _by_iterations(settings: Settings, number: int) -> list[float]:
+    """Give the time after every iteration; that of discretising is not on the method's clock."""
+    start = time.perf_counter()
+    problem = discretise(settings)
+    before = time.perf_counter() - start
+    return [before + found.seconds for found in islice(iterations(problem, settings), number)]
+
+
+def by_increments(settings: Settings) -> float:
+    """Give the time of the incremental solver, from settings to result, s."""
+    start = time.perf_counter()
+    incremental(discretise(settings))
+    return time.perf_counter() - start
+
+
+def _peer_entry(
+    peer: Peer, settings: Settings, distance: Distance, troubles: list[str]
+) -> list[_Entry]:
+    """Find the errors of a public solver at the tolerances that it manages, if any."""
+    done, errors = [], []
+    for tolerance in peer.tolerances:
+        try:
+            fields = solve_by_peer(discretise(settings), peer, tolerance)
+        except PeerError as trouble:
+            troubles.append(f"{peer.name} at tolerance {tolerance:g} {trouble}.")
+            continue
+        done.append(tolerance)
+        errors.append((distance.of_displacement(fields), distance.of_friction_force(fields)))
+
+    def timed() -> list[float]:
+        return [_by_peer(peer, settings, tolerance) for tolerance in done]
+
+    return [_Entry(peer.name, "peer", done, errors, timed)] if done else []
+
+
+def _by_peer(peer: Peer, settings: Settings, tolerance: float) -> float:
+    start = time.perf_counter()
+    try:
+        solve_by_peer(discretise(settings), peer, tolerance)
+    except PeerError:  # it did well before, so this is its time limit, on a busier machine
+        return math.inf
+    return time.perf_counter() - start
+
+
+def _course(entry: _Entry, times: list[list[float]]) -> Course:
+    displacement, force = np.array(entry.errors).T
+    return Course(
+        method=entry.method,
+        kind=entry.kind,
+        steps=np.array(entry.steps),
+        seconds=np.median(np.array(times), axis=0),
+        error_displacement=displacement,
+        error_force=force,
+    )
+
+
+def course_of(method: str, settings: Settings, distance: Distance, goal: float) -> Course:
+    """Measure one form of LATIN alone, in one timed pass up to a goal."""
+    entry = _latin_entry(method, settings, distance, goal, most=300, least=12)
+    return _course(entry, [entry.timed()])

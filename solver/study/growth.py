@@ -1,0 +1,91 @@
+"""How the time of an iteration, and the number of them, grow with the size of a problem."""
+
+from __future__ import annotations
+
+import statistics
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.discrete import discretise
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.settings import SettingError, Settings
+from solver.study.error_against_time import FORMS, INCREMENTAL, by_increments, course_of
+
+SIZES = {
+    "elements": (50, 100, 200, 400, 800),
+    "instants": (51, 101, 201, 401),
+    "substructures": (1, 2, 5, 10, 25, 50),
+}
+"""Sizes by the setting that changes; the others stay as they are."""
+MEASURED = ("LATIN multiscale", "LATIN auto k, Anderson", "LATIN auto k, Anderson, nested")
+LEVEL = 0.01
+"""Error of the friction force up to which iterations are counted."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """One size of one method.
+
+    Attributes
+    ----------
+    seconds
+        Of an iteration (its median over the run), or of the whole incremental solution.
+    iterations, total
+        Iterations and seconds, set-up included, to 1 % of friction force error; None where 300
+        do not suffice, and iterations None for the incremental solver.
+    """
+
+    size: int
+    seconds: float
+    iterations: int | None
+    total: float | None
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A method's sizes along one setting."""
+
+    setting: str
+    method: str
+    sizes: tuple[Size, ...]
+
+    @property
+    def exponent(self) -> float | None:
+        """Slope of log(seconds) over log(size), by least squares; None below two sizes."""
+        if len(self.sizes) < 2:
+            return None
+        points = np.log([(found.size, found.seconds) for found in self.sizes])
+        return float(np.polyfit(points[:, 0], points[:, 1], 1)[0])
+
+
+def growth(settings: Settings) -> list[Growth]:
+    """Measure all sizes; those that the scene cannot have, or has no setting for, are left out."""
+    found: dict[tuple[str, str], list[Size]] = {}
+    for setting, sizes in SIZES.items():
+        for size in sizes:
+            try:
+                changed = settings.replace(**{setting: size})
+            except SettingError:
+                continue
+            for method, measured in _one_size(changed, size).items():
+                found.setdefault((setting, method), []).append(measured)
+    return [Growth(setting, method, tuple(sizes)) for (setting, method), sizes in found.items()]
+
+
+def _one_size(settings: Settings, size: int) -> dict[str, Size]:
+    problem = discretise(settings)
+    distance = distance_to(incremental(problem), problem)
+    seconds = statistics.median(by_increments(settings) for _ in range(3))
+    found = {INCREMENTAL: Size(size, seconds, None, seconds)}
+    for method in MEASURED:
+        course = course_of(method, settings.replace(**FORMS[method]), distance, LEVEL)
+        reached = course.reached(LEVEL)
+        found[method] = Size(
+            size,
+            course.seconds_per_iteration or float(course.seconds[0]),
+            int(reached[1]) if reached else None,
+            reached[0] if reached else None,
+        )
+    return found

@@ -1,0 +1,214 @@
+"""The stability matrix as lines on a console, a CSV file, and one HTML page."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+
+from solver.study.stability import MEANING, METHODS, SAME_UP_TO, Row, Verdict
+
+COLOURS = {
+    Verdict.RIGHT: "#0072B2",
+    Verdict.NEAR: "#56B4E9",
+    Verdict.TOLD: "#E69F00",
+    Verdict.FAIL: "#D55E00",
+}
+"""Okabe and Ito's palette, told apart by the colour-blind."""
+FILES = ("stability.csv", "stability.html")
+COLUMNS = (
+    "group",
+    "case",
+    "method",
+    "expected",
+    "verdict",
+    "passed",
+    "status",
+    "iterations",
+    "error_displacement",
+    "error_force",
+    "indicator",
+    "behaviour",
+    "condition_structure",
+    "condition_substructure",
+    "seconds",
+    "advice",
+)
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Slipfront: stability</title>
+<style>
+body {{ font: 15px/1.45 system-ui, sans-serif; max-width: 90rem; margin: 2rem auto;
+  padding: 0 1rem; color: #222; background: #fff; }}
+table {{ border-collapse: collapse; font-size: 0.85rem; }}
+th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left;
+  vertical-align: top; }}
+td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
+td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
+</style>
+<h1>Stability on stiff and extreme cases</h1>
+<p><b>{summary}</b></p>
+<ul>
+{notes}
+</ul>
+<table>
+<tr>{heads}</tr>
+{rows}
+</table>
+</html>
+"""
+
+
+def passes(rows: Sequence[Row], apart: Mapping[str, float]) -> bool:
+    """Tell whether every case came to what is expected, and no unit changed an iterate."""
+    same = all(found <= SAME_UP_TO for found in apart.values())
+    return same and all(row.as_expected for row in rows)
+
+
+def line(row: Row) -> str:
+    """Give one row of the console's table."""
+    found, case = row.outcome, row.case
+    return (
+        f"{_passed(row):<5} {row.verdict:<6} {case.group + ': ' + case.name:<44} {row.method:<12} "
+        f"{found.ending:<10} {found.iterations:>5} {found.error_displacement:8.1e} "
+        f"{found.error_force:8.1e} {found.condition_structure:8.1e} "
+        f"{found.condition_substructure:8.1e} {found.seconds:6.2f} s"
+    )
+
+
+HEAD = (
+    f"{'':<5} {'':<6} {'case':<44} {'method':<12} {'status':<10} {'iter.':>5} {'error W':>8} "
+    f"{'error F':>8} {'cond. K':>8} {'cond. E':>8}"
+)
+
+
+def summary(rows: Sequence[Row]) -> str:
+    """Say in a sentence how many rows came to what."""
+    counts = Counter(row.verdict for row in rows)
+    told = ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
+    passed = sum(row.as_expected for row in rows)
+    return f"{passed} of {len(rows)} runs pass: {told}."
+
+
+def notes(apart: Mapping[str, float]) -> list[str]:
+    """Say what the words mean, and what the table does not show."""
+    words = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
+    units = ", ".join(f"{found:.1e} {name}" for name, found in apart.items())
+    held = "holds" if max(apart.values()) <= SAME_UP_TO else "does not hold"
+    return [
+        *words,
+        "A run passes if it does not fail and, where the right answer is expected, comes to it or "
+        "near it. Errors are distances to the incremental reference, over space and time, relative "
+        "to it; to the load or absolute where it is zero.",
+        "Methods: "
+        + "; ".join(
+            f"{name}: {', '.join(f'{key}={value}' for key, value in options.items()) or 'Table 1'}"
+            for name, options in METHODS.items()
+        )
+        + ". Condition numbers: of the assembled stiffness with its support (K), and the largest "
+        "of the substructures' operators K + B' k B (E).",
+        "Stiffness contrast: no setting makes a bar of varying section; these cases scale the "
+        "matrices of the discrete problem, from the zero start, since coarser meshes of the nested "
+        "start would be uniform.",
+        f"Invariance {held}: largest relative difference of an iterate in other units, {units}.",
+    ]
+
+
+def prepare(folder: Path) -> None:
+    """Make the folder and its files, so that a long run does not fail at its end.
+
+    Raises
+    ------
+    OSError
+        When that is not possible.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in FILES:
+        (folder / name).open("a", encoding="utf-8").close()
+
+
+def write_report(rows: Sequence[Row], apart: Mapping[str, float], folder: Path) -> list[Path]:
+    """Write `stability.csv` and `stability.html`.
+
+    Parameters
+    ----------
+    rows
+        The matrix.
+    apart
+        What `invariance` found.
+    folder
+        An existing folder; files of these names are replaced.
+
+    Returns
+    -------
+    The files.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
+    """
+    table, page = (folder / name for name in FILES)
+    with table.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS)
+        writer.writeheader()
+        writer.writerows(values(row) for row in rows)
+    page.write_text(html(rows, apart), encoding="utf-8")
+    return [table, page]
+
+
+def values(row: Row) -> dict[str, object]:
+    """Give the entries of a row by column."""
+    found = row.outcome
+    return {
+        "group": row.case.group,
+        "case": row.case.name,
+        "method": row.method,
+        "expected": row.case.expected,
+        "verdict": str(row.verdict),
+        "passed": _passed(row),
+        "status": str(found.ending),
+        "iterations": found.iterations,
+        "error_displacement": found.error_displacement,
+        "error_force": found.error_force,
+        "indicator": found.indicator,
+        "behaviour": found.behaviour,
+        "condition_structure": found.condition_structure,
+        "condition_substructure": found.condition_substructure,
+        "seconds": found.seconds,
+        "advice": f"{found.warned} {found.advice}".strip(),
+    }
+
+
+def html(rows: Sequence[Row], apart: Mapping[str, float]) -> str:
+    """Write the page."""
+    return PAGE.format(
+        summary=escape(summary(rows)),
+        notes="\n".join(f"<li>{escape(note)}</li>" for note in notes(apart)),
+        heads="".join(f"<th>{column.replace('_', ' ')}</th>" for column in COLUMNS),
+        rows="\n".join(_row(row) for row in rows),
+    )
+
+
+def _row(row: Row) -> str:
+    cells = []
+    for column, value in values(row).items():
+        if column == "verdict":
+            colour = COLOURS[row.verdict]
+            cells.append(f'<td class="verdict" style="border-color: {colour}">{value}</td>')
+        elif isinstance(value, float):
+            text = f"{value:.2f}" if column == "seconds" else f"{value:.1e}"
+            cells.append(f'<td class="number">{text}</td>')
+        elif isinstance(value, int):
+            cells.append(f'<td class="number">{value}</td>')
+        else:
+            cells.append(f"<td>{escape(str(value))}</td>")
+    return f"<tr>{''.join(cells)}</tr>"
+
+
+def _passed(row: Row) -> str:
+    return "pass" if row.as_expected else "FAIL"

@@ -1,0 +1,193 @@
+"""The report of a study: who is first where, tables, and CSV files."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple
+from pathlib import Path
+
+from solver.study.error_against_time import GOAL, INCREMENTAL, LEVELS, MOST_ITERATIONS, Study
+from solver.study.growth import Growth
+
+Row = list[str]
+BILLED = (
+    "Everything from settings to result is billed: discretisation, factorisation, coarser meshes, "
+    "iterations; imports and the computation of errors are not. The forms of LATIN end at a "
+    f"friction force error of {GOAL:g} or after {MOST_ITERATIONS} iterations. Errors are relative "
+    "L2 distances over space and time to the incremental solver's result on the same mesh and "
+    "instants, whose own error is 0 by definition. The QP solvers minimise 1/2 w'Kw under "
+    "|g - Kw| <= r at every instant, in units of the largest bound r, each at several tolerances "
+    "(DAQP, which is exact, at one); the table takes the quickest run that is near enough."
+)
+
+
+def conditions(study: Study) -> list[str]:
+    """Give under which conditions the study was measured, in sentences."""
+    changed = study.settings.changed()
+    values = ", ".join(f"{name} = {value}" for name, value in changed.items()) or "defaults"
+    lines = [
+        f"Scene: {study.settings.scene} ({values}).",
+        f"Machine: {study.machine}.",
+        f"All methods in one process, in turns; medians of {study.repeats} passes.",
+        BILLED,
+    ]
+    asked = [
+        f"{course.method} {', '.join(f'{step:g}' for step in course.steps)}"
+        for course in study.courses
+        if course.kind == "peer"
+    ]
+    if asked:
+        lines.append(
+            f"Tolerances: {'; '.join(asked)}. Interior points need far less than 1e-8, which with "
+            "Table 1 leaves 2e-4 in the friction force; PIQP and Clarabel test the duality gap."
+        )
+    if study.absent:
+        lines.append(f"Not installed, so absent: {', '.join(study.absent)}.")
+    return [*lines, *study.troubles]
+
+
+def verdicts(study: Study) -> list[str]:
+    """Say which method is first at each level, and how the best form of LATIN compares."""
+    lines = []
+    for name, level in LEVELS.items():
+        times = {
+            course.method: reached[0]
+            for course in study.courses
+            if (reached := course.reached(level)) is not None
+        }
+        first = min(times, key=times.__getitem__)
+        line = f"To {name}: first is {first} with {_ms(times[first])} ms"
+        forms = {
+            course.method: times[course.method]
+            for course in study.courses
+            if course.kind == "latin" and course.method in times
+        }
+        if not forms:
+            lines.append(f"{line}; no form of LATIN gets there.")
+            continue
+        best = min(forms, key=forms.__getitem__)
+        others = ", ".join(
+            f"{_times(forms[best] / times[course.method])} as long as {_the(course.method)}"
+            for course in study.courses
+            if course.kind != "latin" and course.method in times
+        )
+        form = (
+            "it" if best == first else f"the best form of LATIN, {best}, with {_ms(forms[best])} ms"
+        )
+        lines.append(f"{line}; {form} takes {others}.")
+    return lines
+
+
+def table(study: Study) -> list[Row]:
+    """Give the time to each level, with the iterations in brackets, and what an iteration costs."""
+    rows = [["friction force error", *LEVELS, "ms/iteration", "least error"]]
+    for course in study.courses:
+        cells = []
+        for level in LEVELS.values():
+            reached = course.reached(level)
+            number = f" ({reached[1]:.0f})" if reached and course.kind == "latin" else ""
+            cells.append(f"{_ms(reached[0])} ms{number}" if reached else "not reached")
+        each = course.seconds_per_iteration
+        cost = f"{1e3 * each:.3f}" if each is not None else "-"
+        rows.append([course.method, *cells, cost, f"{course.error_force.min():.1e}"])
+    return rows
+
+
+def growth_table(found: Sequence[Growth]) -> list[Row]:
+    """Give the fitted exponents, and the iterations to 1 %, with the sizes they come from."""
+    rows = [["growth with", "method", "exponent", "sizes", "ms", "iterations to 1 %"]]
+    for one in found:
+        whole = one.method == INCREMENTAL
+        iterations = (str(size.iterations or ">300") for size in one.sizes)
+        cells = [
+            one.setting,
+            f"{one.method} ({'whole' if whole else 'an iteration'})",
+            f"{one.exponent:.2f}" if one.exponent is not None else "-",
+            " ".join(str(size.size) for size in one.sizes),
+            " ".join(f"{1e3 * size.seconds:.2g}" for size in one.sizes),
+            "-" if whole else " ".join(iterations),
+        ]
+        rows += [cells]
+    return rows
+
+
+def aligned(rows: Sequence[Row]) -> str:
+    """Set a table in columns for a console."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
+
+
+def write_tables(study: Study, found: Sequence[Growth], folder: Path) -> list[Path]:
+    """Write `curves.csv`, `levels.csv` and, with sizes, `growth.csv` (s; errors as fractions).
+
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
+    """
+    files = [
+        _write(
+            folder / "curves.csv",
+            ["method", "kind", "step", "seconds", "error_displacement", "error_force"],
+            (
+                (course.method, course.kind, *map(float, point))
+                for course in study.courses
+                for point in zip(
+                    course.steps,
+                    course.seconds,
+                    course.error_displacement,
+                    course.error_force,
+                    strict=True,
+                )
+            ),
+        ),
+        _write(
+            folder / "levels.csv",
+            ["method", "kind", "level", "seconds", "step", "seconds_per_iteration"],
+            (
+                (
+                    course.method,
+                    course.kind,
+                    level,
+                    *(course.reached(level) or ("", "")),
+                    course.seconds_per_iteration,
+                )
+                for course in study.courses
+                for level in LEVELS.values()
+            ),
+        ),
+    ]
+    if found:
+        head = ["setting", "exponent", "method", "size", "seconds"]
+        rows = (
+            (one.setting, one.exponent, one.method, *astuple(size))
+            for one in found
+            for size in one.sizes
+        )
+        head += ["iterations_to_1_percent", "seconds_to_1_percent"]
+        files.append(_write(folder / "growth.csv", head, rows))
+    return files
+
+
+def _write(file: Path, head: Row, rows: Iterable[Sequence[object]]) -> Path:
+    with file.open("w", encoding="utf-8", newline="") as open_file:
+        writer = csv.writer(open_file)
+        writer.writerow(head)
+        writer.writerows(rows)
+    return file
+
+
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.3g}"
+
+
+def _times(ratio: float) -> str:
+    return f"{ratio:.2g} times"
+
+
+def _the(method: str) -> str:
+    return f"the {method}" if method == INCREMENTAL else method

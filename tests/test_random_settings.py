@@ -1,0 +1,191 @@
+"""Whatever the settings, a run ends with finite fields and a known status, or is refused in words.
+
+SLIPFRONT_RANDOM_RUNS=5000 makes that many runs, other ones each time, instead of the few here.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+
+import numpy as np
+import param
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+
+from solver.discrete import discretise
+from solver.latin import Ending, solve
+from solver.latin.solve import agreement
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.scenes.bar import BarSettings
+from solver.settings import Curve, SettingError
+
+RUNS = os.environ.get("SLIPFRONT_RANDOM_RUNS")
+RANDOM = settings(
+    derandomize=RUNS is None,
+    database=None,
+    deadline=None,
+    max_examples=int(RUNS or 250),
+    print_blob=True,
+    suppress_health_check=list(HealthCheck),
+)
+TIGHTLY = settings(RANDOM, max_examples=int(RUNS or 100))
+TIGHT, WRONG = 1e-16, 1e-3
+DEFINITIONS = BarSettings.definitions()
+SMALL = {
+    "elements": 30,
+    "instants": 30,
+    "substructures": 30,
+    "max_iterations": 60,
+    "nested_iterations": 20,
+    "pgd_modes": 20,
+    "pgd_pairs": 5,
+    "pgd_fixed_point_steps": 10,
+    "anderson_memory": 30,
+}
+"""Upper bounds that keep a run short; all other settings go over their whole range."""
+FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
+DECADES = 12.0
+"""Decades below one that a value may be small by, where its range begins at zero."""
+
+
+def sizes(low, high):
+    """Positive numbers of any size in a range, all decades alike, and its two ends."""
+    exponents = st.floats(math.log10(low), math.log10(high))
+    return exponents.map(lambda power: min(max(10.0**power, low), high)) | st.sampled_from(
+        [low, high]
+    )
+
+
+def numbers(low, high):
+    """Numbers of any size and of all allowed signs."""
+    if low > 0.0:
+        return sizes(low, high)
+    positive = sizes(10.0**-DECADES, high)
+    signed = positive if low == 0.0 else positive | positive.map(lambda size: -size)
+    return st.just(0.0) | signed
+
+
+def tables(definition, extent):
+    """Points over, before and beyond an extent: plateaus, jumps and reversals among them."""
+    low = 0.0 if definition.ordinate == "factor" else -1e15
+    places = st.lists(st.floats(-0.2, 1.2), min_size=1, max_size=8, unique=True).map(sorted)
+    values = st.lists(
+        numbers(low, 1e15) | st.sampled_from([0.0, 900.0, 1e-6, 1e6]), min_size=8, max_size=8
+    )
+    return st.tuples(places, values).map(
+        lambda pair: [[place * extent, value] for place, value in zip(*pair, strict=False)]
+    )
+
+
+def values_of(name, definition, extents):
+    if isinstance(definition, Curve):
+        extent = extents[definition.abscissa]
+        return st.sampled_from(definition.presets) | tables(definition, extent)
+    if isinstance(definition, param.Boolean):
+        return st.booleans()
+    if isinstance(definition, param.Selector):
+        return st.sampled_from(definition.objects)
+    low, high = definition.bounds
+    if isinstance(definition, param.Integer):
+        return st.integers(low, min(high, SMALL.get(name, high)))
+    return numbers(low, high)
+
+
+@st.composite
+def values(draw):
+    """Any values in their ranges, for few or for most of the settings; the rest keep defaults."""
+    chosen = {
+        name: draw(st.integers(1, SMALL[name]))
+        for name in ("elements", "instants", "max_iterations")
+    }
+    chosen["substructures"] = draw(st.integers(1, chosen["elements"]))
+    if draw(st.booleans()):
+        chosen |= FAST
+    others = sorted(set(DEFINITIONS) - chosen.keys())
+    some = set(draw(st.permutations(others))[: draw(st.integers(0, len(others)))])
+    for name in ("length", "duration"):
+        if name in some:
+            chosen[name] = draw(values_of(name, DEFINITIONS[name], {}))
+    extents = {
+        "position": chosen.get("length", DEFINITIONS["length"].default),
+        "time": chosen.get("duration", DEFINITIONS["duration"].default),
+    }
+    for name in sorted(some - chosen.keys()):
+        chosen[name] = draw(values_of(name, DEFINITIONS[name], extents))
+    return chosen
+
+
+def run(chosen):
+    problem = discretise(chosen)
+    reference = incremental(problem)
+    return reference, solve(problem, chosen, distance=distance_to(reference, problem))
+
+
+@RANDOM
+@given(values())
+def test_any_run_ends_finite_with_a_status_or_is_refused(raw):
+    try:
+        chosen = BarSettings.checked(raw)
+    except SettingError:
+        event("refused")
+        return
+    reference, solution = run(chosen)
+    ending = solution.status.ending
+    event(str(ending))
+    assert ending in set(Ending)
+    assert solution.status.advice
+    assert np.isfinite(reference.displacement).all()
+    assert np.isfinite(reference.friction_force).all()
+    if ending is not Ending.DIVERGED or solution.records:
+        assert np.isfinite(solution.iterate.displacement).all()
+        assert np.isfinite(solution.iterate.friction_force).all()
+    for entry in solution.records:
+        assert math.isfinite(entry.indicator)
+        assert not math.isnan(entry.behaviour)
+        assert not math.isnan(entry.error_displacement)
+        assert not math.isnan(entry.error_force)
+    if ending is Ending.CONVERGED:
+        assert_right(chosen, reference, solution)
+
+
+@TIGHTLY
+@given(values(), st.floats(-30.0, -16.0), st.integers(1, 8), st.integers(1, 12))
+def test_whatever_is_called_converged_at_a_tight_tolerance_is_right(raw, power, elements, instants):
+    tight = {
+        "tolerance": 10.0**power,
+        "elements": elements,
+        "instants": instants,
+        "substructures": min(raw["substructures"], elements),
+        "max_iterations": 400,
+        "linear_stage": "full",
+    }
+    chosen = BarSettings.checked({**raw, **tight})
+    reference, solution = run(chosen)
+    event(str(solution.status.ending))
+    if solution.status.ending is Ending.CONVERGED:
+        assert_right(chosen, reference, solution)
+
+
+def assert_right(chosen, reference, solution):
+    last = solution.records[-1]
+    assert last.indicator <= chosen.tolerance
+    assert last.behaviour <= agreement(chosen.tolerance)
+    if chosen.tolerance > TIGHT or not reference.friction_force.any():
+        return
+    problem = solution.iterate.problem
+    size = np.abs(reference.displacement).max() / problem.scales.displacement
+    resolved = 1e-9 * np.abs(solution.iterate.boundary_force).max()
+    if moves_by_less(problem, max(resolved, 1e-9 * size)):
+        return
+    event("converged tightly")
+    if size > resolved:
+        assert last.error_displacement <= WRONG
+    assert last.error_force <= WRONG
+
+
+def moves_by_less(problem, resolved):
+    """Tell whether a support moves by so little that rounding decides its friction force."""
+    moved = np.abs(np.diff(problem.prescribed[1], axis=1, prepend=0.0))
+    return bool(((moved > 0.0) & (moved < resolved)).any())

@@ -1,0 +1,215 @@
+"""The stability matrix: what it finds, how it judges, and what the command writes."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+
+from solver import cli
+from solver.cli import main
+from solver.discrete import discretise
+from solver.latin import Ending
+from solver.reference.incremental import incremental
+from solver.scenes.bar import BarSettings
+from solver.study.stability import (
+    METHODS,
+    SAME_UP_TO,
+    Outcome,
+    Row,
+    Verdict,
+    condition_of_structure,
+    condition_of_substructures,
+    invariance,
+    judge,
+    stability,
+    with_contrast,
+)
+from solver.study.stability_cases import RIGHT, TOLD, Case, cases
+from solver.study.stability_report import COLOURS, COLUMNS, notes, passes, summary, values
+
+GOOD = Outcome(
+    ending=Ending.CONVERGED,
+    advice="Both indicators are low.",
+    iterations=10,
+    seconds=0.1,
+    indicator=1e-21,
+    behaviour=1e-9,
+    error_displacement=1e-9,
+    error_force=1e-8,
+    finite=True,
+    warned="",
+    condition_structure=1e3,
+    condition_substructure=10.0,
+)
+KNOWN_TOLD = {
+    ("k_scale", "1e-06"): "k is a millionth of the stiffness in play",
+    ("k_scale", "1e+06"): "k is a million times the stiffness in play",
+    ("stiffness contrast", "1e+08 towards the load"): "one k does not suit eight decades",
+    ("friction", "1e-12"): "friction is 1e-12 of the load, which rounding leaves four digits of",
+}
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return stability(case for case in cases() if case.quick)
+
+
+def changed(**changes):
+    return dataclasses.replace(GOOD, **changes)
+
+
+def test_every_quick_case_comes_to_what_is_expected(rows):
+    assert [row for row in rows if not row.as_expected] == []
+    assert len(rows) == 2 * sum(case.quick for case in cases())
+
+
+def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
+    for row in rows:
+        place = (row.case.group, row.case.name)
+        if row.verdict is Verdict.TOLD:
+            assert place in KNOWN_TOLD
+            assert row.outcome.ending in {Ending.STALLED, Ending.EXHAUSTED}
+        else:
+            assert row.verdict is Verdict.RIGHT
+
+
+@pytest.mark.parametrize(
+    ("outcome", "verdict"),
+    [
+        (GOOD, Verdict.RIGHT),
+        (changed(error_force=1e-5), Verdict.NEAR),
+        (changed(error_force=2e-3), Verdict.FAIL),
+        (changed(error_displacement=0.5), Verdict.FAIL),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.TOLD),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""), Verdict.FAIL),
+        (changed(ending=Ending.STALLED), Verdict.RIGHT),
+        (changed(error_force=math.nan), Verdict.FAIL),
+        (changed(error_displacement=math.nan), Verdict.FAIL),
+        (changed(finite=False, ending=Ending.DIVERGED), Verdict.FAIL),
+        (changed(warned="overflow"), Verdict.FAIL),
+    ],
+)
+def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
+    assert judge(outcome) is verdict
+
+
+def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
+    wrong = changed(error_force=0.5, ending=Ending.STALLED)
+    for expected, as_expected in ((RIGHT, False), (TOLD, True)):
+        assert Row(Case("a", "b", {}, expected), "default", wrong, judge(wrong)).as_expected is (
+            as_expected
+        )
+
+
+def test_one_failure_or_one_changed_iterate_fails_the_whole():
+    right, bad = (
+        Row(Case("a", "b"), "default", found, judge(found))
+        for found in (GOOD, changed(error_force=1.0))
+    )
+    assert passes([right], {"units": 1e-12})
+    assert not passes([right, bad], {"units": 1e-12})
+    assert not passes([right], {"units": 1e-9})
+
+
+def test_the_matrix_covers_the_ranges():
+    groups = {case.group for case in cases()}
+    assert groups >= {"k_scale", "young", "length", "friction", "pressure", "load", "relaxation"}
+    assert groups >= {"substructures", "instants", "nodes", "stiffness contrast"}
+    for name in ("k_scale", "young", "length"):
+        tried = [case.changes[name] for case in cases() if case.group == name]
+        low, high = BarSettings.definitions()[name].bounds
+        assert (min(tried), max(tried)) == (low, high)
+
+
+def test_units_change_no_iterate():
+    found = invariance()
+    assert len(found) == 2 * len(METHODS)
+    assert max(found.values()) <= SAME_UP_TO
+
+
+def test_condition_numbers_are_those_of_the_dense_matrices():
+    problem = with_contrast(
+        discretise(BarSettings.checked({"elements": 9, "substructures": 3})), 50
+    )
+    k = 3.0 * problem.direction
+    whole, largest = np.zeros((10, 10)), 0.0
+    for part in problem.substructures:
+        own = part.elasticity.stiffness.toarray()
+        whole[np.ix_(part.dofs, part.dofs)] += own
+        trace = np.eye(len(part.dofs))[part.elasticity.trace]
+        largest = max(largest, np.linalg.cond(own + trace.T @ np.diag(k[part.rows]) @ trace))
+    assert condition_of_structure(problem) == pytest.approx(np.linalg.cond(whole[1:, 1:]))
+    assert condition_of_substructures(problem, k) == pytest.approx(largest)
+
+
+def test_elements_in_a_row_stretch_by_the_inverse_of_their_stiffness():
+    settings = BarSettings.checked(
+        {"elements": 7, "substructures": 2, "friction": 0.0, "load": "ramp", "instants": 2}
+    )
+    found = incremental(with_contrast(discretise(settings), 1e6)).displacement[:, -1]
+    stretch = np.diff(found)
+    assert stretch[:-1] / stretch[1:] == pytest.approx(np.full(6, 10.0))
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch, capsys):
+    few = [Case("load", "zero <N>", {"peak": 0.0}, quick=True), Case("friction", "0")]
+    monkeypatch.setattr(cli, "cases", lambda: few)
+    folder = tmp_path / "made by" / "the command"
+    code = main(["stability", "--quick", "--out", str(folder)])
+    return folder, code, capsys.readouterr()
+
+
+def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
+    folder, code, (out, err) = written
+    assert (code, err) == (0, "")
+    assert {file.name for file in folder.iterdir()} == {"stability.csv", "stability.html"}
+    with (folder / "stability.csv").open(encoding="utf-8", newline="") as file:
+        found = list(csv.DictReader(file))
+    assert [row["method"] for row in found] == list(METHODS)
+    assert all(row["verdict"] == "right" for row in found)
+    assert tuple(found[0]) == COLUMNS
+    page = (folder / "stability.html").read_text(encoding="utf-8")
+    assert "zero &lt;N&gt;" in page
+    assert "2 of 2 runs pass" in page
+    assert "2 of 2 runs pass" in out
+    assert not re.search(r"https?:|src=|href|@import|<script|url\(", page)
+
+
+def test_every_verdict_has_its_own_colour_and_words(rows):
+    assert set(COLOURS) == set(Verdict)
+    assert len(set(COLOURS.values())) == len(Verdict)
+    text = " ".join(notes({"units": 0.0}))
+    assert all(f"{verdict}: " in text for verdict in Verdict)
+    assert "no setting makes a bar of varying section" in text
+    assert summary(rows).startswith(f"{len(rows)} of {len(rows)} runs pass")
+    assert tuple(values(rows[0])) == COLUMNS
+
+
+def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
+    monkeypatch.setattr(cli, "cases", lambda: [Case("load", "too few", {"max_iterations": 3})])
+    assert main(["stability", "--out", str(tmp_path)]) == 1
+    assert "FAIL" in (tmp_path / "stability.csv").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("obstacle", ["folder is a file", "page is a folder"])
+def test_a_folder_that_cannot_be_written_to_is_refused_before_the_runs(
+    tmp_path, monkeypatch, capsys, obstacle
+):
+    monkeypatch.setattr(cli, "stability", lambda *rest: pytest.fail("it ran"))
+    folder = tmp_path / "out"
+    if obstacle == "page is a folder":
+        (folder / "stability.html").mkdir(parents=True)
+        (folder / "stability.csv").mkdir()
+    else:
+        folder.write_text("in the way", encoding="utf-8")
+    assert main(["stability", "--out", str(folder)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert "a folder that can be made and written to" in err

@@ -1,0 +1,236 @@
+"""`python -m solver study` measures what it says, and its sentences follow from its numbers."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver import cli
+from solver.cli import main
+from solver.discrete import discretise
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.scenes.bar import BarSettings
+from solver.study import peers
+from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, Course, Study
+from solver.study.growth import Growth, Size, growth
+from solver.study.machine import machine, one_blas_thread
+from solver.study.peers import PEERS, PeerError, solve_by_peer
+from solver.study.study_report import growth_table, table, verdicts
+
+TINY = ["study", "bar", "--set", "elements=20", "--set", "instants=21", "--set", "substructures=4"]
+TINY += ["--repeats", "1", "--no-growth"]
+WHAT_PEERS_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
+
+
+def rows(file):
+    with file.open(encoding="utf-8", newline="") as text:
+        return list(csv.DictReader(text))
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """Give the folder that the command fills, and the study behind it."""
+    kept = []
+    folder = tmp_path_factory.mktemp("study") / "made"
+    with pytest.MonkeyPatch.context() as patch:
+        original = cli.error_against_time
+        patch.setattr(
+            cli, "error_against_time", lambda *given: kept.append(original(*given)) or kept[0]
+        )
+        assert main([*TINY, "--out", str(folder)]) == 0
+    return folder, kept[0]
+
+
+def course(method, kind, seconds, errors):
+    steps = np.arange(1.0, len(seconds) + 1.0)
+    return Course(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
+
+
+def study_of(*courses):
+    return Study(BarSettings.checked({}), 1, "machine", courses, (), ())
+
+
+def test_tables_and_a_page_that_stands_alone_are_written(measured):
+    folder, study = measured
+    assert {file.name for file in folder.iterdir()} == {"curves.csv", "levels.csv", "study.html"}
+    page = (folder / "study.html").read_text(encoding="utf-8")
+    assert page.count('src="data:image/png;base64,') == 1
+    assert not re.search(r"https?:|href|@import|<script|url\(", page)
+    for words in (*FORMS, INCREMENTAL, "BLAS threads: 1", *verdicts(study)):
+        assert words.replace("'", "&#x27;") in page
+
+
+def test_the_curves_have_every_method_with_times_that_increase(measured):
+    found = rows(measured[0] / "curves.csv")
+    assert list(found[0]) == [
+        *("method", "kind", "step", "seconds", "error_displacement", "error_force")
+    ]
+    installed = {peer.name for peer in PEERS if peer.installed}
+    assert {row["method"] for row in found} == {*FORMS, INCREMENTAL, *installed}
+    for method in FORMS:
+        seconds = [float(row["seconds"]) for row in found if row["method"] == method]
+        assert (np.diff(seconds) > 0.0).all()
+        assert len(seconds) > 1
+
+
+def test_the_first_iteration_pays_for_the_set_up(measured):
+    for one in measured[1].courses:
+        assert one.seconds.min() > 0.0
+        if one.kind == "latin":
+            assert one.seconds[0] > one.seconds_per_iteration
+
+
+def test_accelerated_forms_end_below_a_millionth(measured):
+    for one in measured[1].courses:
+        if "Anderson" in one.method:
+            assert one.error_force[-1] <= 1e-6
+            assert one.error_displacement[-1] <= 1e-6
+
+
+def test_the_levels_agree_with_the_curves(measured):
+    curves = rows(measured[0] / "curves.csv")
+    for row in rows(measured[0] / "levels.csv"):
+        times = [
+            float(point["seconds"])
+            for point in curves
+            if point["method"] == row["method"]
+            and float(point["error_force"]) <= float(row["level"])
+        ]
+        assert row["seconds"] == (str(min(times)) if times else "")
+
+
+def test_the_sentences_name_the_first_of_the_levels(measured):
+    folder, study = measured
+    for level, sentence in zip(LEVELS.values(), verdicts(study), strict=True):
+        times = {
+            row["method"]: float(row["seconds"])
+            for row in rows(folder / "levels.csv")
+            if float(row["level"]) == level and row["seconds"]
+        }
+        assert f"first is {min(times, key=times.get)} with" in sentence
+
+
+def test_where_the_incremental_solver_wins_the_report_says_by_how_much():
+    study = study_of(
+        course("LATIN multiscale", "latin", [0.01, 0.03, 0.2], [0.5, 0.05, 1e-7]),
+        course(INCREMENTAL, "incremental", [0.02], [0.0]),
+    )
+    coarse, *_, fine = verdicts(study)
+    assert "first is incremental solver with 20 ms" in coarse
+    assert "LATIN multiscale, with 30 ms takes 1.5 times as long as the incremental" in coarse
+    assert "with 200 ms takes 10 times as long" in fine
+
+
+def test_where_latin_wins_or_never_arrives_the_report_says_so():
+    study = study_of(
+        course("LATIN multiscale", "latin", [0.01, 0.02], [0.05, 0.005]),
+        course(INCREMENTAL, "incremental", [0.04], [0.0]),
+    )
+    first, second, third, _ = verdicts(study)
+    assert first == (
+        "To 10 %: first is LATIN multiscale with 10 ms; it takes 0.25 times as long as the "
+        "incremental solver."
+    )
+    assert "0.5 times" in second
+    assert third.endswith("no form of LATIN gets there.")
+    assert table(study)[1][3] == "not reached"
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (["--repeats", "0"], "--repeats"),
+        (["--set", "elements=x"], "elements"),
+        (["--set", "colour=1"], "colour"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(tmp_path, capsys, words, name):
+    assert main(["study", "bar", "--out", str(tmp_path / "out"), *words]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1
+    assert name in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_measured(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr(cli, "error_against_time", lambda *given: pytest.fail("measured"))
+    (tmp_path / "file").write_text("in the way", encoding="utf-8")
+    assert main([*TINY, "--out", str(tmp_path / "file")]) == 2
+    assert "a folder that can be made and written to" in capsys.readouterr().err
+
+
+def test_without_matplotlib_the_tables_are_written_and_one_line_says_so(
+    tmp_path, monkeypatch, capsys, measured
+):
+    monkeypatch.setattr(cli, "error_against_time", lambda *given: measured[1])
+    monkeypatch.setitem(cli.sys.modules, "matplotlib", None)
+    for module in ("solver.study.drawing", "solver.study.study_page", "matplotlib.axes"):
+        monkeypatch.delitem(cli.sys.modules, module, raising=False)
+    assert main([*TINY, "--out", str(tmp_path)]) == 0
+    assert {file.name for file in tmp_path.iterdir()} == {"curves.csv", "levels.csv"}
+    assert "The page needs matplotlib" in capsys.readouterr().out
+
+
+def test_absent_solvers_are_named(monkeypatch, tmp_path, capsys):
+    nowhere = replace(PEERS[0], module="no_such_module")
+    monkeypatch.setattr("solver.study.error_against_time.PEERS", (nowhere,))
+    words = [*TINY, "--out", str(tmp_path)]
+    assert main(words) == 0
+    assert "Not installed, so absent: PIQP." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
+@pytest.mark.parametrize(
+    "changes",
+    [{}, {"pressure_profile": "gap"}, {"support_displacement": 1e-4}, {"body_force": 500.0}],
+    ids=str,
+)
+def test_public_solvers_agree_with_the_incremental_solver(peer, changes):
+    if not peer.installed:
+        pytest.skip(f"{peer.module} is not installed")
+    problem = discretise(BarSettings.checked({"elements": 20, "instants": 21, **changes}))
+    distance = distance_to(incremental(problem), problem)
+    fields = solve_by_peer(problem, peer, peer.tolerances[-1])
+    assert distance.of_friction_force(fields) < WHAT_PEERS_REACH[peer.name]
+    assert distance.of_displacement(fields) < WHAT_PEERS_REACH[peer.name]
+
+
+def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):
+    monkeypatch.setattr(peers, "TIME_LIMIT", -1.0)
+    idle = replace(PEERS[0], prepare=lambda *given: lambda lower, upper: 0.0 * lower)
+    with pytest.raises(PeerError, match="at instant 1"):
+        solve_by_peer(discretise(BarSettings.checked({"substructures": 2})), idle, 1.0)
+
+
+def test_the_exponent_is_the_slope_and_needs_two_sizes():
+    sizes = tuple(Size(n, 1e-6 * n**1.5, None, None) for n in (10, 20, 40))
+    assert Growth("elements", "a", sizes).exponent == pytest.approx(1.5)
+    assert Growth("elements", "a", sizes[:1]).exponent is None
+    assert growth_table([Growth("elements", "a", sizes)])[1][2] == "1.50"
+
+
+def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
+    monkeypatch.setattr(
+        "solver.study.growth.SIZES", {"elements": (2, 8, 16), "substructures": (1, 4)}
+    )
+    found = growth(BarSettings.checked({"elements": 8, "instants": 5, "substructures": 3}))
+    assert {one.setting: [size.size for size in one.sizes] for one in found} == {
+        "elements": [8, 16],
+        "substructures": [1, 4],
+    }
+    assert all(size.seconds > 0.0 for one in found for size in one.sizes)
+
+
+def test_blas_threads_come_back_after_the_study():
+    before = machine()
+    with one_blas_thread():
+        assert "BLAS threads: " in machine()
+    assert machine() == before
