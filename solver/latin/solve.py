@@ -19,7 +19,7 @@ STALL_WINDOW = 200
 STALL_FACTOR = 0.99
 ROUNDING = 1e-24
 LARGEST_VIOLATION = 1e-2
-SMALLEST_VIOLATION = 1e-8
+SMALLEST_VIOLATION = 1e-12
 VIOLATION = 100.0
 """Times the root of the tolerance on eta, which is a ratio of squares: what the k-free indicator
 may be at the end, between the two bounds above."""
