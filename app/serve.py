@@ -15,7 +15,7 @@ from app.worker.pool import shared_pool
 
 def open_page() -> pmui.Page:
     """Make the page of one session; its run starts when the browser is there."""
-    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
+    _configure()
     settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
     dashboard = Dashboard(Session(shared_pool(), settings))
     if complaint:
@@ -33,9 +33,14 @@ def rehearse() -> None:
     """Build a page and throw it away: what is done once only is then done."""
     document = Document()
     with set_curdoc(document):
+        _configure()
         session = Session(shared_pool(), settings_from_query("")[0])
         dashboard = Dashboard(session)
         dashboard.prepare()
         dashboard.page.server_doc(document)
         document.to_json()
         session.close()
+
+
+def _configure() -> None:
+    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)

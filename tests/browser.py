@@ -56,7 +56,9 @@ class Server:
         self.address = f"http://localhost:{port}/app"
         self.health = f"http://localhost:{port}/liveness"
         self._log = log
-        command = [sys.executable, "-m", "panel", "serve", "app", "--port", str(port), "--liveness"]
+        # The script, as a user calls it: `python -m panel` finds modules that it does not.
+        panel = str(Path(sys.executable).with_name("panel"))
+        command = [panel, "serve", "app", "--port", str(port), "--liveness"]
         with log.open("w") as output:
             self._process = subprocess.Popen(
                 command, cwd=ROOT, stdout=output, stderr=output, start_new_session=True

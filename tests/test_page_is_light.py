@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import urllib.request
 from collections.abc import Iterator
+from pathlib import Path
 
 import panel as pn
 import pytest
+from browser import Server
 from panel.util import edit_readonly
 
 from app.dashboard import Dashboard
@@ -48,3 +51,15 @@ def test_the_first_picture_is_in_the_page_and_the_controls_are_not_yet(
     dashboard.loaded()
     assert len(dashboard._plots) == 6
     assert dashboard._sidebar.view.objects
+
+
+def test_the_server_starts_without_complaint_and_with_a_worker_at_hand(tmp_path: Path) -> None:
+    server = Server(tmp_path / "log")
+    try:
+        server.wait()
+        urllib.request.urlopen(server.address, timeout=30).close()
+        assert len(server.processes()) > 1
+        for word in ("Error", "WARNING", "Traceback"):
+            assert word not in server.log, server.log
+    finally:
+        server.stop()
