@@ -90,7 +90,7 @@ class Dashboard:
             BasisSize(self.transport.choose_substructure),
         ]
         self._titles: dict[str, Any] = {}
-        self._cards = {view.name: self._card(view) for view in self._views}
+        self._cards: dict[str, Any] = {}
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
         self._status = self._html("status")
         self._figures = self._html("figures")
@@ -128,7 +128,7 @@ class Dashboard:
             self.session.collect()
         if self.session.shown is not None:
             self._owed = []
-            self._draw(self._shown)
+            self._draw(self._shown[:FIRST_ROW])
 
     def loaded(self) -> None:
         """Begin to draw: what is sent to a browser that still builds the page may be lost."""
@@ -174,6 +174,12 @@ class Dashboard:
             page.busy = False
         return page
 
+    def _card_of(self, view: View) -> Any:
+        """Give a view's card, made when it is first shown."""
+        if view.name not in self._cards:
+            self._cards[view.name] = self._card(view)
+        return self._cards[view.name]
+
     def _card(self, view: View) -> Any:
         title = pn.pane.HTML(
             card_title(view.name, view.keys),
@@ -213,7 +219,7 @@ class Dashboard:
         wanted = self._sidebar.offer([view.name for view in fitting])
         shown = [view for view in fitting if view.name in wanted]
         self.transport.arrange(settings)
-        cards = [self._cards[view.name] for view in shown[: None if self._loaded else FIRST_ROW]]
+        cards = [self._card_of(view) for view in shown[: None if self._loaded else FIRST_ROW]]
         if list(self._plots) != cards:
             self._plots[:] = cards
         self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
