@@ -20,7 +20,6 @@ from solver.settings import SettingError, about, allowed
 from solver.study.error_against_time import Study, error_against_time
 from solver.study.growth import Growth, growth
 from solver.study.iteration_cost import print_iteration_cost
-from solver.study.machine import one_blas_thread
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
 from solver.study.stability import invariance, stability
@@ -167,9 +166,8 @@ def _study(chosen: argparse.Namespace) -> int:
         raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
-        with one_blas_thread():
-            found = error_against_time(settings, chosen.repeats)
-            sizes = growth(settings) if chosen.growth else []
+        found = error_against_time(settings, chosen.repeats)
+        sizes = growth(settings) if chosen.growth else []
         files = write_tables(found, sizes, chosen.out)
         page = _study_page()
         files += [page(found, sizes, chosen.out)] if page else []

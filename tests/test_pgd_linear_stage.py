@@ -52,6 +52,8 @@ def test_the_default_basis_reaches_one_percent_of_displacement(substructures, mo
     solution = run(options(substructures=substructures, max_iterations=300))
     assert min(entry.error_displacement for entry in solution.records) < 0.01
     assert solution.records[-1].error_displacement < 0.01
+    # The friction force of a moving front does not separate well: 0.7 % at 10, 8.5 % at 5.
+    assert solution.records[-1].error_force < (0.01 if substructures == 10 else 0.12)
     assert solution.iterate.reduction is not None
     assert max(entry.modes for entry in solution.iterate.reduction.records) <= most
 
@@ -202,7 +204,9 @@ def test_downsizing_drops_no_more_than_its_tolerance(drawn):
     basis, field = random_basis(rows, columns, seed)
     tolerance = 10.0**power
     dropped = basis.downsize(tolerance, 100)
-    change = np.sqrt(basis.squared(field - basis.field()) / basis.squared(field))
+    scratch = np.empty_like(field)
+    lost = basis.squared(field - basis.field(), scratch)
+    change = np.sqrt(lost / basis.squared(field, scratch))
     assert dropped <= tolerance
     assert change == pytest.approx(dropped, abs=1e-7)
     kept = np.sqrt(np.sum(basis.time_functions**2 * basis.weights, axis=1))

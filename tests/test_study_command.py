@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import csv
+import os
 import re
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -18,12 +21,14 @@ from solver.scenes.bar import BarSettings
 from solver.study import peers
 from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, Course, Study
 from solver.study.growth import Growth, Size, growth
-from solver.study.machine import machine, one_blas_thread
+from solver.study.machine import LIMITS
 from solver.study.peers import PEERS, PeerError, solve_by_peer
 from solver.study.study_report import growth_table, table, verdicts
 
 TINY = ["study", "bar", "--set", "elements=20", "--set", "instants=21", "--set", "substructures=4"]
 TINY += ["--repeats", "1", "--no-growth"]
+BRIEF = ["--set", "elements=4", "--set", "instants=5", "--set", "substructures=2"]
+BRIEF += ["--repeats", "1", "--no-growth"]
 WHAT_PEERS_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
 
 
@@ -39,6 +44,8 @@ def measured(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study") / "made"
     with pytest.MonkeyPatch.context() as patch:
         original = cli.error_against_time
+        for limit in LIMITS:
+            patch.setenv(limit, "1")
         patch.setattr(
             cli, "error_against_time", lambda *given: kept.append(original(*given)) or kept[0]
         )
@@ -229,8 +236,15 @@ def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     assert all(size.seconds > 0.0 for one in found for size in one.sizes)
 
 
-def test_blas_threads_come_back_after_the_study():
-    before = machine()
-    with one_blas_thread():
-        assert "BLAS threads: " in machine()
-    assert machine() == before
+@pytest.mark.parametrize(("given", "stated"), [(None, "1"), ("2", "2")])
+def test_the_report_states_the_threads_that_the_command_line_sets(tmp_path, given, stated):
+    surroundings = {name: value for name, value in os.environ.items() if name not in LIMITS}
+    surroundings |= dict.fromkeys(LIMITS, given) if given else {}
+    done = subprocess.run(
+        [sys.executable, "-m", "solver", "study", "bar", "--out", str(tmp_path), *BRIEF],
+        env=surroundings,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert f"BLAS threads: {stated};" in done.stdout

@@ -40,13 +40,13 @@ class Sampler:
         self._rows = thinned(len(law.positions))
         self._columns = thinned(problem.n_instants)
         self._curve = thinned(problem.n_instants, LONGEST_CURVE)
-        lengths = np.bincount(law.points, weights=law.weights, minlength=len(law.positions))
+        lengths = law.by_point(law.weights)
         self._lengths = lengths[self._rows]
 
     def begun(self, ticket: int) -> Begun:
         """Describe what the fields stand on, without the closed form."""
         problem, law = self._problem, self._problem.friction
-        bound = np.bincount(law.points, weights=law.bound, minlength=len(law.positions))
+        bound = law.by_point(law.bound)
         cuts = [law.first[0] for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
         (loaded,) = (law for law in problem.of_law(Neumann) if isinstance(law, Neumann))
         return Begun(

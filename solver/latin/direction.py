@@ -9,8 +9,9 @@ from solver.laws import Dirichlet, Neumann
 from solver.settings import Settings
 
 SLIDING_STIFFNESS = 6.5
-"""Best k of a friction node, times the sliding length over ES: measured for peaks of 300 to 2400 N,
-meshes of 25 to 100 elements and 1 to 50 substructures, where 5 to 8 differ little."""
+"""k of a friction node, times the sliding length over ES. Measured with Anderson acceleration and
+a nested start on 50 elements, decaying cycles: of 3, 6, 12, 24 and 48 ES/L the one with the fewest
+iterations to 1 % of friction force was 4.8 to 7.2 of this, at peaks of 300 to 2400 N."""
 
 
 def search_direction(problem: Problem, settings: Settings) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from solver.discrete.problem import Array, Problem
-from solver.laws import Friction
 
 
 def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k: Array) -> Array:
@@ -31,7 +30,7 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
         fine.positions, coarse.positions, np.asarray(coarse.mean_of_rows @ displacement)
     )
     law, target = coarse.friction, fine.friction
-    density = np.asarray(coarse.sum_of_friction @ force) / _lengths(law)[:, None]
+    density = np.asarray(coarse.sum_of_friction @ force) / law.by_point(law.weights)[:, None]
     spread = _interpolated(target.positions, law.positions, density)
     found = inside[fine.row_dofs]
     carried = np.zeros_like(found)
@@ -47,12 +46,6 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
         others = ~rubs[part.rows]
         carried[part.rows[others]] = needed[trace[others]]
     return np.asfortranarray(found + carried / k[:, None])
-
-
-def _lengths(law: Friction) -> Array:
-    found = np.zeros(len(law.positions))
-    np.add.at(found, law.points, law.weights)
-    return found
 
 
 def _interpolated(fine: Array, coarse: Array, values: Array) -> Array:

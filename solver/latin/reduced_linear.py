@@ -8,6 +8,7 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -61,18 +62,10 @@ class ReducedLinearStage(LinearStage[list[Family]]):
     """The linear stage on separated bases."""
 
     def __init__(self, problem: Problem, k: Array, settings: Settings) -> None:
-        def make_group(problem: Problem, parts: list[Substructure], k: Array) -> ReducedGroup:
-            group = ReducedGroup(problem, parts, k, settings)
-            self._reduced.append(group)
-            return group
-
-        self._reduced: list[ReducedGroup] = []
+        make_group = partial(ReducedGroup, settings=settings)
         super().__init__(problem, k, multiscale=settings.multiscale, make_group=make_group)
-        place = {
-            int(rows): number
-            for number, part in enumerate(problem.substructures)
-            for rows in part.rows[:1]
-        }
+        self._reduced = [group for group in self.groups if isinstance(group, ReducedGroup)]
+        place = {int(part.rows[0]): number for number, part in enumerate(problem.substructures)}
         self._numbers = [[place[int(row)] for row in group.rows[0]] for group in self.groups]
 
     def start(self, checkpoint: Checkpoint | None) -> list[list[Family]]:
@@ -131,10 +124,7 @@ class ReducedGroup(Group[list[Family]]):
         """Give the state nearest to this W + F/k, shape (n_rows, n_instants)."""
         self.gather(outgoing)
         return [
-            self._family(
-                [place],
-                self._basis_of(self.target[:, place], 1),
-            )
+            self._family([place], self._basis_of(self.target[:, place], 1))
             for place in range(self.rows.shape[1])
         ]
 
@@ -196,9 +186,7 @@ class ReducedGroup(Group[list[Family]]):
         target = family.columns(self.target)
         wanted = basis.coefficients(target)
         # What was last reflected is read already, and its place is free.
-        squares = family.columns(self._reflected)
-        np.multiply(target, target, out=squares)
-        whole = float(self.k @ squares @ basis.weights)
+        whole = basis.squared(target, family.columns(self._reflected))
         inside = basis.squared_of(wanted)
         change = wanted - basis.time_functions
         updated = basis.squared_of(change)
@@ -235,15 +223,13 @@ class ReducedGroup(Group[list[Family]]):
         joined: list[Family] = []
         for family in state:
             for other in joined:
-                if max(self._apart(family, other), self._apart(other, family)) <= self._sharing:
+                apart = family.basis.outside(other.basis), other.basis.outside(family.basis)
+                if max(apart) <= self._sharing:
                     self._join(other, family)
                     break
             else:
                 joined.append(family)
         state[:] = joined
-
-    def _apart(self, one: Family, other: Family) -> float:
-        return one.basis.outside(other.basis)
 
     def _join(self, family: Family, other: Family) -> None:
         members = sorted(family.members + other.members)

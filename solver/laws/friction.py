@@ -44,6 +44,11 @@ class Friction:
     weights: Array
     bound: Array
 
+    def by_point(self, values: Array) -> Array:
+        """Add up values of the rows, shape (n_rows,), at every point, shape (n_points,)."""
+        found = np.bincount(self.points, weights=values, minlength=len(self.positions))
+        return found.astype(float, copy=False)
+
 
 def play(target: Array, reach: Array) -> Array:
     """Follow a target with Coulomb play, from rest at zero.

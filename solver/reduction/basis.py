@@ -69,9 +69,12 @@ class SeparatedBasis:
         """Project a field on the modes; give its time functions, shape (n_modes, n_columns)."""
         return np.asarray((self.k[:, None] * self.modes).T @ field)
 
-    def squared(self, field: Array) -> float:
-        """Compute the squared norm of a field of shape (n_boundary, n_columns)."""
-        return float(self.k @ (field * field @ self.weights))
+    def squared(self, field: Array, scratch: Array) -> float:
+        """Compute the squared norm of a field of shape (n_boundary, n_columns).
+
+        `scratch` has its shape and is overwritten: fresh memory would cost more than the norm.
+        """
+        return float(self.k @ np.multiply(field, field, out=scratch) @ self.weights)
 
     def squared_of(self, time_functions: Array) -> float:
         """Compute the squared norm of what these time functions make with the modes."""

@@ -92,7 +92,7 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
     }
     problem = runs.multiscale.early.problem
     law = problem.friction
-    lengths = np.bincount(law.points, law.weights)[1:]
+    lengths = law.by_point(law.weights)[1:]
     moments = {time: int(np.argmin(np.abs(problem.instants - time))) for time in INSTANTS}
     forces = {label: fields.friction_force[1:] for label, fields in solutions.items()}
     displacements = {label: fields.displacement[1:] for label, fields in solutions.items()}
