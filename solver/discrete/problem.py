@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.laws import Dirichlet, Friction, Interface, Neumann, Perfect
+from solver.laws import Contact, Dirichlet, Friction, Interface, Neumann, Perfect
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -49,7 +49,8 @@ class Elasticity:
     Attributes
     ----------
     stiffness
-        Shape (n_dofs, n_dofs), symmetric, positive semi-definite.
+        Shape (n_dofs, n_dofs), symmetric, positive semi-definite; sparse, or dense where the inside
+        is condensed.
     trace
         Degree of freedom of each boundary row, shape (n_boundary,). Rows of two interfaces that
         meet at a point share a degree of freedom.
@@ -57,7 +58,7 @@ class Elasticity:
         The paper's search direction k of each boundary row, shape (n_boundary,), positive.
     """
 
-    stiffness: sparse.csr_array
+    stiffness: sparse.csr_array | Array
     trace: Indices
     direction: Array
 
@@ -95,7 +96,8 @@ class Problem:
     interfaces
         All interfaces by name; together they own every boundary row once.
     positions
-        Coordinates of the degrees of freedom of the whole structure, shape (n_dofs,), in m.
+        Coordinates of the degrees of freedom of the whole structure, in m: shape (n_dofs,) along a
+        rod, (n_dofs, 2) in the plane.
     instants
         Shape (n_instants,), in s.
     scales
@@ -156,10 +158,19 @@ class Problem:
 
     @cached_property
     def friction(self) -> Friction:
-        """The frictional interface."""
+        """The frictional interface of known bound, where it is the only one."""
         (found,) = self.of_law(Friction)
         assert isinstance(found, Friction)
         return found
+
+    @cached_property
+    def rubbing(self) -> dict[str, Friction | Contact]:
+        """The interfaces with friction, by name."""
+        return {
+            name: law
+            for name, law in self.interfaces.items()
+            if isinstance(law, Friction | Contact)
+        }
 
     @cached_property
     def has_cuts(self) -> bool:
@@ -211,17 +222,44 @@ class Problem:
         return sparse.csr_array(sparse.diags_array(1.0 / np.maximum(counts, 1.0)) @ total)
 
     @cached_property
-    def sum_of_friction(self) -> sparse.csr_array:
-        """Sum over the rows of each point of the frictional interface, (n_points, n_rows)."""
-        law = self.friction
-        return sparse.csr_array(
-            (np.ones(len(law.rows)), (law.points, law.rows)),
-            shape=(len(law.positions), self.n_rows),
-        )
+    def sum_of_contact(self) -> sparse.csr_array:
+        """Sum over the rows of each point and component of all interfaces with friction.
+
+        Returns
+        -------
+        Shape (n_forces, n_rows). The forces on the body above are stacked interface by interface:
+        of `Friction` the friction forces, of `Contact` all normal forces and then all tangential
+        ones.
+        """
+        blocks = [
+            sparse.csr_array(
+                (np.ones(len(rows)), (law.points, rows)), shape=(len(law.positions), self.n_rows)
+            )
+            for law in self.rubbing.values()
+            for rows in components(law)
+        ]
+        return sparse.csr_array(sparse.vstack(blocks))
+
+    @cached_property
+    def contact_places(self) -> dict[str, tuple[slice, ...]]:
+        """Where the components of each interface stand in a stack of contact forces, by name."""
+        found, first = {}, 0
+        for name, law in self.rubbing.items():
+            size = len(law.positions)
+            starts = [first + size * number for number in range(len(components(law)))]
+            found[name] = tuple(slice(start, start + size) for start in starts)
+            first = starts[-1] + size
+        return found
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
         """Degrees of freedom with prescribed displacement, and its values (n, n_instants)."""
         parts = [law for law in self.of_law(Dirichlet) if isinstance(law, Dirichlet)]
-        rows = np.concatenate([law.rows for law in parts])
-        return self.row_dofs[rows], np.concatenate([law.displacement for law in parts])
+        none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
+        rows = np.concatenate([none[0], *(law.rows for law in parts)])
+        return self.row_dofs[rows], np.concatenate([none[1], *(law.displacement for law in parts)])
+
+
+def components(law: Friction | Contact) -> tuple[Indices, ...]:
+    """Give the rows of the body above, one array for each component of force."""
+    return (law.rows,) if isinstance(law, Friction) else (law.normal, law.tangent)

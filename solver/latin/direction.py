@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem
-from solver.laws import Dirichlet, Neumann
+from solver.discrete.problem import Array, Indices, Problem
+from solver.laws import Contact, Dirichlet, Friction, Neumann
 from solver.settings import Settings
 
 SLIDING_STIFFNESS = 6.5
 """k of a friction node, times the sliding length over ES. Measured with Anderson acceleration and
 a nested start on 50 elements, decaying cycles: of 3, 6, 12, 24 and 48 ES/L the one with the fewest
 iterations to 1 % of friction force was 4.8 to 7.2 of this, at peaks of 300 to 2400 N."""
+
+CONTACT_STIFFNESS = 4.0
+"""k per area, times l_sub over E, where bodies touch in the plane (theory.md, 5)."""
 
 
 def search_direction(problem: Problem, settings: Settings) -> Array:
@@ -24,9 +27,25 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
     """
     k: Array = settings.k_scale * problem.direction
     if settings.search_direction == "auto":
-        k[problem.friction.rows] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
-    k[problem.friction.rows] *= settings.k_friction_scale
+        _automatic(problem, settings, k)
+    for law in problem.rubbing.values():
+        for rows in sliding_rows(law):
+            k[rows] *= settings.k_friction_scale
     return np.ascontiguousarray(k)
+
+
+def _automatic(problem: Problem, settings: Settings, k: Array) -> None:
+    if problem.of_law(Contact):
+        k *= CONTACT_STIFFNESS
+    else:
+        k[problem.friction.rows] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
+
+
+def sliding_rows(law: Friction | Contact) -> tuple[Indices, ...]:
+    """Give the rows of the tangential components, of both sides."""
+    if isinstance(law, Friction):
+        return (law.rows,) if law.below is None else (law.rows, law.below)
+    return (law.tangent,) if law.below is None else (law.tangent, law.below[1])
 
 
 def sliding_share(problem: Problem) -> float:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem
+from solver.discrete.contact_fields import jumps_of
+from solver.discrete.problem import Array, Problem, components
 from solver.latin.iterate import Iterate
-from solver.laws import Dirichlet, Neumann, Perfect
+from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
 
 
 def latin_indicator(iterate: Iterate) -> float:
@@ -64,29 +65,63 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q
-    times the mean slip. Divided by the dissipation plus the largest elastic energy, so that it is
-    defined where nothing slides.
+    times the mean slip. In unilateral contact q = mu N with the pressing force N, and with the
+    opening g also N g where both are positive, tension times the mean slip, and overlap times the
+    mean force. Divided by the dissipation plus the largest elastic energy, so that it is defined
+    where nothing slides.
     """
     problem = iterate.problem
     displacement, force = iterate.boundary_displacement, iterate.boundary_force
-    law = problem.friction
     noise = _rounding(displacement, force)
-    slip = _beyond(np.diff(displacement[law.rows], axis=1, prepend=0.0), 2.0 * noise)
-    bound = law.bound[:, None]
-    friction = force[law.rows]
-    held = np.clip(friction, -bound, bound)
-    dissipated = bound * np.abs(slip)
+    found = [_Behaviour(law, displacement, force, noise) for law in problem.rubbing.values()]
     energy = 0.5 * float(np.einsum("ij,ij->j", displacement, force).max(initial=0.0))
-    energy += float(dissipated.sum())
-    allowance = float(law.bound.sum()) * problem.n_instants or float(np.abs(force).sum())
+    energy = max(energy, 0.0) + sum(float(one.dissipated.sum()) for one in found)
+    allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
-    violation = dissipated + held * slip + np.abs(friction - held) * mean_slip
-    map_ = np.zeros((len(law.positions), problem.n_instants))
-    np.add.at(map_, law.points, np.maximum(violation, 0.0))
+    maps = [one.violation(mean_slip) for one in found]
+    map_ = np.concatenate(maps)
     total = ratio(float(map_.sum()), energy)
     map_ *= ratio(map_.size, energy) if energy else 0.0
     total += _gap_of_bonds(problem, displacement, force, noise)
     return BehaviourIndicator(total / _share_of_friction(problem, force), map_)
+
+
+class _Behaviour:
+    """What one interface's fields say of its laws, by pair and instant.
+
+    Attributes
+    ----------
+    bound
+        Largest friction force, (n_pairs, n_instants).
+    dissipated
+        What full sliding along the way would dissipate.
+    """
+
+    def __init__(
+        self, law: Friction | Contact, displacement: Array, force: Array, noise: float
+    ) -> None:
+        self._law = law
+        *normal, tangential = jumps_of(law, displacement)
+        self._slip = _beyond(np.diff(tangential, axis=1, prepend=0.0), 2.0 * noise)
+        self._friction = force[components(law)[-1]]
+        self._pressing = force[law.normal] if isinstance(law, Contact) else None
+        if isinstance(law, Contact):
+            self._opening = _beyond(normal[0] + law.gap[:, None], 2.0 * noise)
+            self.bound = law.friction[:, None] * np.maximum(force[law.normal], 0.0)
+        else:
+            self.bound = np.broadcast_to(law.bound[:, None], self._slip.shape)
+        self.dissipated = self.bound * np.abs(self._slip)
+
+    def violation(self, mean_slip: float) -> Array:
+        """Give the violation of every point, shape (n_points, n_instants)."""
+        held = np.clip(self._friction, -self.bound, self.bound)
+        found = self.dissipated + held * self._slip
+        found += np.abs(self._friction - held) * mean_slip
+        if self._pressing is not None:
+            pressed, opened = np.maximum(self._pressing, 0.0), np.maximum(self._opening, 0.0)
+            found += pressed * opened + (pressed - self._pressing) * mean_slip
+            found += pressed.mean() * (opened - self._opening)
+        return self._law.by_point(np.maximum(found, 0.0))
 
 
 def _rounding(displacement: Array, force: Array) -> float:
@@ -105,11 +140,14 @@ def _beyond(field: Array, noise: float) -> Array:
 def _share_of_friction(problem: Problem, force: Array) -> float:
     """Give the share of the largest force that friction can carry beside the supports, at most 1.
 
-    It is 1 where there is no friction.
+    It is 1 where there is no friction, and where friction grows with the load.
     """
-    law = problem.friction
-    held = np.isin(problem.row_dofs[law.rows], problem.prescribed[0])
-    capacity, largest = float(law.bound[~held].sum()), float(np.abs(force).max())
+    capacity, largest = 0.0, float(np.abs(force).max())
+    for law in problem.rubbing.values():
+        if isinstance(law, Contact):
+            return 1.0
+        held = np.isin(problem.row_dofs[law.rows], problem.prescribed[0])
+        capacity += float(law.bound[~held].sum())
     return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0
 
 

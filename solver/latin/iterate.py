@@ -8,11 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.discrete.contact_fields import ContactFields, contact_fields, status_of
 from solver.discrete.problem import Array, Problem
 from solver.reduction.basis import Modes, Reduction, References
-
-NO_SLIP = 1e-9
-"""Slip, as a share of the largest displacement, up to which a point counts as stuck."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,23 +132,37 @@ class Iterate:
         return np.asarray(found) * self.problem.scales.displacement
 
     @cached_property
-    def friction_force(self) -> Array:
-        """Nodal friction force on the body, linear stage, (n_points, n_instants), N."""
-        found = self.problem.sum_of_friction @ self.boundary_force
+    def contact_force(self) -> Array:
+        """Nodal forces of all interfaces with friction on the bodies above, linear stage, N.
+
+        Shape (n_forces, n_instants), stacked as `Problem.sum_of_contact` says.
+        """
+        found = self.problem.sum_of_contact @ self.boundary_force
         return np.asarray(found) * self.problem.scales.force
+
+    @property
+    def friction_force(self) -> Array:
+        """Nodal friction force on the body, linear stage, (n_points, n_instants), N.
+
+        Of the only frictional interface, where its bound is known.
+        """
+        return self.contact_force
+
+    def contact(self, name: str) -> ContactFields:
+        """Show one interface with friction: forces of the linear stage, status of the local one."""
+        law = self.problem.rubbing[name]
+        return contact_fields(
+            self.problem,
+            name,
+            self.contact_force,
+            self.boundary_displacement,
+            status_of(law, self.local_displacement, self.boundary_local_force),
+        )
 
     @cached_property
     def status(self) -> NDArray[np.int8]:
-        """Contact status of the local stage, shape (n_points, n_instants): -1, 0 or +1.
+        """Contact status of the local stage, shape (n_points, n_instants), as in `status_of`.
 
-        Slip forward is +1. The law repeats the position of a stuck point bit by bit; a point that
-        is just at its bound moves by rounding alone, and that is not called slip. At a cut both
-        sides have their say, and the larger slip wins.
+        Of the only frictional interface, where its bound is known.
         """
-        law = self.problem.friction
-        position = self.local_displacement[law.rows]
-        slip = np.diff(position, axis=1, prepend=0.0)
-        total = np.zeros((len(law.positions), slip.shape[1]))
-        np.add.at(total, law.points, slip)
-        total[np.abs(total) <= NO_SLIP * np.abs(position).max(initial=0.0)] = 0.0
-        return np.sign(total).astype(np.int8)
+        return status_of(self.problem.friction, self.local_displacement)

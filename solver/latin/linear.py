@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Substructure, space_time
@@ -303,15 +304,29 @@ class SparseResponse:
 def response(elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
     """Condense or factor the elasticity of a substructure with its search direction."""
     stiffness = elasticity.stiffness
+    if isinstance(stiffness, np.ndarray):
+        return DenseResponse(elasticity, k)
     is_dense = stiffness.nnz > DENSE_FROM_SHARE * stiffness.shape[0] ** 2
     dense = len(k) <= DENSE_UP_TO or is_dense
     return DenseResponse(elasticity, k) if dense else SparseResponse(elasticity, k)
 
 
+class _Cholesky:
+    """A dense factor that solves like a sparse one."""
+
+    def __init__(self, matrix: Array) -> None:
+        self._factor = cho_factor(matrix, check_finite=False)
+
+    def solve(self, force: Array) -> Array:
+        return np.asarray(cho_solve(self._factor, force, check_finite=False))
+
+
 def _factor(elasticity: Elasticity, k: Array):  # type: ignore[no-untyped-def]  # SuperLU
-    n_dofs = elasticity.stiffness.shape[0]
-    springs = np.bincount(elasticity.trace, weights=k, minlength=n_dofs)
-    return splu(sparse.csc_array(elasticity.stiffness + sparse.diags_array(springs)))
+    stiffness = elasticity.stiffness
+    springs = np.bincount(elasticity.trace, weights=k, minlength=stiffness.shape[0])
+    if isinstance(stiffness, np.ndarray):
+        return _Cholesky(stiffness + np.diag(springs))
+    return splu(sparse.csc_array(stiffness + sparse.diags_array(springs)))
 
 
 def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:

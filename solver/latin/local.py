@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from solver.discrete.problem import Array, Indices, Problem, space_time
-from solver.laws import Dirichlet, Neumann, Perfect
+from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
 from solver.laws.boundary import neumann
-from solver.laws.friction import Play
+from solver.laws.contact import ContactLaw
+from solver.laws.friction import FrictionLaw, as_slice
 from solver.laws.perfect import perfect
 
 
@@ -23,7 +26,7 @@ class LocalStage:
         Whose laws; k has shape (n_rows,).
     where
         Rows and instants to which the laws are confined, or None for all. Only rows of friction
-        may be left out; fields then have these rows and instants alone.
+        on a rigid support may be left out; fields then have these rows and instants alone.
 
     Attributes
     ----------
@@ -40,11 +43,7 @@ class LocalStage:
         shape = (len(rows), len(instants))
         self.displacement = space_time(*shape)
         self._outgoing = space_time(*shape)
-        friction = problem.friction
-        rubs = place[friction.rows] >= 0
-        self._friction = as_slice(place[friction.rows[rubs]])
-        self._reach = (friction.bound / k[friction.rows])[rubs, None]
-        self._play = Play(int(np.count_nonzero(rubs)), len(instants))
+        self._laws = [_law(law, place, k[rows], len(instants)) for law in problem.rubbing.values()]
         cuts = [law for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
         self._cuts = None
         if cuts:
@@ -74,7 +73,8 @@ class LocalStage:
         W^ + F^/k, same shape; the next call overwrites it.
         """
         found = self.displacement
-        found[self._friction] = self._play(incoming[self._friction], self._reach)
+        for law in self._laws:
+            law(incoming, found)
         if self._cuts is not None:
             first, second, share = self._cuts
             common = perfect(incoming[first], incoming[second], share)
@@ -86,7 +86,21 @@ class LocalStage:
         return np.subtract(self._outgoing, incoming, out=self._outgoing)
 
 
-def as_slice(rows: Indices) -> slice | Indices:
-    """Give rows as a slice when they follow each other, so that reading them copies nothing."""
-    first = int(rows[0])
-    return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
+def _law(
+    law: Friction | Contact, place: Indices, k: Array, n_times: int
+) -> FrictionLaw | ContactLaw:
+    """Prepare a law for fields whose rows stand at these places; -1 where they are left out."""
+    if isinstance(law, Contact):
+        below = (place[law.below[0]], place[law.below[1]]) if law.below else None
+        moved = replace(law, normal=place[law.normal], tangent=place[law.tangent], below=below)
+        return ContactLaw(moved, k, n_times)
+    kept = place[law.rows] >= 0
+    confined = replace(
+        law,
+        rows=place[law.rows[kept]],
+        points=law.points[kept],
+        weights=law.weights[kept],
+        bound=law.bound[kept],
+        below=None if law.below is None else place[law.below[kept]],
+    )
+    return FrictionLaw(confined, k, n_times)

@@ -30,7 +30,7 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
         fine.positions, coarse.positions, np.asarray(coarse.mean_of_rows @ displacement)
     )
     law, target = coarse.friction, fine.friction
-    density = np.asarray(coarse.sum_of_friction @ force) / law.by_point(law.weights)[:, None]
+    density = np.asarray(coarse.sum_of_contact @ force) / law.by_point(law.weights)[:, None]
     spread = _interpolated(target.positions, law.positions, density)
     found = inside[fine.row_dofs]
     carried = np.zeros_like(found)

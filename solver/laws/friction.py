@@ -1,8 +1,8 @@
-"""Coulomb friction on a rigid support with a known bound: the play operator (theory.md, 2).
+"""Coulomb friction with a known bound, on a support or between two bodies (theory.md, 2).
 
-A clip of a clip is a clip, so the recursion in time is an associative scan: for few points,
-blocks of instants are composed side by side; for many points, walking in time already keeps the
-processor busy and moves less memory.
+Pointwise it is the play operator. A clip of a clip is a clip, so the recursion in time is an
+associative scan: for few points, blocks of instants are composed side by side; for many points,
+walking in time already keeps the processor busy and moves less memory.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ WALK_FROM_POINTS = 150
 
 @dataclass(frozen=True)
 class Friction:
-    """A frictional interface with a rigid support and a known normal force.
+    """A frictional interface with a known normal force, on a rigid support or between two bodies.
 
     Attributes
     ----------
     rows
-        Boundary rows that rub, shape (n_rows,).
+        Boundary rows that rub, shape (n_rows,); of the body above, if there are two.
     points
         Point of the interface that each row belongs to, shape (n_rows,). The rows of a point
         (two, where a cut crosses the interface) share its force.
@@ -36,6 +36,8 @@ class Friction:
         Tributary length of each row, shape (n_rows,), m.
     bound
         Largest friction force of each row, shape (n_rows,), non-negative.
+    below
+        Rows of the body below, each opposite its partner in `rows`; None on a rigid support.
     """
 
     rows: Indices
@@ -43,11 +45,57 @@ class Friction:
     positions: Array
     weights: Array
     bound: Array
+    below: Indices | None = None
 
     def by_point(self, values: Array) -> Array:
-        """Add up values of the rows, shape (n_rows,), at every point, shape (n_points,)."""
-        found = np.bincount(self.points, weights=values, minlength=len(self.positions))
-        return found.astype(float, copy=False)
+        """Add up values of the rows, shape (n_rows, ...), at every point, shape (n_points, ...)."""
+        found = np.zeros((len(self.positions), *values.shape[1:]))
+        np.add.at(found, self.points, values)
+        return found
+
+
+class FrictionLaw:
+    """The law of one interface for given search directions; its memory is allocated once.
+
+    Parameters
+    ----------
+    law
+        The interface.
+    k
+        Search direction of all rows, shape (n_rows,).
+    n_times
+        Number of instants.
+    """
+
+    def __init__(self, law: Friction, k: Array, n_times: int) -> None:
+        self._rows = as_slice(law.rows)
+        self._below = None if law.below is None else as_slice(law.below)
+        soft = 1.0 / k[law.rows]
+        if law.below is not None:
+            soft_below = 1.0 / k[law.below]
+            soft = soft + soft_below
+            self._share_below = (soft_below / soft)[:, None]
+        self._reach = (law.bound * soft)[:, None]
+        self._play = Play(len(law.rows), n_times)
+
+    def __call__(self, incoming: Array, displacement: Array) -> None:
+        """Write W^ of the interface's rows, for z = W - F/k of all rows, (n_rows, n_times)."""
+        above = incoming[self._rows]
+        if self._below is None:
+            displacement[self._rows] = self._play(above, self._reach)
+            return
+        below = incoming[self._below]
+        jump = above - below
+        moved = self._play(jump, self._reach) - jump
+        under = self._share_below * moved
+        displacement[self._below] = below - under
+        displacement[self._rows] = above + (moved - under)
+
+
+def as_slice(rows: Indices) -> slice | Indices:
+    """Give rows as a slice when they follow each other, so that reading them copies nothing."""
+    first = int(rows[0])
+    return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
 
 
 def play(target: Array, reach: Array) -> Array:

@@ -282,7 +282,9 @@ def _pairs(field: Array) -> Array:
 
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
     """Give K of the whole structure, shape (n_dofs, n_dofs), scaled."""
-    parts = [(part.dofs, part.elasticity.stiffness.tocoo()) for part in problem.substructures]
+    parts = [
+        (part.dofs, sparse.coo_array(part.elasticity.stiffness)) for part in problem.substructures
+    ]
     rows, columns = (
         np.concatenate([dofs[own.coords[axis]] for dofs, own in parts]) for axis in (0, 1)
     )

@@ -1,0 +1,348 @@
+"""Stacked rectangular bodies as a discrete problem, condensed onto outlines of substructures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.discrete.bar import substructure_sizes
+from solver.discrete.plane import Condensed, Rectangle, both, elastic_matrix
+from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
+from solver.discrete.rod import tributary
+from solver.laws import Contact, Dirichlet, Interface, Perfect
+from solver.scenes.stack import Given, Side, Stack
+
+Place = tuple[int, int, int]
+"""Column and row of a substructure in its body, and the body."""
+Corner = tuple[int, int]
+"""First column and row of its elements in its body."""
+OPPOSITE = {"right": "left", "top": "bottom"}
+MACRO_DEGREE = 1
+"""Polynomials of each component on a cut: resultants, and moment with linear extension."""
+
+
+@dataclass(eq=False)
+class _Part:
+    """A substructure as it is made."""
+
+    condensed: Condensed
+    place: Place
+    corner: Corner
+    nodes: Indices
+    held: dict[str, tuple[int, ...]]
+    rows: dict[str, Indices]
+    force: Array | None
+
+
+class Inside:
+    """What lies inside the substructures of a condensed problem, found when somebody looks.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates of all nodes, shape (n_nodes, 2), m.
+    elements
+        Nodes of every element, counter-clockwise, shape (n_elements, 4).
+    bodies
+        Body of every element, shape (n_elements,).
+    """
+
+    def __init__(self, scene: Stack, parts: list[_Part], grid: _Grid) -> None:
+        self._parts = parts
+        self._young = scene.young
+        self._length = scene.length
+        self.nodes: Array = grid.positions * scene.length
+        self.elements: Indices = np.concatenate(
+            [part.nodes.ravel()[part.condensed.rectangle.elements] for part in parts]
+        )
+        self.bodies: Indices = np.repeat(
+            [part.place[2] for part in parts],
+            [len(part.condensed.rectangle.elements) for part in parts],
+        )
+        self._skeleton = grid.skeleton
+
+    def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
+        """Give the displacement of all nodes, shape (n_nodes, 2, n), m.
+
+        Parameters
+        ----------
+        skeleton
+            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
+        instants
+            Which of them.
+        """
+        chosen = skeleton[:, instants] / self._length
+        found = np.zeros((len(self.nodes), 2, chosen.shape[1]))
+        for part in self._parts:
+            own = self._skeleton[part.nodes.ravel()[part.condensed.rectangle.outline]]
+            force = None if part.force is None else part.force[:, instants]
+            found[part.nodes.ravel()] = part.condensed.recover(chosen[both(own)], force)
+        return found * self._length
+
+    def stress(self, displacement: Array) -> Array:
+        """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
+
+        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
+        """
+        scaled = displacement / self._length
+        return self._young * np.concatenate(
+            [part.condensed.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
+        )
+
+
+class _Grid:
+    """Nodes of all bodies, and those on the outline of any substructure."""
+
+    def __init__(self, scene: Stack) -> None:
+        (columns, rows), bodies = scene.elements, scene.bodies
+        self.nodes = np.arange(bodies * (rows + 1) * (columns + 1)).reshape(
+            bodies, rows + 1, columns + 1
+        )
+        height = scene.height / scene.length
+        x = np.linspace(0.0, 1.0, columns + 1)
+        y = np.arange(bodies)[:, None] * height + np.linspace(0.0, height, rows + 1)
+        everywhere = np.broadcast_arrays(x, y[:, :, None])
+        self.positions = np.stack(everywhere, axis=-1).reshape(-1, 2)
+        across, up = (
+            np.concatenate([[0], np.cumsum(substructure_sizes(number, cuts))])
+            for number, cuts in zip(scene.elements, scene.substructures, strict=True)
+        )
+        self.cuts = across, up
+        on = np.zeros(self.nodes.shape, dtype=bool)
+        on[:, up, :] = True
+        on[:, :, across] = True
+        self.on_skeleton = self.nodes[on]
+        self.skeleton = np.full(self.nodes.size, -1)
+        self.skeleton[self.on_skeleton] = np.arange(len(self.on_skeleton))
+
+
+def discretise_stack(scene: Stack) -> tuple[Problem, Inside]:
+    """Cut the bodies into rectangles and write the laws of their interfaces.
+
+    Lengths are scaled by the length of a body, stresses by E. Search direction: E / l_sub per
+    area, with l_sub the geometric mean of a substructure's sides, for cuts, contacts and
+    supports alike (the paper's ES / l_sub). Tractions act on the substructures themselves, and
+    need no interface. Contact forces are lumped at the nodes.
+    """
+    grid = _Grid(scene)
+    parts = _parts(scene, grid)
+    first = 0
+    for part in parts:
+        for side, components in part.held.items():
+            size = len(components) * len(part.condensed.rectangle.edge(side))
+            part.rows[side] = np.arange(first, first + size).reshape(-1, len(components))
+            first += size
+    shared: dict[tuple[object, ...], Elasticity] = {}
+    positions = np.repeat(grid.positions[grid.on_skeleton], 2, axis=0) * scene.length
+    problem = Problem(
+        substructures=tuple(_substructure(part, grid, shared) for part in parts),
+        interfaces=dict(_interfaces(scene, {part.place: part for part in parts})),
+        positions=positions,
+        instants=scene.instants,
+        scales=Scales(scene.length, scene.young * scene.length, scene.duration),
+    )
+    return problem, Inside(scene, parts, grid)
+
+
+def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
+    across, up = grid.cuts
+    width = 1.0 / scene.elements[0]
+    height = scene.height / scene.length / scene.elements[1]
+    elastic = elastic_matrix(1.0, scene.poisson, scene.state)
+    shapes: dict[tuple[int, int], Condensed] = {}
+    parts = []
+    for body in range(scene.bodies):
+        for row in range(scene.substructures[1]):
+            for column in range(scene.substructures[0]):
+                x, y = across[column], up[row]
+                size = int(across[column + 1] - x), int(up[row + 1] - y)
+                if size not in shapes:
+                    shapes[size] = Condensed(Rectangle(*size, width, height, elastic))
+                nodes = grid.nodes[body, y : y + size[1] + 1, x : x + size[0] + 1]
+                place = column, row, body
+                held = {
+                    side: components
+                    for side in ("left", "right", "bottom", "top")
+                    if (components := _held(scene, place, side))
+                }
+                force = _nodal_force(scene, shapes[size].rectangle, place, (int(x), int(y)))
+                parts.append(_Part(shapes[size], place, (int(x), int(y)), nodes, held, {}, force))
+    return parts
+
+
+def _neighbour(scene: Stack, place: Place, side: str) -> str | Place:
+    """Tell what lies beyond a side: a substructure, "support", or the name of an outer side."""
+    column, row, body = place
+    columns, rows = scene.substructures
+    if side in ("left", "right"):
+        beyond = column + (1 if side == "right" else -1)
+        return (beyond, row, body) if 0 <= beyond < columns else side
+    step = 1 if side == "top" else -1
+    if 0 <= row + step < rows:
+        return column, row + step, body
+    if 0 <= body + step < scene.bodies:
+        return column, 0 if step > 0 else rows - 1, body + step
+    return "support" if side == "bottom" and scene.support is not None else side
+
+
+def _held(scene: Stack, place: Place, side: str) -> tuple[int, ...]:
+    """Give the components that have rows along a side: all at an interface, or the prescribed."""
+    beyond = _neighbour(scene, place, side)
+    if beyond == "support" or not isinstance(beyond, str):
+        return 0, 1
+    given = scene.sides[beyond]
+    return tuple(number for number, one in enumerate((given.x, given.y)) if one.prescribed)
+
+
+def _substructure(
+    part: _Part, grid: _Grid, shared: dict[tuple[object, ...], Elasticity]
+) -> Substructure:
+    condensed, rectangle = part.condensed, part.condensed.rectangle
+    place = np.full(2 * rectangle.n_nodes, -1)
+    place[condensed.dofs] = np.arange(len(condensed.dofs))
+    size = rectangle.columns * rectangle.width, rectangle.rows * rectangle.height
+    density = 1.0 / np.sqrt(size[0] * size[1])
+    trace, direction = [], []
+    for side, components in part.held.items():
+        nodes = rectangle.edge(side)
+        trace.append(place[2 * nodes[:, None] + np.array(components)].ravel())
+        weights = _edge_weights(rectangle, side)
+        direction.append(np.repeat(density * weights, len(components)))
+    found = Elasticity(condensed.stiffness, np.concatenate(trace), np.concatenate(direction))
+    loaded = part.force is not None
+    key = (id(condensed), loaded, found.trace.tobytes(), found.direction.tobytes())
+    return Substructure(
+        elasticity=shared.setdefault(key, found),
+        dofs=both(grid.skeleton[part.nodes.ravel()[rectangle.outline]]),
+        rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
+        body_force=None if part.force is None else condensed.condense(part.force),
+    )
+
+
+def _edge_weights(rectangle: Rectangle, side: str) -> Array:
+    if side in ("left", "right"):
+        return tributary(rectangle.rows, rectangle.height)
+    return tributary(rectangle.columns, rectangle.width)
+
+
+def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Interface]]:
+    yield from _contacts(scene, parts)
+    for place, part in parts.items():
+        for side, opposite in OPPOSITE.items():
+            beyond = _neighbour(scene, place, side)
+            if isinstance(beyond, str) or beyond[2] != place[2]:
+                continue
+            other = parts[beyond]
+            basis = _macro_basis(len(part.rows[side]))
+            yield (
+                f"cut {_name(place)} to {_name(beyond)}",
+                Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
+            )
+    for side, given in scene.sides.items():
+        yield from _prescribed(scene, parts, side, given)
+
+
+def _name(place: Place) -> str:
+    column, row, body = place
+    return f"{column + 1}.{row + 1}" + (f" of {body + 1}" if body else "")
+
+
+def _macro_basis(n_points: int) -> Array:
+    """Give polynomials over a cut for each of two interleaved components."""
+    along = np.linspace(-1.0, 1.0, n_points)
+    powers = along[:, None] ** np.arange(MACRO_DEGREE + 1)
+    return np.asarray(np.kron(powers, np.eye(2)))
+
+
+def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Contact]]:
+    columns, rows = scene.substructures
+    for body in range(scene.bodies):
+        if body == 0 and scene.support is None:
+            continue
+        above = [parts[column, 0, body] for column in range(columns)]
+        under = [parts[column, rows - 1, body - 1] for column in range(columns)] if body else None
+        points = np.concatenate(
+            [part.corner[0] + np.arange(part.condensed.rectangle.columns + 1) for part in above]
+        )
+        weights = np.concatenate(
+            [_edge_weights(part.condensed.rectangle, "bottom") for part in above]
+        )
+        if body == 0 and scene.support is not None:
+            friction, gap = scene.support.friction, scene.support.gap[points] / scene.length
+        else:
+            friction, gap = scene.friction, np.zeros(len(points))
+        yield (
+            "support" if body == 0 else f"contact {body}-{body + 1}",
+            Contact(
+                normal=np.concatenate([part.rows["bottom"][:, 1] for part in above]),
+                tangent=np.concatenate([part.rows["bottom"][:, 0] for part in above]),
+                below=None
+                if under is None
+                else (
+                    np.concatenate([part.rows["top"][:, 1] for part in under]),
+                    np.concatenate([part.rows["top"][:, 0] for part in under]),
+                ),
+                points=points,
+                positions=np.linspace(0.0, scene.length, scene.elements[0] + 1),
+                weights=weights * scene.length,
+                gap=gap,
+                friction=np.full(len(points), friction),
+            ),
+        )
+
+
+def _prescribed(
+    scene: Stack, parts: dict[Place, _Part], side: str, given: Side
+) -> Iterable[tuple[str, Dirichlet]]:
+    rows, values = [], []
+    for place, part in parts.items():
+        if _neighbour(scene, place, side) != side or side not in part.held:
+            continue
+        along = _along(scene, part.condensed.rectangle, place, part.corner, side)
+        held = [one for one in (given.x, given.y) if one.prescribed]
+        for number, one in enumerate(held):
+            rows.append(part.rows[side][:, number])
+            values.append(_over(one, along) / scene.length)
+    if rows:
+        yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
+
+
+def _along(scene: Stack, rectangle: Rectangle, place: Place, corner: Corner, side: str) -> Array:
+    """Give 2 s / length - 1 at the nodes of a substructure on an outer side of the stack."""
+    if side in ("left", "right"):
+        whole = scene.bodies * scene.elements[1]
+        first, size = place[2] * scene.elements[1] + corner[1], rectangle.rows
+    else:
+        whole, first, size = scene.elements[0], corner[0], rectangle.columns
+    return np.asarray(2.0 * (first + np.arange(size + 1)) / whole - 1.0)
+
+
+def _over(given: Given, along: Array) -> Array:
+    return given.mean + along[:, None] * given.slope
+
+
+def _nodal_force(scene: Stack, rectangle: Rectangle, place: Place, corner: Corner) -> Array | None:
+    """Give nodal forces of tractions and body forces, scaled, (2 n_nodes, n), None without any.
+
+    Tractions vary linearly over the edge of an element, body forces are constant; both are work
+    equivalent.
+    """
+    total = np.zeros((rectangle.n_nodes, 2, len(scene.instants)))
+    for side in ("left", "right", "bottom", "top"):
+        if _neighbour(scene, place, side) != side:
+            continue
+        nodes, along = rectangle.edge(side), _along(scene, rectangle, place, corner, side)
+        step = rectangle.height if side in ("left", "right") else rectangle.width
+        for component, given in enumerate((scene.sides[side].x, scene.sides[side].y)):
+            if given.prescribed:
+                continue
+            traction = _over(given, along) / scene.young
+            total[nodes[:-1], component] += step / 6.0 * (2.0 * traction[:-1] + traction[1:])
+            total[nodes[1:], component] += step / 6.0 * (traction[:-1] + 2.0 * traction[1:])
+    if scene.body_force is not None:
+        share = 0.25 * rectangle.width * rectangle.height * scene.length / scene.young
+        counts = np.bincount(rectangle.elements.ravel(), minlength=rectangle.n_nodes)
+        total += share * counts[:, None, None] * scene.body_force
+    return total.reshape(-1, len(scene.instants)) if total.any() else None

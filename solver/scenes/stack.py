@@ -1,0 +1,93 @@
+"""Rectangular bodies stacked on each other: what the scenes `block` and `layers` are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solver.loads import Array
+
+SIDES = ("left", "right", "top", "bottom")
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """What is given for one component along a side: mean + slope (2 s / length - 1).
+
+    Attributes
+    ----------
+    prescribed
+        Whether it is a displacement, m; else it is a traction, Pa.
+    mean, slope
+        Over time, shape (n_instants,).
+    """
+
+    prescribed: bool
+    mean: Array
+    slope: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """What is given along a side of the stack, for the components along x and y."""
+
+    x: Given
+    y: Given
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A rigid rough support below the stack.
+
+    Attributes
+    ----------
+    gap
+        Opening at the nodes of the lowest side, shape (elements along + 1,), m.
+    friction
+        Coefficient mu.
+    """
+
+    gap: Array
+    friction: float
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """Equal rectangular bodies on each other; one metre thick.
+
+    Attributes
+    ----------
+    length, height
+        Of one body, m.
+    bodies
+        Their number.
+    elements, substructures
+        Of one body, along and up.
+    young, poisson, state
+        Elasticity, Pa; `state` is "strain" or "stress".
+    friction
+        Coefficient mu between the bodies.
+    support
+        Below the lowest body, or None.
+    sides
+        What is given along the outer sides; a support replaces "bottom". `left` and `right` run
+        over the sides of all bodies.
+    body_force
+        Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
+    instants, duration
+        s.
+    """
+
+    length: float
+    height: float
+    bodies: int
+    elements: tuple[int, int]
+    substructures: tuple[int, int]
+    young: float
+    poisson: float
+    state: str
+    friction: float
+    support: Support | None
+    sides: dict[str, Side]
+    body_force: Array | None
+    instants: Array
+    duration: float
