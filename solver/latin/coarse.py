@@ -40,25 +40,26 @@ class CoarseProblem:
 
     F = (k - k H k)(y + W~) - k W_f for a target y, and P^T F = P^T F_d fixes w~: one small system
     on the whole structure, factored once, solved for all instants (theory.md, 2). It reads and
-    changes the targets of its groups, at the few rows that carry macro quantities.
+    changes the targets of its groups, at the rows that carry macro quantities; the members of a
+    group share the part of P that they see, so their macro forces are one product.
     """
 
     def __init__(self, problem: Problem, groups: Sequence[Member]) -> None:
         basis, load = problem.macro
-        carries = np.diff(basis.indptr) > 0
         self._members = []
         columns, blocks = [], []
         constant = load.astype(float)
         for group in groups:
-            own = np.flatnonzero(carries[group.rows].any(axis=1))
-            forces = group.response.force_rows(own)
-            selected = sparse.csr_array(basis[group.rows[own].T.ravel()].T)
-            columns.append(selected)
-            blocks.append(sparse.kron(sparse.eye_array(group.rows.shape[1]), forces[:, own]))
+            own, local, assembly = _local_basis(basis, group.rows)
+            forces = local.T @ group.response.force_rows(own)
+            columns.append(assembly)
+            n_members = group.rows.shape[1]
+            blocks.append(sparse.kron(sparse.eye_array(n_members), forces[:, own] @ local))
             if group.body is not None:
                 held = group.k[own, None, None] * group.body[own]
-                constant += selected @ held.reshape(-1, held.shape[2], order="F")
-            self._members.append((group, own, np.asfortranarray(forces)))
+                held = local.T @ held.reshape(len(own), -1, order="F")
+                constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
+            self._members.append((group, own, local, np.asfortranarray(forces)))
         self._spread = sparse.csr_array(sparse.hstack(columns))
         system = self._spread @ sparse.block_diag(blocks) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
@@ -70,15 +71,42 @@ class CoarseProblem:
             np.matmul(rows, group.target.reshape(rows.shape[1], -1, order="F")).reshape(
                 -1, n_instants, order="F"
             )
-            for group, _, rows in self._members
+            for group, _, _, rows in self._members
         ]
         multiplier = self._solve(np.concatenate(forces) if len(forces) > 1 else forces[0])
         first = 0
-        for group, own, _ in self._members:
-            size = len(own) * group.rows.shape[1]
-            part = multiplier[first : first + size]
-            group.target[own] += part.reshape(len(own), -1, n_instants, order="F")
+        for group, own, local, _ in self._members:
+            size = local.shape[1] * group.rows.shape[1]
+            part = multiplier[first : first + size].reshape(local.shape[1], -1, order="F")
             first += size
+            group.target[own] += (local @ part).reshape(len(own), -1, n_instants, order="F")
+
+
+def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:
+    """Find the part of the macro basis that all members of a group see alike.
+
+    Returns
+    -------
+    Places of the rows that carry macro quantities, shape (n_own,); the basis on them, shape
+    (n_own, n_local); and what adds up the members' macro forces, (n_macro, n_members n_local).
+    Where members do not see the same, the local basis is the identity.
+    """
+    own = np.flatnonzero((np.diff(basis.indptr) > 0)[rows].any(axis=1))
+    members = [basis[rows[own, member]].tocoo() for member in range(rows.shape[1])]
+    seen = []
+    for member in members:
+        # In the order in which the rows meet them, which the members share if anything.
+        column, at = np.unique(member.coords[1], return_index=True)
+        seen.append(column[np.argsort(member.coords[0][at], kind="stable")])
+    local = members[0].toarray()[:, seen[0]]
+    for member, column in zip(members, seen, strict=True):
+        if len(column) != len(seen[0]) or not np.array_equal(member.toarray()[:, column], local):
+            whole = sparse.csr_array(basis[rows[own].T.ravel()].T)
+            return own, np.eye(len(own)), whole
+    chosen = np.concatenate(seen)
+    shape = (basis.shape[1], len(chosen))
+    ones = np.ones(len(chosen))
+    return own, local, sparse.csr_array((ones, (chosen, np.arange(len(chosen)))), shape=shape)
 
 
 def _solver(
