@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
+from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
 from solver.discrete.problem import Array, Indices
@@ -198,3 +199,62 @@ class Condensed:
                 inner += self._factor.solve(np.ascontiguousarray(force[self._inner]))
             found[self._inner] = inner
         return found.reshape(-1, 2, outline.shape[1])
+
+
+class Kept:
+    """A condensed rectangle seen from some degrees of freedom of its outline alone.
+
+    Attributes
+    ----------
+    condensed
+        The rectangle.
+    stiffness
+        Shape (n_kept, n_kept), dense, symmetric.
+    dofs
+        The kept degrees of freedom among those of the rectangle, ascending.
+
+    Raises
+    ------
+    np.linalg.LinAlgError
+        Where holding these would leave the rectangle free to move.
+    """
+
+    def __init__(self, condensed: Condensed, dofs: Indices) -> None:
+        self.condensed = condensed
+        self.dofs = dofs
+        self._own = np.searchsorted(condensed.dofs, dofs)
+        self._left = np.setdiff1d(np.arange(len(condensed.dofs)), self._own)
+        whole = condensed.stiffness
+        self.stiffness: Array = whole[np.ix_(self._own, self._own)]
+        if len(self._left):
+            coupling = whole[np.ix_(self._left, self._own)]
+            self._factor = cho_factor(whole[np.ix_(self._left, self._left)])
+            self._inside = cho_solve(self._factor, coupling)
+            found = self.stiffness - coupling.T @ self._inside
+            self.stiffness = 0.5 * (found + found.T)
+
+    def condense(self, force: Array) -> Array:
+        """Bring nodal forces, shape (2 n_nodes, n), onto what is kept, shape (n_kept, n)."""
+        outline = self.condensed.condense(force)
+        if not len(self._left):
+            return outline
+        return np.asarray(outline[self._own] - self._inside.T @ outline[self._left])
+
+    def recover(self, kept: Array, force: Array | None) -> Array:
+        """Give the displacement of all nodes, shape (n_nodes, 2, n), from what is kept.
+
+        Parameters
+        ----------
+        kept
+            Shape (n_kept, n).
+        force
+            Nodal forces, shape (2 n_nodes, n), or None.
+        """
+        outline = np.empty((len(self.condensed.dofs), kept.shape[1]))
+        outline[self._own] = kept
+        if len(self._left):
+            outline[self._left] = -(self._inside @ kept)
+            if force is not None:
+                on_outline = self.condensed.condense(force)[self._left]
+                outline[self._left] += cho_solve(self._factor, on_outline)
+        return self.condensed.recover(outline, force)

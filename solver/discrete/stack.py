@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.discrete.bar import substructure_sizes
-from solver.discrete.plane import Condensed, Rectangle, both, elastic_matrix
+from solver.discrete.plane import Condensed, Kept, Rectangle, both, elastic_matrix
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
 from solver.discrete.rod import tributary
 from solver.laws import Contact, Dirichlet, Interface, Perfect
@@ -27,13 +27,22 @@ MACRO_DEGREE = 1
 class _Part:
     """A substructure as it is made."""
 
-    condensed: Condensed
+    kept: Kept
     place: Place
     corner: Corner
     nodes: Indices
     held: dict[str, tuple[int, ...]]
     rows: dict[str, Indices]
     force: Array | None
+
+    @property
+    def rectangle(self) -> Rectangle:
+        return self.kept.condensed.rectangle
+
+    @property
+    def dofs(self) -> Indices:
+        """What is kept, among the degrees of freedom of all nodes."""
+        return both(self.nodes.ravel())[self.kept.dofs]
 
 
 class Inside:
@@ -49,19 +58,19 @@ class Inside:
         Body of every element, shape (n_elements,).
     """
 
-    def __init__(self, scene: Stack, parts: list[_Part], grid: _Grid) -> None:
+    def __init__(self, scene: Stack, parts: list[_Part], grid: _Grid, skeleton: Indices) -> None:
         self._parts = parts
         self._young = scene.young
         self._length = scene.length
         self.nodes: Array = grid.positions * scene.length
         self.elements: Indices = np.concatenate(
-            [part.nodes.ravel()[part.condensed.rectangle.elements] for part in parts]
+            [part.nodes.ravel()[part.rectangle.elements] for part in parts]
         )
         self.bodies: Indices = np.repeat(
             [part.place[2] for part in parts],
-            [len(part.condensed.rectangle.elements) for part in parts],
+            [len(part.rectangle.elements) for part in parts],
         )
-        self._skeleton = grid.skeleton
+        self._places = [np.searchsorted(skeleton, part.dofs) for part in parts]
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Give the displacement of all nodes, shape (n_nodes, 2, n), m.
@@ -75,10 +84,9 @@ class Inside:
         """
         chosen = skeleton[:, instants] / self._length
         found = np.zeros((len(self.nodes), 2, chosen.shape[1]))
-        for part in self._parts:
-            own = self._skeleton[part.nodes.ravel()[part.condensed.rectangle.outline]]
+        for part, places in zip(self._parts, self._places, strict=True):
             force = None if part.force is None else part.force[:, instants]
-            found[part.nodes.ravel()] = part.condensed.recover(chosen[both(own)], force)
+            found[part.nodes.ravel()] = part.kept.recover(chosen[places], force)
         return found * self._length
 
     def stress(self, displacement: Array) -> Array:
@@ -88,12 +96,12 @@ class Inside:
         """
         scaled = displacement / self._length
         return self._young * np.concatenate(
-            [part.condensed.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
+            [part.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
         )
 
 
 class _Grid:
-    """Nodes of all bodies, and those on the outline of any substructure."""
+    """Nodes of all bodies, and where they are cut."""
 
     def __init__(self, scene: Stack) -> None:
         (columns, rows), bodies = scene.elements, scene.bodies
@@ -110,12 +118,6 @@ class _Grid:
             for number, cuts in zip(scene.elements, scene.substructures, strict=True)
         )
         self.cuts = across, up
-        on = np.zeros(self.nodes.shape, dtype=bool)
-        on[:, up, :] = True
-        on[:, :, across] = True
-        self.on_skeleton = self.nodes[on]
-        self.skeleton = np.full(self.nodes.size, -1)
-        self.skeleton[self.on_skeleton] = np.arange(len(self.on_skeleton))
 
 
 def discretise_stack(scene: Stack) -> tuple[Problem, Inside]:
@@ -131,19 +133,19 @@ def discretise_stack(scene: Stack) -> tuple[Problem, Inside]:
     first = 0
     for part in parts:
         for side, components in part.held.items():
-            size = len(components) * len(part.condensed.rectangle.edge(side))
+            size = len(components) * len(part.rectangle.edge(side))
             part.rows[side] = np.arange(first, first + size).reshape(-1, len(components))
             first += size
     shared: dict[tuple[object, ...], Elasticity] = {}
-    positions = np.repeat(grid.positions[grid.on_skeleton], 2, axis=0) * scene.length
+    skeleton = np.unique(np.concatenate([part.dofs for part in parts]))
     problem = Problem(
-        substructures=tuple(_substructure(part, grid, shared) for part in parts),
+        substructures=tuple(_substructure(part, skeleton, shared) for part in parts),
         interfaces=dict(_interfaces(scene, {part.place: part for part in parts})),
-        positions=positions,
+        positions=grid.positions[skeleton // 2] * scene.length,
         instants=scene.instants,
         scales=Scales(scene.length, scene.young * scene.length, scene.duration),
     )
-    return problem, Inside(scene, parts, grid)
+    return problem, Inside(scene, parts, grid, skeleton)
 
 
 def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
@@ -151,7 +153,8 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
     width = 1.0 / scene.elements[0]
     height = scene.height / scene.length / scene.elements[1]
     elastic = elastic_matrix(1.0, scene.poisson, scene.state)
-    shapes: dict[tuple[int, int], Condensed] = {}
+    shapes: dict[Corner, Condensed] = {}
+    kinds: dict[tuple[object, ...], Kept] = {}
     parts = []
     for body in range(scene.bodies):
         for row in range(scene.substructures[1]):
@@ -167,9 +170,20 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
                     for side in ("left", "right", "bottom", "top")
                     if (components := _held(scene, place, side))
                 }
+                kind = size, *held.items()
+                if kind not in kinds:
+                    kinds[kind] = _kept(shapes[size], held)
                 force = _nodal_force(scene, shapes[size].rectangle, place, (int(x), int(y)))
-                parts.append(_Part(shapes[size], place, (int(x), int(y)), nodes, held, {}, force))
+                parts.append(_Part(kinds[kind], place, (int(x), int(y)), nodes, held, {}, force))
     return parts
+
+
+def _kept(condensed: Condensed, held: dict[str, tuple[int, ...]]) -> Kept:
+    edges = [
+        (2 * condensed.rectangle.edge(side)[:, None] + np.array(components)).ravel()
+        for side, components in held.items()
+    ]
+    return Kept(condensed, np.unique(np.concatenate(edges)))
 
 
 def _neighbour(scene: Stack, place: Place, side: str) -> str | Place:
@@ -197,27 +211,23 @@ def _held(scene: Stack, place: Place, side: str) -> tuple[int, ...]:
 
 
 def _substructure(
-    part: _Part, grid: _Grid, shared: dict[tuple[object, ...], Elasticity]
+    part: _Part, skeleton: Indices, shared: dict[tuple[object, ...], Elasticity]
 ) -> Substructure:
-    condensed, rectangle = part.condensed, part.condensed.rectangle
-    place = np.full(2 * rectangle.n_nodes, -1)
-    place[condensed.dofs] = np.arange(len(condensed.dofs))
-    size = rectangle.columns * rectangle.width, rectangle.rows * rectangle.height
-    density = 1.0 / np.sqrt(size[0] * size[1])
+    rectangle = part.rectangle
+    density = 1.0 / np.sqrt(rectangle.columns * rectangle.width * rectangle.rows * rectangle.height)
     trace, direction = [], []
     for side, components in part.held.items():
-        nodes = rectangle.edge(side)
-        trace.append(place[2 * nodes[:, None] + np.array(components)].ravel())
-        weights = _edge_weights(rectangle, side)
-        direction.append(np.repeat(density * weights, len(components)))
-    found = Elasticity(condensed.stiffness, np.concatenate(trace), np.concatenate(direction))
-    loaded = part.force is not None
-    key = (id(condensed), loaded, found.trace.tobytes(), found.direction.tobytes())
+        dofs = 2 * rectangle.edge(side)[:, None] + np.array(components)
+        trace.append(np.searchsorted(part.kept.dofs, dofs.ravel()))
+        direction.append(density * np.repeat(_edge_weights(rectangle, side), len(components)))
+    found = Elasticity(part.kept.stiffness, np.concatenate(trace), np.concatenate(direction))
+    # A group of identical substructures has body forces on all or on none.
+    key = id(part.kept), part.force is not None
     return Substructure(
         elasticity=shared.setdefault(key, found),
-        dofs=both(grid.skeleton[part.nodes.ravel()[rectangle.outline]]),
+        dofs=np.searchsorted(skeleton, part.dofs),
         rows=np.concatenate([rows.ravel() for rows in part.rows.values()]),
-        body_force=None if part.force is None else condensed.condense(part.force),
+        body_force=None if part.force is None else part.kept.condense(part.force),
     )
 
 
@@ -264,11 +274,9 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
         above = [parts[column, 0, body] for column in range(columns)]
         under = [parts[column, rows - 1, body - 1] for column in range(columns)] if body else None
         points = np.concatenate(
-            [part.corner[0] + np.arange(part.condensed.rectangle.columns + 1) for part in above]
+            [part.corner[0] + np.arange(part.rectangle.columns + 1) for part in above]
         )
-        weights = np.concatenate(
-            [_edge_weights(part.condensed.rectangle, "bottom") for part in above]
-        )
+        weights = np.concatenate([_edge_weights(part.rectangle, "bottom") for part in above])
         if body == 0 and scene.support is not None:
             friction, gap = scene.support.friction, scene.support.gap[points] / scene.length
         else:
@@ -300,7 +308,7 @@ def _prescribed(
     for place, part in parts.items():
         if _neighbour(scene, place, side) != side or side not in part.held:
             continue
-        along = _along(scene, part.condensed.rectangle, place, part.corner, side)
+        along = _along(scene, part.rectangle, place, part.corner, side)
         held = [one for one in (given.x, given.y) if one.prescribed]
         for number, one in enumerate(held):
             rows.append(part.rows[side][:, number])

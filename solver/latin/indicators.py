@@ -74,8 +74,9 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     displacement, force = iterate.boundary_displacement, iterate.boundary_force
     noise = _rounding(displacement, force)
     found = [_Behaviour(law, displacement, force, noise) for law in problem.rubbing.values()]
-    energy = 0.5 * float(np.einsum("ij,ij->j", displacement, force).max(initial=0.0))
-    energy = max(energy, 0.0) + sum(float(one.dissipated.sum()) for one in found)
+    energy = _elastic_energy(iterate, displacement, force) + sum(
+        float(one.dissipated.sum()) for one in found
+    )
     allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
     maps = [one.violation(mean_slip) for one in found]
@@ -84,6 +85,21 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     map_ *= ratio(map_.size, energy) if energy else 0.0
     total += _gap_of_bonds(problem, displacement, force, noise)
     return BehaviourIndicator(total / _share_of_friction(problem, force), map_)
+
+
+def _elastic_energy(iterate: Iterate, displacement: Array, force: Array) -> float:
+    """Give the largest elastic energy over time; body forces work on it like the interfaces."""
+    work = np.einsum("ij,ij->j", displacement, force)
+    loads = [
+        (part.dofs, part.body_force)
+        for part in iterate.problem.substructures
+        if part.body_force is not None
+    ]
+    if loads:
+        whole = iterate.problem.mean_of_rows @ displacement
+        for dofs, load in loads:
+            work += np.einsum("ij,ij->j", load, whole[dofs])
+    return 0.5 * max(float(work.max(initial=0.0)), 0.0)
 
 
 class _Behaviour:
