@@ -1,0 +1,134 @@
+"""Unilateral contact with Coulomb friction holds pointwise on any input (theory.md, 2)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from solver.laws import Contact, Friction
+from solver.laws.contact import ContactLaw
+from solver.laws.friction import FrictionLaw, play
+
+ANY = settings(derandomize=True, deadline=None, max_examples=100)
+ROUNDING = 1e-12
+
+
+@st.composite
+def contacts(draw):
+    """Interfaces with rows in any order, search directions and fields z."""
+    seed = draw(st.integers(0, 2**31))
+    two_bodies = draw(st.booleans())
+    random = np.random.default_rng(seed)
+    pairs, times = draw(st.integers(1, 6)), draw(st.integers(1, 12))
+    rows = random.permutation(4 * pairs if two_bodies else 2 * pairs).reshape(-1, pairs)
+    law = Contact(
+        normal=rows[0],
+        tangent=rows[1],
+        below=(rows[2], rows[3]) if two_bodies else None,
+        points=np.arange(pairs),
+        positions=np.arange(pairs, dtype=float),
+        weights=np.ones(pairs),
+        gap=random.normal(size=pairs) * draw(st.sampled_from([0.0, 0.5])),
+        friction=random.uniform(0.0, draw(st.sampled_from([0.0, 0.3, 10.0])) + 1e-300, pairs),
+    )
+    k = 10.0 ** random.uniform(-2.0, 2.0, rows.size)
+    return law, k, random.normal(size=(rows.size, times))
+
+
+def local_stage(law, k, incoming):
+    """Give displacements and forces of the local stage."""
+    found = np.zeros_like(incoming)
+    kind = ContactLaw if isinstance(law, Contact) else FrictionLaw
+    kind(law, k, incoming.shape[1])(incoming, found)
+    return found, k[:, None] * (found - incoming)
+
+
+def jump(field, above, below):
+    return field[above] if below is None else field[above] - field[below]
+
+
+@ANY
+@given(contacts())
+def test_nothing_overlaps_nothing_pulls_and_what_is_open_carries_nothing(case):
+    law, k, incoming = case
+    moved, force = local_stage(law, k, incoming)
+    opening = jump(moved, law.normal, law.below and law.below[0]) + law.gap[:, None]
+    pressing = force[law.normal]
+    size = np.abs(incoming).max() * k.max()
+    assert np.all(pressing >= 0.0)
+    assert np.all(opening >= -ROUNDING * np.abs(incoming).max())
+    assert np.all(np.minimum(opening * k.max(), pressing) <= ROUNDING * size)
+
+
+@ANY
+@given(contacts())
+def test_friction_stays_in_the_cone_and_opposes_slip(case):
+    law, k, incoming = case
+    moved, force = local_stage(law, k, incoming)
+    position = jump(moved, law.tangent, law.below and law.below[1])
+    slip = np.diff(position, axis=1, prepend=0.0)
+    bound = law.friction[:, None] * force[law.normal]
+    held = force[law.tangent]
+    size = np.abs(incoming).max()
+    tight = ROUNDING * size * k.max()
+    assert np.all(np.abs(held) <= bound + tight)
+    slips = np.abs(slip) > ROUNDING * size * 10.0
+    assert np.all(np.abs(held + np.sign(slip) * bound)[slips] <= 100.0 * tight)
+
+
+@ANY
+@given(contacts())
+def test_forces_between_two_bodies_are_opposite(case):
+    law, k, incoming = case
+    _, force = local_stage(law, k, incoming)
+    if law.below is not None:
+        for above, below in zip((law.normal, law.tangent), law.below, strict=True):
+            size = np.abs(k[:, None] * incoming).max()
+            np.testing.assert_allclose(force[above], -force[below], atol=ROUNDING * size, rtol=1e-9)
+
+
+@pytest.mark.parametrize("kind", [Contact, Friction])
+def test_a_very_stiff_body_below_is_a_rigid_support(kind):
+    random = np.random.default_rng(5)
+    rows = np.arange(12).reshape(4, 3)
+    common = {"points": np.arange(3), "positions": np.arange(3.0), "weights": np.ones(3)}
+
+    def law(below):
+        if kind is Friction:
+            return Friction(
+                rows=rows[1], bound=np.full(3, 0.4), below=rows[3] if below else None, **common
+            )
+        return Contact(
+            normal=rows[0],
+            tangent=rows[1],
+            below=(rows[2], rows[3]) if below else None,
+            gap=np.full(3, 0.1),
+            friction=np.full(3, 0.3),
+            **common,
+        )
+
+    incoming = random.normal(size=(12, 20))
+    incoming[6:] = 0.0
+    k = np.ones(12)
+    k[6:] = 1e14
+    free, held = (
+        local_stage(law(below=True), k, incoming),
+        local_stage(law(below=False), k, incoming),
+    )
+    for one, other in zip(free, held, strict=True):
+        np.testing.assert_allclose(one[3:6], other[3:6], atol=1e-10)
+
+
+def test_the_only_pair_of_friction_between_two_bodies_follows_the_play_operator():
+    random = np.random.default_rng(3)
+    law = Friction(
+        np.array([1]), np.array([0]), np.zeros(1), np.ones(1), np.array([0.7]), np.array([0])
+    )
+    k, incoming = np.array([2.0, 5.0]), random.normal(size=(2, 30))
+    moved, force = local_stage(law, k, incoming)
+    soft = 1.0 / 2.0 + 1.0 / 5.0
+    wanted = play((incoming[1] - incoming[0])[None], np.array([0.7 * soft]))
+    np.testing.assert_allclose((moved[1] - moved[0])[None], wanted, atol=1e-12)
+    np.testing.assert_allclose(force[0], -force[1], atol=1e-12)
