@@ -13,12 +13,13 @@ SLIDING_STIFFNESS = 6.5
 a nested start on 50 elements, decaying cycles: of 3, 6, 12, 24 and 48 ES/L the one with the fewest
 iterations to 1 % of friction force was 4.8 to 7.2 of this, at peaks of 300 to 2400 N."""
 
-CUT_STIFFNESS = 4.0
+CUT_STIFFNESS = 8.0
 """k per area of cuts and supports in the plane, times l_sub over E (theory.md, 5)."""
-CONTACT_STIFFNESS = 6.0
-"""k per area of a contact in the plane, times its length over E. With it 1 % of the contact force
-takes 9 to 12 iterations with Anderson acceleration for 4 to 64 substructures, pressed flat, on a
-parabola or tilted (measured at 48 elements along; twice as much takes up to 20)."""
+CONTACT_STIFFNESS = 7.0
+"""k per area of a contact in the plane, times its length over E. With both, 1 % of the contact
+force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs by at most two from
+4 to 64 substructures: pressed flat, on a parabola, tilted, and a quarter as high; 48 and 96
+elements along (measured). Twice as much takes up to 20."""
 
 
 def search_direction(problem: Problem, settings: Settings) -> Array:
