@@ -8,7 +8,7 @@ memory (Fortran order), because the friction law walks through time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -213,8 +213,10 @@ class Problem:
 
     @cached_property
     def has_cuts(self) -> bool:
-        """Whether any two substructures meet."""
-        return bool(self.of_law(Perfect))
+        """Whether any two substructures meet, glued or in contact."""
+        return bool(self.of_law(Perfect)) or any(
+            isinstance(law, Contact) and law.macro is not None for law in self.rubbing.values()
+        )
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
@@ -227,27 +229,21 @@ class Problem:
         """
         columns, loads = [], []
         for interface in self.interfaces.values():
-            if isinstance(interface, Perfect):
-                rows = np.concatenate([interface.first, interface.second])
-                basis = np.concatenate([interface.macro, interface.macro])
-                load = np.zeros((basis.shape[1], self.n_instants))
-            elif isinstance(interface, Neumann):
-                rows, basis = interface.rows, interface.macro
-                load = basis.T @ interface.force
-            else:
-                continue
-            block = sparse.coo_array(
-                (
-                    basis.ravel(),
+            for rows, basis, load in _macro(interface):
+                block = sparse.coo_array(
                     (
-                        np.repeat(rows, basis.shape[1]),
-                        np.tile(np.arange(basis.shape[1]), len(rows)),
+                        basis.ravel(),
+                        (
+                            np.repeat(rows, basis.shape[1]),
+                            np.tile(np.arange(basis.shape[1]), len(rows)),
+                        ),
                     ),
-                ),
-                shape=(self.n_rows, basis.shape[1]),
-            )
-            columns.append(block)
-            loads.append(load)
+                    shape=(self.n_rows, basis.shape[1]),
+                )
+                block.eliminate_zeros()
+                columns.append(block)
+                nothing = np.zeros((basis.shape[1], self.n_instants))
+                loads.append(nothing if load is None else load)
         return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
 
     @cached_property
@@ -297,6 +293,19 @@ class Problem:
         none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
         rows = np.concatenate([none[0], *(law.rows for law in parts)])
         return self.row_dofs[rows], np.concatenate([none[1], *(law.displacement for law in parts)])
+
+
+def _macro(interface: Interface) -> Iterator[tuple[Indices, Array, Array | None]]:
+    """Give the rows of both sides, their macro basis, and their load, for each component."""
+    match interface:
+        case Perfect():
+            rows = np.concatenate([interface.first, interface.second])
+            yield rows, np.concatenate([interface.macro, interface.macro]), None
+        case Neumann():
+            yield interface.rows, interface.macro, interface.macro.T @ interface.force
+        case Contact(below=below, macro=macro) if below is not None and macro is not None:
+            for above, under in zip(components(interface), below, strict=True):
+                yield np.concatenate([above, under]), np.concatenate([macro, macro]), None
 
 
 def components(law: Friction | Contact) -> tuple[Indices, ...]:

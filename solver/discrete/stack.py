@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
+from scipy.linalg import block_diag
 
 from solver.discrete.bar import substructure_sizes
 from solver.discrete.plane import Condensed, Kept, Rectangle, both, elastic_matrix
@@ -19,8 +21,6 @@ Place = tuple[int, int, int]
 Corner = tuple[int, int]
 """First column and row of its elements in its body."""
 OPPOSITE = {"right": "left", "top": "bottom"}
-MACRO_DEGREE = 1
-"""Polynomials of each component on a cut: resultants, and moment with linear extension."""
 
 
 @dataclass(eq=False)
@@ -224,7 +224,7 @@ def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, 
             if isinstance(beyond, str) or beyond[2] != place[2]:
                 continue
             other = parts[beyond]
-            basis = _macro_basis(len(part.rows[side]))
+            basis = np.asarray(np.kron(_macro_basis(scene, len(part.rows[side])), np.eye(2)))
             yield (
                 f"cut {_name(place)} to {_name(beyond)}",
                 Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
@@ -238,11 +238,10 @@ def _name(place: Place) -> str:
     return f"{column + 1}.{row + 1}" + (f" of {body + 1}" if body else "")
 
 
-def _macro_basis(n_points: int) -> Array:
-    """Give polynomials over a cut for each of two interleaved components."""
-    along = np.linspace(-1.0, 1.0, n_points)
-    powers = along[:, None] ** np.arange(MACRO_DEGREE + 1)
-    return np.asarray(np.kron(powers, np.eye(2)))
+def _macro_basis(scene: Stack, n_points: int) -> Array:
+    """Give polynomials over the side of a substructure, shape (n_points, n_macro)."""
+    size = min(scene.macro_degree + 1, n_points)
+    return np.asarray(legvander(np.linspace(-1.0, 1.0, n_points), size - 1))
 
 
 def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Contact]]:
@@ -276,6 +275,9 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 weights=weights * scene.length,
                 gap=gap,
                 friction=np.full(len(points), friction),
+                macro=None
+                if under is None
+                else block_diag(*(_macro_basis(scene, len(part.rows["bottom"])) for part in above)),
             ),
         )
 

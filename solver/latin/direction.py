@@ -13,7 +13,6 @@ SLIDING_STIFFNESS = 6.5
 """k of a friction node, times the sliding length over ES. Measured with Anderson acceleration and
 a nested start on 50 elements, decaying cycles: of 3, 6, 12, 24 and 48 ES/L the one with the fewest
 iterations to 1 % of friction force was 4.8 to 7.2 of this, at peaks of 300 to 2400 N."""
-
 CUT_STIFFNESS = 8.0
 """k per area of cuts and supports in the plane, times l_sub over E (theory.md, 5)."""
 CONTACT_STIFFNESS = 7.0
@@ -21,6 +20,10 @@ CONTACT_STIFFNESS = 7.0
 force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs by at most two from
 4 to 64 substructures: pressed flat, on a parabola, tilted, and a quarter as high; 48 and 96
 elements along (measured). Twice as much takes up to 20."""
+BETWEEN_BODIES = 0.2
+"""Factor on the tangential k between two bodies: layers slide on each other along their length.
+Four layers, 50 times as long as thick: 3 % of the contact force takes 12 to 25 iterations with 0.1
+to 0.3, 33 with 1 (measured)."""
 
 
 def search_direction(problem: Problem, settings: Settings) -> Array:

@@ -101,6 +101,7 @@ def block(settings: BlockSettings) -> Stack:
         bodies=1,
         elements=(settings.elements, settings.elements_up),
         substructures=(settings.substructures, settings.substructures_up),
+        macro_degree=settings.macro_degree,
         young=settings.young,
         poisson=settings.poisson,
         state=settings.plane,

@@ -125,6 +125,7 @@ class LayersSettings(PlaneSettings):
     )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
     substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)
+    macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
 
     @property
     def n_bodies(self) -> int:
@@ -152,6 +153,7 @@ def layers(settings: LayersSettings) -> Stack:
         bodies=settings.layers,
         elements=(settings.elements, settings.elements_up),
         substructures=(settings.substructures, settings.substructures_up),
+        macro_degree=settings.macro_degree,
         young=settings.young,
         poisson=settings.poisson,
         state=settings.plane,

@@ -118,6 +118,16 @@ class PlaneSettings(Settings):
         title="Substructures up",
         essential=True,
     )
+    macro_degree = count(
+        1,
+        (0, 10),
+        (0, 4),
+        "Degree of the macro basis on each side of a substructure: 0 resultants alone, 1 also "
+        "moments and linear extension.",
+        group="Decomposition",
+        title="Macro degree",
+        applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
+    )
     search_direction = redefined(Settings.param["search_direction"], "auto")
     k_normal_scale = quantity(
         1.0,

@@ -65,6 +65,8 @@ class Stack:
         Their number.
     elements, substructures
         Of one body, along and up.
+    macro_degree
+        Of the macro basis on each side of a substructure.
     young, poisson, state
         Elasticity, Pa; `state` is "strain" or "stress".
     friction
@@ -85,6 +87,7 @@ class Stack:
     bodies: int
     elements: tuple[int, int]
     substructures: tuple[int, int]
+    macro_degree: int
     young: float
     poisson: float
     state: str
