@@ -2,7 +2,9 @@
 
 from solver.discrete.bar import discretise_bar
 from solver.discrete.problem import Problem
+from solver.discrete.strand import discretise_strand
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.strand import StrandSettings, strand
 from solver.settings import Settings
 
 
@@ -11,6 +13,8 @@ def discretise(settings: Settings) -> Problem:
     match settings:
         case BarSettings():
             return discretise_bar(bar(settings))
+        case StrandSettings():
+            return discretise_strand(strand(settings))
         case _:
             raise TypeError(f"no discretisation for the settings of {settings.scene!r}")
 

@@ -157,6 +157,13 @@ class Problem:
         return [interface for interface in self.interfaces.values() if type(interface) is law]
 
     @cached_property
+    def sliding(self) -> tuple[Indices, Array]:
+        """Rows of all tangential components, of both sides, and their weights (m, or m^2)."""
+        pairs = [(rows, law.weights) for law in self.rubbing.values() for rows in sliding_rows(law)]
+        rows, weights = zip(*pairs, strict=True)
+        return np.concatenate(rows), np.concatenate(weights)
+
+    @cached_property
     def friction(self) -> Friction:
         """The frictional interface of known bound, where it is the only one."""
         (found,) = self.of_law(Friction)
@@ -209,7 +216,9 @@ class Problem:
             )
             columns.append(block)
             loads.append(load)
-        return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
+        basis = sparse.csr_array(sparse.hstack(columns))
+        basis.eliminate_zeros()
+        return basis, np.concatenate(loads)
 
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:
@@ -263,3 +272,15 @@ class Problem:
 def components(law: Friction | Contact) -> tuple[Indices, ...]:
     """Give the rows of the body above, one array for each component of force."""
     return (law.rows,) if isinstance(law, Friction) else (law.normal, law.tangent)
+
+
+def components_below(law: Friction | Contact) -> tuple[Indices, ...]:
+    """Give the rows of the body below in the same order; nothing on a rigid support."""
+    if law.below is None:
+        return ()
+    return (law.below,) if isinstance(law, Friction) else law.below
+
+
+def sliding_rows(law: Friction | Contact) -> tuple[Indices, ...]:
+    """Give the rows of the tangential components, of both sides."""
+    return (components(law)[-1], *components_below(law)[-1:])

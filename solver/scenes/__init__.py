@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.scenes.bar import BarSettings
+from solver.scenes.strand import StrandSettings
 from solver.settings import Settings
 
 
@@ -22,5 +23,10 @@ CATALOGUE = {
         "Clamped bar on a rough support",
         "paper, section 3, Table 1",
         BarSettings,
+    ),
+    "strand": Entry(
+        "Parallel wires that rub on each other, one of them broken",
+        "closed form: force regained over T / (mu p)",
+        StrandSettings,
     ),
 }
