@@ -197,28 +197,22 @@ class Problem:
         for interface in self.interfaces.values():
             if isinstance(interface, Perfect):
                 rows = np.concatenate([interface.first, interface.second])
-                basis = np.concatenate([interface.macro, interface.macro])
+                basis = sparse.coo_array(np.concatenate([interface.macro, interface.macro]))
                 load = np.zeros((basis.shape[1], self.n_instants))
             elif isinstance(interface, Neumann):
-                rows, basis = interface.rows, interface.macro
-                load = basis.T @ interface.force
+                rows, basis = interface.rows, sparse.coo_array(interface.macro)
+                load = interface.macro.T @ interface.force
+            elif isinstance(interface, Friction) and interface.macro is not None:
+                rows = np.concatenate([*components(interface), *components_below(interface)])
+                basis = sparse.coo_array(sparse.vstack([interface.macro, interface.macro]))
+                load = np.zeros((basis.shape[1], self.n_instants))
             else:
                 continue
-            block = sparse.coo_array(
-                (
-                    basis.ravel(),
-                    (
-                        np.repeat(rows, basis.shape[1]),
-                        np.tile(np.arange(basis.shape[1]), len(rows)),
-                    ),
-                ),
-                shape=(self.n_rows, basis.shape[1]),
-            )
-            columns.append(block)
+            row, column = basis.coords
+            shape = (self.n_rows, basis.shape[1])
+            columns.append(sparse.coo_array((basis.data, (rows[row], column)), shape=shape))
             loads.append(load)
-        basis = sparse.csr_array(sparse.hstack(columns))
-        basis.eliminate_zeros()
-        return basis, np.concatenate(loads)
+        return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
 
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
 from solver.discrete.problem import Elasticity, Indices, Problem, Scales, Substructure
@@ -11,6 +12,10 @@ from solver.laws import Dirichlet, Friction, Interface, Neumann, Perfect
 from solver.scenes.strand import Strand
 
 NO_ROW = -1
+MACRO_DEGREE = 1
+"""Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
+them both sides balance each other but slowly: 1 % of the friction force then takes more than 200
+iterations instead of 32 (measured by default, with Anderson acceleration and automatic k)."""
 
 
 def discretise_strand(scene: Strand) -> Problem:
@@ -122,7 +127,9 @@ def _substructure(
     size = pieces.sizes[column]
     rows = pieces.rows(wire, column)
     ends = pieces.left[column, wire] != NO_ROW, pieces.right[column, wire] != NO_ROW
-    key = size, len(rows), ends
+    # Pieces at a prescribed end see other macro forces, so they are no group with the others.
+    held = column == 0, scene.rigid_grip and column == pieces.count - 1
+    key = size, len(rows), ends, held
     if key not in shared:
         shared[key] = _elasticity(size, scene.elements, len(rows) - 1, ends)
     return Substructure(
@@ -186,4 +193,11 @@ def _contact(scene: Strand, pieces: _Pieces, number: int) -> Friction:
         weights=weights,
         bound=scene.bound * weights / scene.stiffness,
         below=pieces.contact_rows(number, 0),
+        macro=_macro(pieces.sizes),
     )
+
+
+def _macro(sizes: list[int]) -> sparse.csr_array:
+    """Give polynomials over each piece of a contact."""
+    blocks = [np.vander(np.linspace(-1.0, 1.0, size + 1), MACRO_DEGREE + 1) for size in sizes]
+    return sparse.csr_array(sparse.block_diag(blocks))
