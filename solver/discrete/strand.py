@@ -25,7 +25,8 @@ def discretise_strand(scene: Strand) -> Problem:
     (`discretise_bar`), the same on both sides of a contact. Degrees of freedom run along wire
     after wire; the broken wire has two at its break, and no boundary row there. "contact 1-2" lies
     between wires 1 and 2, the second being the body above. Its points run along the wires; at the
-    break of either there are two, one for each of the parts that have come apart.
+    break of either there are two, one for each of the parts that have come apart. Where both sides
+    are held there is no bound: friction there could not be told from the reactions.
     """
     pieces = _Pieces(scene)
     shared: dict[tuple[object, ...], Elasticity] = {}
@@ -180,6 +181,7 @@ def _contact(scene: Strand, pieces: _Pieces, number: int) -> Friction:
             for start, size in zip(pieces.starts, pieces.sizes, strict=True)
         ]
     )
+    held = (node == 0) | (scene.rigid_grip & (node == scene.elements))
     points, positions = node, scene.nodes
     if pieces.broken is not None and number + 1 in (pieces.broken[0], pieces.broken[0] + 1):
         beyond = np.arange(len(node)) >= pieces.starts[pieces.broken[1] + 1] + pieces.broken[1] + 1
@@ -191,7 +193,7 @@ def _contact(scene: Strand, pieces: _Pieces, number: int) -> Friction:
         points=points,
         positions=positions,
         weights=weights,
-        bound=scene.bound * weights / scene.stiffness,
+        bound=np.where(held, 0.0, scene.bound * weights / scene.stiffness),
         below=pieces.contact_rows(number, 0),
         macro=_macro(pieces.sizes),
     )
