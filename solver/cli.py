@@ -10,10 +10,11 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from solver.discrete import discretise
+from solver.discrete import Problem, discretise
 from solver.files import save_result, scene_settings, settings_from_command, summary
 from solver.latin import Ending, solve
-from solver.reference.distance import distance_to
+from solver.laws import Friction
+from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, about, allowed
@@ -97,8 +98,7 @@ def _run(chosen: argparse.Namespace) -> int:
     if chosen.out is not None and (chosen.out.is_dir() or not chosen.out.parent.is_dir()):
         raise SettingError("--out", str(chosen.out), "a file in an existing folder", "make it")
     problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
-    solution = solve(problem, settings, distance=distance)
+    solution = solve(problem, settings, distance=_distance(problem))
     figures = summary(settings, solution)
     if chosen.out is not None:
         save_result(chosen.out, settings, solution)
@@ -112,6 +112,13 @@ def _run(chosen: argparse.Namespace) -> int:
         for name, value in figures.items():
             print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
     return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _distance(problem: Problem) -> Distance | None:
+    """Give the distance to the reference, or None for what it does not solve."""
+    laws = list(problem.rubbing.values())
+    one_bar = len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
+    return distance_to(incremental(problem), problem) if one_bar else None
 
 
 def _scenes(chosen: argparse.Namespace) -> int:

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from solver.latin import Solution
+from solver.latin import Iterate, Solution
+from solver.laws import Friction
 from solver.reduction.basis import Reduction
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, Settings, parse, resolve
@@ -109,6 +110,10 @@ def _bases(reduction: Reduction | None) -> dict[str, int]:
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     """Give the arrays of a result file (SI; space first, time last).
 
+    `displacement` is that of the degrees of freedom at `x`, body after body; `friction_force` and
+    `status` are those of the points of all interfaces with friction, one after the other. Where
+    there are several of them, each also has arrays of its own (`interface_arrays`).
+
     With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
     shape (n_iterations, n_substructures), as in `ReductionRecord`.
     """
@@ -131,9 +136,35 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         "displacement": iterate.displacement,
         "friction_force": iterate.friction_force,
         "status": iterate.status,
+        **interface_arrays(iterate),
         **{name: np.array(column) for name, column in history.items()},
         "settings": json.dumps({"scene": settings.scene, **settings.values()}),
     }
+
+
+def interface_arrays(iterate: Iterate) -> dict[str, Any]:
+    """Give the arrays `interface/NAME/...` of all interfaces between bodies, or that may open.
+
+    `points` are places along the interface, m; the others are as in `ContactFields`, shape
+    (n_points, n_instants), with the opening as `gap`. Forces are in N, on the body above.
+    """
+    found: dict[str, Any] = {}
+    for name, law in iterate.problem.rubbing.items():
+        if isinstance(law, Friction) and law.below is None:
+            continue
+        fields = iterate.contact(name)
+        own = {
+            "points": law.positions,
+            "normal_force": fields.normal_force,
+            "tangential_force": fields.tangential_force,
+            "gap": fields.opening,
+            "slip": fields.slip,
+            "status": fields.status,
+        }
+        found |= {
+            f"interface/{name}/{key}": field for key, field in own.items() if field is not None
+        }
+    return found
 
 
 def save_result(path: Path, settings: Settings, solution: Solution) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,8 +53,25 @@ PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "delayed": _delayed,
 }
 
+PULLS: dict[str, Callable[[Array, int], Array]] = {
+    "ramp": PRESETS["ramp"],
+    "triangle": PRESETS["triangle"],
+    "cycle": _polyline(np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])),
+    "sine": lambda phase, seed: 0.5 - 0.5 * np.cos(4.0 * np.pi * phase),
+    "decaying": _polyline(np.concatenate([[0.0], 0.5 + 0.5 * DECAY, [0.0]])),
+    "random": lambda phase, seed: np.abs(_random_walk(phase, seed)),
+}
+"""Presets that never push, for what carries tension alone."""
 
-def load_path(path: str | Pairs, instants: Array, duration: float, peak: float, seed: int) -> Array:
+
+def load_path(
+    path: str | Pairs,
+    instants: Array,
+    duration: float,
+    peak: float,
+    seed: int,
+    presets: Mapping[str, Callable[[Array, int], Array]] = PRESETS,
+) -> Array:
     """Evaluate a load path at the instants of a run.
 
     Parameters
@@ -69,11 +86,13 @@ def load_path(path: str | Pairs, instants: Array, duration: float, peak: float, 
         Largest size that a preset reaches, in the path's unit; a table has its own.
     seed
         Of the random walk.
+    presets
+        What the names stand for.
 
     Returns
     -------
     Values at the instants, shape (n_instants,).
     """
     if isinstance(path, str):
-        return peak * PRESETS[path](instants / duration, seed)
+        return peak * presets[path](instants / duration, seed)
     return interpolate(path, instants)

@@ -3,9 +3,11 @@
 from solver.discrete.bar import discretise_bar
 from solver.discrete.problem import Problem
 from solver.discrete.stack import discretise_stack
+from solver.discrete.strand import discretise_strand
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.block import BlockSettings, block
 from solver.scenes.layers import LayersSettings, layers
+from solver.scenes.strand import StrandSettings, strand
 from solver.settings import Settings
 
 
@@ -18,6 +20,8 @@ def discretise(settings: Settings) -> Problem:
             return discretise_stack(block(settings))
         case LayersSettings():
             return discretise_stack(layers(settings))
+        case StrandSettings():
+            return discretise_strand(strand(settings))
         case _:
             raise TypeError(f"no discretisation for the settings of {settings.scene!r}")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.discrete.problem import Array, Indices, Problem, components
+from solver.discrete.problem import Array, Problem, components, components_below
 from solver.laws import Contact, Friction
 
 NO_SLIP = 1e-9
@@ -69,13 +69,21 @@ def contact_fields(
 
 def jumps_of(law: Friction | Contact, field: Array) -> tuple[Array, ...]:
     """Give a row field above minus that below, (n_pairs, n_instants) for each component."""
-    under: tuple[Indices, ...] = law.below or () if isinstance(law, Contact) else ()
-    if isinstance(law, Friction) and law.below is not None:
-        under = (law.below,)
-    if not under:
+    if law.below is None:
         return tuple(field[rows] for rows in components(law))
     return tuple(
-        field[above] - field[below] for above, below in zip(components(law), under, strict=True)
+        field[above] - field[below]
+        for above, below in zip(components(law), components_below(law), strict=True)
+    )
+
+
+def sums_of(law: Friction | Contact, field: Array) -> tuple[Array, ...]:
+    """Give a row field above plus that below, as `jumps_of`; nothing on a rigid support."""
+    if law.below is None:
+        return ()
+    return tuple(
+        field[above] + field[below]
+        for above, below in zip(components(law), components_below(law), strict=True)
     )
 
 

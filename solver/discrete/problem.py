@@ -196,6 +196,13 @@ class Problem:
         return [interface for interface in self.interfaces.values() if type(interface) is law]
 
     @cached_property
+    def sliding(self) -> tuple[Indices, Array]:
+        """Rows of all tangential components, of both sides, and their weights (m, or m^2)."""
+        pairs = [(rows, law.weights) for law in self.rubbing.values() for rows in sliding_rows(law)]
+        rows, weights = zip(*pairs, strict=True)
+        return np.concatenate(rows), np.concatenate(weights)
+
+    @cached_property
     def friction(self) -> Friction:
         """The frictional interface of known bound, where it is the only one."""
         (found,) = self.of_law(Friction)
@@ -230,18 +237,9 @@ class Problem:
         columns, loads = [], []
         for interface in self.interfaces.values():
             for rows, basis, load in _macro(interface):
-                block = sparse.coo_array(
-                    (
-                        basis.ravel(),
-                        (
-                            np.repeat(rows, basis.shape[1]),
-                            np.tile(np.arange(basis.shape[1]), len(rows)),
-                        ),
-                    ),
-                    shape=(self.n_rows, basis.shape[1]),
-                )
-                block.eliminate_zeros()
-                columns.append(block)
+                row, column = basis.coords
+                shape = (self.n_rows, basis.shape[1])
+                columns.append(sparse.coo_array((basis.data, (rows[row], column)), shape=shape))
                 nothing = np.zeros((basis.shape[1], self.n_instants))
                 loads.append(nothing if load is None else load)
         return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
@@ -295,19 +293,34 @@ class Problem:
         return self.row_dofs[rows], np.concatenate([none[1], *(law.displacement for law in parts)])
 
 
-def _macro(interface: Interface) -> Iterator[tuple[Indices, Array, Array | None]]:
+def _macro(interface: Interface) -> Iterator[tuple[Indices, sparse.coo_array, Array | None]]:
     """Give the rows of both sides, their macro basis, and their load, for each component."""
     match interface:
         case Perfect():
-            rows = np.concatenate([interface.first, interface.second])
-            yield rows, np.concatenate([interface.macro, interface.macro]), None
+            rows, macro = np.concatenate([interface.first, interface.second]), interface.macro
+            yield rows, sparse.coo_array(np.concatenate([macro, macro])), None
         case Neumann():
-            yield interface.rows, interface.macro, interface.macro.T @ interface.force
-        case Contact(below=below, macro=macro) if below is not None and macro is not None:
-            for above, under in zip(components(interface), below, strict=True):
-                yield np.concatenate([above, under]), np.concatenate([macro, macro]), None
+            load = interface.macro.T @ interface.force
+            yield interface.rows, sparse.coo_array(interface.macro), load
+        case Friction(macro=macro) | Contact(macro=macro) if macro is not None:
+            both_sides = sparse.coo_array(sparse.vstack([macro, macro]))
+            sides = zip(components(interface), components_below(interface), strict=True)
+            for above, below in sides:
+                yield np.concatenate([above, below]), both_sides, None
 
 
 def components(law: Friction | Contact) -> tuple[Indices, ...]:
     """Give the rows of the body above, one array for each component of force."""
     return (law.rows,) if isinstance(law, Friction) else (law.normal, law.tangent)
+
+
+def components_below(law: Friction | Contact) -> tuple[Indices, ...]:
+    """Give the rows of the body below in the same order; nothing on a rigid support."""
+    if law.below is None:
+        return ()
+    return (law.below,) if isinstance(law, Friction) else law.below
+
+
+def sliding_rows(law: Friction | Contact) -> tuple[Indices, ...]:
+    """Give the rows of the tangential components, of both sides."""
+    return (components(law)[-1], *components_below(law)[-1:])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.discrete.problem import Array, Indices, Problem, sliding_rows
 from solver.laws import Contact, Dirichlet, Friction, Neumann
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
@@ -51,18 +51,13 @@ def _automatic(problem: Problem, settings: Settings, k: Array) -> None:
     if contacts:
         k *= CUT_STIFFNESS
     for law in contacts:
-        share = law.weights / law.weights.sum()
-        for rows in (law.normal, law.tangent, *(law.below or ())):
-            k[rows] = settings.k_scale * CONTACT_STIFFNESS * share
+        share = settings.k_scale * CONTACT_STIFFNESS * law.weights / law.weights.sum()
+        for rows in pressing_rows(law):
+            k[rows] = share
+        for rows in sliding_rows(law):
+            k[rows] = share if law.below is None else BETWEEN_BODIES * share
     if not contacts:
-        k[problem.friction.rows] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
-
-
-def sliding_rows(law: Friction | Contact) -> tuple[Indices, ...]:
-    """Give the rows of the tangential components, of both sides."""
-    if isinstance(law, Friction):
-        return (law.rows,) if law.below is None else (law.rows, law.below)
-    return (law.tangent,) if law.below is None else (law.tangent, law.below[1])
+        k[problem.sliding[0]] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
 
 
 def pressing_rows(law: Contact) -> tuple[Indices, ...]:
@@ -73,15 +68,18 @@ def pressing_rows(law: Contact) -> tuple[Indices, ...]:
 def sliding_share(problem: Problem) -> float:
     """Estimate the share of the frictional interface that slides at the largest load.
 
-    It is that load over all that friction can carry, between two points and all of them. Where
-    displacements are prescribed the load is not known beforehand, and all may slide.
+    It is that load over all that friction can carry, between two points and all of them: the load
+    of one body over one interface, where there are several alike. Where displacements are
+    prescribed the load is not known beforehand, and all may slide.
     """
-    capacity = float(problem.friction.bound.sum())
-    smallest = min(2.0 / len(problem.friction.positions), 1.0)
+    first, *_ = problem.rubbing.values()
+    assert isinstance(first, Friction)
+    capacity = float(first.bound.sum())
+    smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)
     for law in problem.interfaces.values():
         if isinstance(law, Neumann):
-            load += law.force.sum(axis=0)
+            load += law.force.mean(axis=0)
         elif isinstance(law, Dirichlet) and law.displacement.any():
             return 1.0
     for part in problem.substructures:

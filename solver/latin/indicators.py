@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.discrete.contact_fields import jumps_of
+from solver.discrete.contact_fields import jumps_of, sums_of
 from solver.discrete.problem import Array, Problem, components
 from solver.latin.iterate import Iterate
 from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
@@ -170,7 +170,9 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
 def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: float) -> float:
     gap_w, gap_f = 0.0, 0.0
     for law in problem.interfaces.values():
-        if isinstance(law, Perfect):
+        if isinstance(law, Friction | Contact):
+            gap_f += sum(_squared(one) for one in sums_of(law, force))
+        elif isinstance(law, Perfect):
             gap_w += _squared(
                 _beyond(displacement[law.first] - displacement[law.second], 2.0 * noise)
             )

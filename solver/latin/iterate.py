@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from solver.discrete.contact_fields import ContactFields, contact_fields, status_of
 from solver.discrete.problem import Array, Problem
+from solver.laws import Contact, Friction
 from solver.reduction.basis import Modes, Reduction, References
 
 
@@ -142,11 +143,14 @@ class Iterate:
 
     @property
     def friction_force(self) -> Array:
-        """Nodal friction force on the body, linear stage, (n_points, n_instants), N.
+        """Nodal friction force on the body above, linear stage, (n_points, n_instants), N.
 
-        Of the only frictional interface, where its bound is known.
+        Points of all interfaces with friction, one interface after the other.
         """
-        return self.contact_force
+        places = self.problem.contact_places.values()
+        if len(self.problem.of_law(Friction)) == len(places):
+            return self.contact_force
+        return np.concatenate([self.contact_force[own[-1]] for own in places])
 
     def contact(self, name: str) -> ContactFields:
         """Show one interface with friction: forces of the linear stage, status of the local one."""
@@ -163,6 +167,8 @@ class Iterate:
     def status(self) -> NDArray[np.int8]:
         """Contact status of the local stage, shape (n_points, n_instants), as in `status_of`.
 
-        Of the only frictional interface, where its bound is known.
+        Points of all interfaces with friction, one interface after the other.
         """
-        return status_of(self.problem.friction, self.local_displacement)
+        force = self.boundary_local_force if self.problem.of_law(Contact) else None
+        laws = self.problem.rubbing.values()
+        return np.concatenate([status_of(law, self.local_displacement, force) for law in laws])

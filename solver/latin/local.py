@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +26,8 @@ class LocalStage:
     problem, k
         Whose laws; k has shape (n_rows,).
     where
-        Rows and instants to which the laws are confined, or None for all. Only rows of friction
-        on a rigid support may be left out; fields then have these rows and instants alone.
+        Rows and instants to which the laws are confined, or None for all. Only rows of `Friction`
+        may be left out, together with those below; fields then have these rows and instants alone.
 
     Attributes
     ----------
@@ -43,7 +44,9 @@ class LocalStage:
         shape = (len(rows), len(instants))
         self.displacement = space_time(*shape)
         self._outgoing = space_time(*shape)
-        self._laws = [_law(law, place, k[rows], len(instants)) for law in problem.rubbing.values()]
+        self._laws = [
+            _law(law, place, k[rows], len(instants)) for law in together(problem.rubbing.values())
+        ]
         cuts = [law for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
         self._cuts = None
         if cuts:
@@ -84,6 +87,27 @@ class LocalStage:
             found[rows] = neumann(incoming[rows], force_over_k)
         np.multiply(found, 2.0, out=self._outgoing)
         return np.subtract(self._outgoing, incoming, out=self._outgoing)
+
+
+def together(laws: Iterable[Friction | Contact]) -> list[Friction | Contact]:
+    """Join all interfaces of known bound between two bodies: their points know no interface."""
+    pairs, others = [], []
+    for law in laws:
+        if isinstance(law, Friction) and law.below is not None:
+            pairs.append((law, law.below))
+        else:
+            others.append(law)
+    if not pairs:
+        return others
+    joined = Friction(
+        rows=np.concatenate([law.rows for law, _ in pairs]),
+        points=np.arange(sum(len(law.rows) for law, _ in pairs)),
+        positions=np.concatenate([law.positions[law.points] for law, _ in pairs]),
+        weights=np.concatenate([law.weights for law, _ in pairs]),
+        bound=np.concatenate([law.bound for law, _ in pairs]),
+        below=np.concatenate([below for _, below in pairs]),
+    )
+    return [joined, *others]
 
 
 def _law(

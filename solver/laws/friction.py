@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -38,6 +39,9 @@ class Friction:
         Largest friction force of each row, shape (n_rows,), non-negative.
     below
         Rows of the body below, each opposite its partner in `rows`; None on a rigid support.
+    macro
+        Macro basis between two bodies, shape (n_rows, n_macro): the macro forces of both sides
+        cancel each other. None on a rigid support.
     """
 
     rows: Indices
@@ -46,6 +50,7 @@ class Friction:
     weights: Array
     bound: Array
     below: Indices | None = None
+    macro: sparse.csr_array | None = None
 
     def by_point(self, values: Array) -> Array:
         """Add up values of the rows, shape (n_rows, ...), at every point, shape (n_points, ...)."""

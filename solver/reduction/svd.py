@@ -192,7 +192,7 @@ def friction_spectra(fields: InterfaceFields) -> list[Array]:
 def friction_rows(problem: Problem) -> list[Indices]:
     """Give the boundary rows that rub, per substructure, in the order of its own rows."""
     rubs = np.zeros(problem.n_rows, dtype=bool)
-    rubs[problem.friction.rows] = True
+    rubs[problem.sliding[0]] = True
     return [part.rows[rubs[part.rows]] for part in problem.substructures]
 
 
@@ -243,10 +243,10 @@ def _signs(modes: Array) -> Array:
 def _field_and_weights(fields: InterfaceFields, name: InterfaceField) -> tuple[Array, Array]:
     """Give a field in SI and the weights of its rows; rows beyond it have no meaning."""
     problem, scales = fields.problem, fields.problem.scales
-    law = problem.friction
+    sliding, weights = problem.sliding
     k = fields.k * scales.force / scales.displacement
     lengths = np.ones(problem.n_rows)
-    lengths[law.rows] = law.weights
+    lengths[sliding] = weights
     if name is InterfaceField.FRICTION_FORCE:
         return fields.boundary_force * scales.force / lengths[:, None], lengths
     if name is InterfaceField.DISPLACEMENT:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
+from solver.scenes.strand import StrandSettings
 from solver.settings import Settings
 
 
@@ -34,5 +35,10 @@ CATALOGUE = {
         "Stack of layers bent under pressure",
         "leaf spring, or the flattened section of a cable",
         LayersSettings,
+    ),
+    "strand": Entry(
+        "Parallel wires that rub on each other, one of them broken",
+        "closed form: force regained over T / (mu p)",
+        StrandSettings,
     ),
 }

@@ -1,0 +1,115 @@
+"""The broken wire in closed form: each side of its break is a friction bar (theory.md, 6).
+
+Unbroken, all wires carry the tension T and nothing slips. The break adds a force n to the broken
+wire, -T at its two new ends, which the neighbours take over in equal shares: with m of them, what
+they slip by is the displacement of a bar of stiffness ES m / (m + 1), under m times the bound,
+that is clamped far away and pulled at the break. Its normal force is a play operator of T, and on a
+rising load the broken wire carries min(T, m mu p |x - x_break|): all of it after T / (m mu p).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.reference.closed_form import ClosedForm, closed_form
+from solver.scenes.bar import Bar
+from solver.scenes.strand import Strand
+
+Array = NDArray[np.float64]
+
+STEPS = 100
+PRECISION = 1e-13
+"""Change of the tension, as a share of the largest, at which it is found."""
+
+
+@dataclass(frozen=True, eq=False)
+class BrokenWire:
+    """The exact solution at the nodes, without discretisation in space.
+
+    Attributes
+    ----------
+    tension
+        T, which all wires would carry without the break, shape (n_instants,), N. With a rigid grip
+        the break makes it less than what was asked for.
+    force, neighbour_force
+        Axial force of the broken wire and of each neighbour, shape (n_nodes, n_instants), N.
+    friction_force
+        Friction force on the broken wire over the tributary length of each node, both sides
+        together, shape (n_nodes + 1, n_instants), N; the break has two nodes. At a held end it
+        cannot be told from the reaction.
+    slip
+        Displacement of the broken wire over its neighbours, same shape, m.
+    """
+
+    tension: Array
+    force: Array
+    neighbour_force: Array
+    friction_force: Array
+    slip: Array
+
+
+def broken_wire(scene: Strand) -> BrokenWire | None:
+    """Solve a strand with a broken wire in closed form.
+
+    Returns
+    -------
+    The solution, or None where no wire is broken, or where its neighbours rub on others too and
+    pass on what they took over.
+    """
+    if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
+        return None
+    tension = _tension(scene) if scene.rigid_grip else scene.tension
+    left, right = _sides(scene, tension)
+    lost = np.concatenate([left.normal_force, right.normal_force[-2::-1]])
+    return BrokenWire(
+        tension=tension,
+        force=tension - lost,
+        neighbour_force=tension + lost / scene.rubbing_sides,
+        friction_force=np.concatenate([-left.friction_force, right.friction_force[::-1]]),
+        slip=np.concatenate([-left.displacement, right.displacement[::-1]]),
+    )
+
+
+def _sides(scene: Strand, tension: Array) -> tuple[ClosedForm, ClosedForm]:
+    """Give the bars left and right of the break, from their far ends to the break."""
+    assert scene.broken is not None
+    node, sides = scene.broken[1], scene.rubbing_sides
+    found = []
+    for elements in (node, scene.elements - node):
+        side = Bar(
+            length=scene.length * elements / scene.elements,
+            stiffness=scene.stiffness * sides / (sides + 1),
+            elements=elements,
+            substructures=1,
+            instants=scene.instants,
+            duration=scene.duration,
+            load=tension,
+            bound=np.full(elements + 1, sides * scene.bound),
+            support=None,
+            body_force=None,
+        )
+        solved = closed_form(side)
+        assert solved is not None
+        found.append(solved)
+    return found[0], found[1]
+
+
+def _tension(scene: Strand) -> Array:
+    """Find T under a rigid grip: a neighbour's elongation is given.
+
+    It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second
+    part grows with T, and no faster than the first, so halved steps halve the error at least.
+    """
+    tension = scene.tension
+    largest = float(np.abs(tension).max())
+    for _ in range(STEPS):
+        slipped = sum(side.end_displacement for side in _sides(scene, tension))
+        softer = scene.stiffness / scene.length * slipped / (scene.rubbing_sides + 1)
+        change = 0.5 * (scene.tension - tension - softer)
+        tension = tension + change
+        if float(np.abs(change).max()) <= PRECISION * largest:
+            break
+    return tension
