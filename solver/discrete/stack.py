@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from scipy.linalg import block_diag
+from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
 from solver.discrete.plane import Condensed, Kept, Rectangle, both, elastic_matrix
@@ -277,7 +277,11 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 friction=np.full(len(points), friction),
                 macro=None
                 if under is None
-                else block_diag(*(_macro_basis(scene, len(part.rows["bottom"])) for part in above)),
+                else sparse.csr_array(
+                    sparse.block_diag(
+                        [_macro_basis(scene, len(part.rows["bottom"])) for part in above]
+                    )
+                ),
             ),
         )
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from solver.laws.friction import Play
 
@@ -57,7 +58,7 @@ class Contact:
     weights: Array
     gap: Array
     friction: Array
-    macro: Array | None = None
+    macro: sparse.csr_array | None = None
 
     def by_point(self, values: Array) -> Array:
         """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
