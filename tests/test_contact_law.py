@@ -32,6 +32,7 @@ def contacts(draw):
         weights=np.ones(pairs),
         gap=random.normal(size=pairs) * draw(st.sampled_from([0.0, 0.5])),
         friction=random.uniform(0.0, draw(st.sampled_from([0.0, 0.3, 10.0])) + 1e-300, pairs),
+        moduli=(1.0, 1.0),
     )
     k = 10.0 ** random.uniform(-2.0, 2.0, rows.size)
     return law, k, random.normal(size=(rows.size, times))
@@ -106,6 +107,7 @@ def test_a_very_stiff_body_below_is_a_rigid_support(kind):
             below=(rows[2], rows[3]) if below else None,
             gap=np.full(3, 0.1),
             friction=np.full(3, 0.3),
+            moduli=(1.0, 1.0),
             **common,
         )
 

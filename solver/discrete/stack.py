@@ -118,7 +118,7 @@ def discretise_stack(scene: Stack) -> Problem:
     shared: dict[tuple[object, ...], Elasticity] = {}
     skeleton = np.unique(np.concatenate([part.dofs for part in parts]))
     return Problem(
-        substructures=tuple(_substructure(part, skeleton, shared) for part in parts),
+        substructures=tuple(_substructure(scene, part, skeleton, shared) for part in parts),
         interfaces=dict(_interfaces(scene, {part.place: part for part in parts})),
         positions=grid.positions[skeleton // 2] * scene.length,
         instants=scene.instants,
@@ -131,8 +131,7 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
     across, up = grid.cuts
     width = 1.0 / scene.elements[0]
     height = scene.height / scene.length / scene.elements[1]
-    elastic = elastic_matrix(1.0, scene.poisson, scene.state)
-    shapes: dict[Corner, Condensed] = {}
+    shapes: dict[tuple[int, int, float], Condensed] = {}
     kinds: dict[tuple[object, ...], Kept] = {}
     parts = []
     for body in range(scene.bodies):
@@ -140,8 +139,10 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
             for column in range(scene.substructures[0]):
                 x, y = across[column], up[row]
                 size = int(across[column + 1] - x), int(up[row + 1] - y)
-                if size not in shapes:
-                    shapes[size] = Condensed(Rectangle(*size, width, height, elastic))
+                shape = *size, float(scene.stiffness[body])
+                if shape not in shapes:
+                    elastic = elastic_matrix(shape[2], scene.poisson, scene.state)
+                    shapes[shape] = Condensed(Rectangle(*size, width, height, elastic))
                 nodes = grid.nodes[body, y : y + size[1] + 1, x : x + size[0] + 1]
                 place = column, row, body
                 held = {
@@ -149,10 +150,10 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
                     for side in ("left", "right", "bottom", "top")
                     if (components := _held(scene, place, side))
                 }
-                kind = size, *held.items()
+                kind = shape, *held.items()
                 if kind not in kinds:
-                    kinds[kind] = _kept(shapes[size], held)
-                force = _nodal_force(scene, shapes[size].rectangle, place, (int(x), int(y)))
+                    kinds[kind] = _kept(shapes[shape], held)
+                force = _nodal_force(scene, shapes[shape].rectangle, place, (int(x), int(y)))
                 parts.append(_Part(kinds[kind], place, (int(x), int(y)), nodes, held, {}, force))
     return parts
 
@@ -190,10 +191,13 @@ def _held(scene: Stack, place: Place, side: str) -> tuple[int, ...]:
 
 
 def _substructure(
-    part: _Part, skeleton: Indices, shared: dict[tuple[object, ...], Elasticity]
+    scene: Stack, part: _Part, skeleton: Indices, shared: dict[tuple[object, ...], Elasticity]
 ) -> Substructure:
     rectangle = part.rectangle
-    density = 1.0 / np.sqrt(rectangle.columns * rectangle.width * rectangle.rows * rectangle.height)
+    modulus = float(scene.stiffness[part.place[2]])
+    density = modulus / np.sqrt(
+        rectangle.columns * rectangle.width * rectangle.rows * rectangle.height
+    )
     trace, direction = [], []
     for side, components in part.held.items():
         dofs = 2 * rectangle.edge(side)[:, None] + np.array(components)
@@ -275,6 +279,10 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 weights=weights * scene.length,
                 gap=gap,
                 friction=np.full(len(points), friction),
+                moduli=(
+                    float(scene.stiffness[body]),
+                    np.inf if under is None else float(scene.stiffness[body - 1]),
+                ),
                 macro=None
                 if under is None
                 else sparse.csr_array(

@@ -52,10 +52,11 @@ def _automatic(problem: Problem, settings: Settings, k: Array) -> None:
         k *= CUT_STIFFNESS
     for law in contacts:
         share = settings.k_scale * CONTACT_STIFFNESS * law.weights / law.weights.sum()
-        for rows in pressing_rows(law):
-            k[rows] = share
-        for rows in sliding_rows(law):
-            k[rows] = share if law.below is None else BETWEEN_BODIES * share
+        easier = 1.0 if law.below is None else BETWEEN_BODIES
+        for rows, modulus in zip(pressing_rows(law), law.moduli, strict=False):
+            k[rows] = modulus * share
+        for rows, modulus in zip(sliding_rows(law), law.moduli, strict=False):
+            k[rows] = modulus * easier * share
     if not contacts:
         k[problem.sliding[0]] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
 

@@ -45,6 +45,8 @@ class Contact:
         overlap.
     friction
         Coefficient mu of each pair, shape (n_pairs,), non-negative.
+    moduli
+        Young's moduli of the body above and of that below, scaled; infinite for a rigid support.
     macro
         Macro basis of each component, shape (n_pairs, n_macro): what one body takes from the
         other is in equilibrium in the coarse problem, as on a cut. None on a rigid support.
@@ -58,6 +60,7 @@ class Contact:
     weights: Array
     gap: Array
     friction: Array
+    moduli: tuple[float, float]
     macro: sparse.csr_array | None = None
 
     def by_point(self, values: Array) -> Array:

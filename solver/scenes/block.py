@@ -105,6 +105,7 @@ def block(settings: BlockSettings) -> Stack:
         young=settings.young,
         poisson=settings.poisson,
         state=settings.plane,
+        stiffness=np.ones(1),
         friction=settings.friction,
         support=Support(_gap(settings), settings.friction),
         sides={**sides, "bottom": Side(free, free)},

@@ -123,6 +123,15 @@ class LayersSettings(PlaneSettings):
         unit="m",
         logarithmic=True,
     )
+    contrast = quantity(
+        1.0,
+        (1e-6, 1e6),
+        (0.01, 100.0),
+        "Young's modulus of every second layer over that of the others, the lowest among them.",
+        group="Body",
+        title="Stiffness contrast",
+        logarithmic=True,
+    )
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
     substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)
     macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
@@ -157,6 +166,7 @@ def layers(settings: LayersSettings) -> Stack:
         young=settings.young,
         poisson=settings.poisson,
         state=settings.plane,
+        stiffness=np.where(np.arange(settings.layers) % 2, settings.contrast, 1.0),
         friction=settings.friction,
         support=None,
         sides={

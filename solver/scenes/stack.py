@@ -69,6 +69,8 @@ class Stack:
         Of the macro basis on each side of a substructure.
     young, poisson, state
         Elasticity, Pa; `state` is "strain" or "stress".
+    stiffness
+        Young's modulus of every body over `young`, shape (bodies,).
     friction
         Coefficient mu between the bodies.
     support
@@ -91,6 +93,7 @@ class Stack:
     young: float
     poisson: float
     state: str
+    stiffness: Array
     friction: float
     support: Support | None
     sides: dict[str, Side]
