@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 
 RANDOM_POINTS = 12
 DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
+HELD = 0.25
+"""Share of the interval after which "hold" stays where it is and "delayed" begins its sine."""
 
 
 def interpolate(points: Pairs | Array, where: Array) -> Array:
@@ -36,6 +38,10 @@ def _random_walk(phase: Array, seed: int) -> Array:
     return _polyline(walk / np.max(np.abs(walk)))(phase, seed)
 
 
+def _delayed(phase: Array, seed: int) -> Array:
+    return np.where(phase > HELD, np.sin(2.0 * np.pi * (phase - HELD) / (1.0 - HELD)), 0.0)
+
+
 PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "ramp": _polyline(np.array([0.0, 1.0])),
     "triangle": _polyline(np.array([0.0, 1.0, 0.0])),
@@ -43,6 +49,8 @@ PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "sine": lambda phase, seed: np.sin(2.0 * np.pi * phase),
     "decaying": _polyline(np.concatenate([[0.0], DECAY, [0.0]])),
     "random": _random_walk,
+    "hold": lambda phase, seed: np.minimum(phase / HELD, 1.0),
+    "delayed": _delayed,
 }
 
 

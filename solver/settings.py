@@ -6,12 +6,13 @@ definitions. A settings object cannot be changed; `replace` gives a new one.
 
 from __future__ import annotations
 
+import copy
 import difflib
 import json
 import math
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Self
@@ -145,6 +146,14 @@ def curve(
     )
 
 
+def redefined(definition: Any, default: object, **record: Any) -> Any:
+    """Define a setting again for some scenes, with another default and other entries of `About`."""
+    found = copy.copy(definition)
+    found.default = default
+    found.metadata = {"about": replace(about(definition), **record)}
+    return found
+
+
 def _is_reduced(settings: Settings) -> bool:
     return bool(settings.linear_stage == "pgd")
 
@@ -175,7 +184,7 @@ class Settings(param.Parameterized):
         "Solve the coarse problem: macro forces on the cuts are in equilibrium at every iteration.",
         group="Decomposition",
         title="Multiscale (coarse problem)",
-        applies=lambda settings: settings.substructures > 1,
+        applies=lambda settings: settings.n_substructures > 1,
         essential=True,
     )
     search_direction = choice(
@@ -297,7 +306,7 @@ class Settings(param.Parameterized):
         "field lies outside the other's; 0 shares nothing.",
         group="Method",
         title="PGD basis sharing",
-        applies=lambda settings: _is_reduced(settings) and settings.substructures > 1,
+        applies=lambda settings: _is_reduced(settings) and settings.n_substructures > 1,
     )
     local_stage = choice(
         "full",
@@ -397,6 +406,11 @@ class Settings(param.Parameterized):
         title="Most iterations",
         logarithmic=True,
     )
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures in all."""
+        return self.substructures
 
     @classmethod
     def definitions(cls) -> dict[str, Parameter]:

@@ -2,7 +2,10 @@
 
 from solver.discrete.bar import discretise_bar
 from solver.discrete.problem import Problem
+from solver.discrete.stack import discretise_stack
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.block import BlockSettings, block
+from solver.scenes.layers import LayersSettings, layers
 from solver.settings import Settings
 
 
@@ -11,6 +14,10 @@ def discretise(settings: Settings) -> Problem:
     match settings:
         case BarSettings():
             return discretise_bar(bar(settings))
+        case BlockSettings():
+            return discretise_stack(block(settings))
+        case LayersSettings():
+            return discretise_stack(layers(settings))
         case _:
             raise TypeError(f"no discretisation for the settings of {settings.scene!r}")
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,6 +86,41 @@ class Substructure:
     body_force: Array | None
 
 
+class Inside(Protocol):
+    """What lies inside condensed substructures, found when somebody looks.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates of all nodes, shape (n_nodes, 2), m.
+    elements
+        Nodes of every element, counter-clockwise, shape (n_elements, 4).
+    bodies
+        Body of every element, shape (n_elements,).
+    """
+
+    nodes: Array
+    elements: Indices
+    bodies: Indices
+
+    def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
+        """Give the displacement of all nodes, shape (n_nodes, 2, n), m.
+
+        Parameters
+        ----------
+        skeleton
+            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
+        instants
+            Which of them.
+        """
+
+    def stress(self, displacement: Array) -> Array:
+        """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
+
+        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
+        """
+
+
 @dataclass(frozen=True)
 class Problem:
     """A structure as an assembly of substructures and interfaces (paper, section 2).
@@ -102,6 +138,8 @@ class Problem:
         Shape (n_instants,), in s.
     scales
         What one scaled unit is in SI.
+    inside
+        What the degrees of freedom do not show, where substructures are condensed; else None.
     """
 
     substructures: tuple[Substructure, ...]
@@ -109,6 +147,7 @@ class Problem:
     positions: Array
     instants: Array
     scales: Scales
+    inside: Inside | None = None
 
     @cached_property
     def n_rows(self) -> int:

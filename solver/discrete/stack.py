@@ -36,18 +36,8 @@ class _Part:
     force: Array | None
 
 
-class Inside:
-    """What lies inside the substructures of a condensed problem, found when somebody looks.
-
-    Attributes
-    ----------
-    nodes
-        Coordinates of all nodes, shape (n_nodes, 2), m.
-    elements
-        Nodes of every element, counter-clockwise, shape (n_elements, 4).
-    bodies
-        Body of every element, shape (n_elements,).
-    """
+class StackInside:
+    """What lies inside the substructures of a stack, as `problem.Inside` says."""
 
     def __init__(self, scene: Stack, parts: list[_Part], grid: _Grid) -> None:
         self._parts = parts
@@ -64,15 +54,7 @@ class Inside:
         self._skeleton = grid.skeleton
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
-        """Give the displacement of all nodes, shape (n_nodes, 2, n), m.
-
-        Parameters
-        ----------
-        skeleton
-            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
-        instants
-            Which of them.
-        """
+        """Give the displacement of all nodes, shape (n_nodes, 2, n), m."""
         chosen = skeleton[:, instants] / self._length
         found = np.zeros((len(self.nodes), 2, chosen.shape[1]))
         for part in self._parts:
@@ -82,10 +64,7 @@ class Inside:
         return found * self._length
 
     def stress(self, displacement: Array) -> Array:
-        """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
-
-        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
-        """
+        """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa."""
         scaled = displacement / self._length
         return self._young * np.concatenate(
             [part.condensed.rectangle.stress(scaled[part.nodes.ravel()]) for part in self._parts]
@@ -118,7 +97,7 @@ class _Grid:
         self.skeleton[self.on_skeleton] = np.arange(len(self.on_skeleton))
 
 
-def discretise_stack(scene: Stack) -> tuple[Problem, Inside]:
+def discretise_stack(scene: Stack) -> Problem:
     """Cut the bodies into rectangles and write the laws of their interfaces.
 
     Lengths are scaled by the length of a body, stresses by E. Search direction: E / l_sub per
@@ -136,14 +115,14 @@ def discretise_stack(scene: Stack) -> tuple[Problem, Inside]:
             first += size
     shared: dict[tuple[object, ...], Elasticity] = {}
     positions = np.repeat(grid.positions[grid.on_skeleton], 2, axis=0) * scene.length
-    problem = Problem(
+    return Problem(
         substructures=tuple(_substructure(part, grid, shared) for part in parts),
         interfaces=dict(_interfaces(scene, {part.place: part for part in parts})),
         positions=positions,
         instants=scene.instants,
         scales=Scales(scene.length, scene.young * scene.length, scene.duration),
+        inside=StackInside(scene, parts, grid),
     )
-    return problem, Inside(scene, parts, grid)
 
 
 def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
@@ -300,27 +279,26 @@ def _prescribed(
     for place, part in parts.items():
         if _neighbour(scene, place, side) != side or side not in part.held:
             continue
-        along = _along(scene, part.condensed.rectangle, place, part.corner, side)
         held = [one for one in (given.x, given.y) if one.prescribed]
         for number, one in enumerate(held):
             rows.append(part.rows[side][:, number])
-            values.append(_over(one, along) / scene.length)
+            along = _along(scene, part.condensed.rectangle, place, part.corner, side, one)
+            values.append((one.mean + along * one.slope) / scene.length)
     if rows:
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
 
 
-def _along(scene: Stack, rectangle: Rectangle, place: Place, corner: Corner, side: str) -> Array:
-    """Give 2 s / length - 1 at the nodes of a substructure on an outer side of the stack."""
+def _along(
+    scene: Stack, rectangle: Rectangle, place: Place, corner: Corner, side: str, given: Given
+) -> Array:
+    """Give 2 s / length - 1 at the nodes of a substructure on an outer side, (n_nodes, 1)."""
     if side in ("left", "right"):
-        whole = scene.bodies * scene.elements[1]
-        first, size = place[2] * scene.elements[1] + corner[1], rectangle.rows
+        body, bodies = (0, 1) if given.each_body else (place[2], scene.bodies)
+        whole = bodies * scene.elements[1]
+        first, size = body * scene.elements[1] + corner[1], rectangle.rows
     else:
         whole, first, size = scene.elements[0], corner[0], rectangle.columns
-    return np.asarray(2.0 * (first + np.arange(size + 1)) / whole - 1.0)
-
-
-def _over(given: Given, along: Array) -> Array:
-    return given.mean + along[:, None] * given.slope
+    return np.asarray(2.0 * (first + np.arange(size + 1)[:, None]) / whole - 1.0)
 
 
 def _nodal_force(scene: Stack, rectangle: Rectangle, place: Place, corner: Corner) -> Array | None:
@@ -333,12 +311,13 @@ def _nodal_force(scene: Stack, rectangle: Rectangle, place: Place, corner: Corne
     for side in ("left", "right", "bottom", "top"):
         if _neighbour(scene, place, side) != side:
             continue
-        nodes, along = rectangle.edge(side), _along(scene, rectangle, place, corner, side)
+        nodes = rectangle.edge(side)
         step = rectangle.height if side in ("left", "right") else rectangle.width
         for component, given in enumerate((scene.sides[side].x, scene.sides[side].y)):
             if given.prescribed:
                 continue
-            traction = _over(given, along) / scene.young
+            along = _along(scene, rectangle, place, corner, side, given)
+            traction = (given.mean + along * given.slope) / scene.young
             total[nodes[:-1], component] += step / 6.0 * (2.0 * traction[:-1] + traction[1:])
             total[nodes[1:], component] += step / 6.0 * (traction[:-1] + 2.0 * traction[1:])
     if scene.body_force is not None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from solver.discrete.problem import Array, Indices, Problem
 from solver.laws import Contact, Dirichlet, Friction, Neumann
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 SLIDING_STIFFNESS = 6.5
@@ -31,6 +32,9 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
     for law in problem.rubbing.values():
         for rows in sliding_rows(law):
             k[rows] *= settings.k_friction_scale
+        if isinstance(law, Contact) and isinstance(settings, PlaneSettings):
+            for rows in pressing_rows(law):
+                k[rows] *= settings.k_normal_scale
     return np.ascontiguousarray(k)
 
 
@@ -46,6 +50,11 @@ def sliding_rows(law: Friction | Contact) -> tuple[Indices, ...]:
     if isinstance(law, Friction):
         return (law.rows,) if law.below is None else (law.rows, law.below)
     return (law.tangent,) if law.below is None else (law.tangent, law.below[1])
+
+
+def pressing_rows(law: Contact) -> tuple[Indices, ...]:
+    """Give the rows of the normal components, of both sides."""
+    return (law.normal,) if law.below is None else (law.normal, law.below[0])
 
 
 def sliding_share(problem: Problem) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.scenes.bar import BarSettings
+from solver.scenes.block import BlockSettings
+from solver.scenes.layers import LayersSettings
 from solver.settings import Settings
 
 
@@ -22,5 +24,15 @@ CATALOGUE = {
         "Clamped bar on a rough support",
         "paper, section 3, Table 1",
         BarSettings,
+    ),
+    "block": Entry(
+        "Block pressed and sheared on a rough support",
+        "Signorini contact with Coulomb friction; theory.md, 6",
+        BlockSettings,
+    ),
+    "layers": Entry(
+        "Stack of layers bent under pressure",
+        "leaf spring, or the flattened section of a cable",
+        LayersSettings,
     ),
 }

@@ -19,11 +19,14 @@ class Given:
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
         Over time, shape (n_instants,).
+    each_body
+        Whether s runs over each body of the stack anew, on the left and the right.
     """
 
     prescribed: bool
     mean: Array
     slope: Array
+    each_body: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,128 @@
+"""A rectangular body on a rigid rough support: Signorini contact with Coulomb friction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.loads import PRESETS, Array, interpolate
+from solver.scenes.sides import SideSettings
+from solver.scenes.stack import Given, Side, Stack, Support
+from solver.settings import choice, curve, quantity, redefined
+
+GAPS = ("flat", "parabola")
+
+
+class BlockSettings(SideSettings):
+    """Settings of the block; by default it is pressed from above, then sheared to and fro."""
+
+    scene = "block"
+
+    gap = curve(
+        "parabola",
+        GAPS,
+        "position",
+        "gap",
+        "Opening between the undeformed body and its support: a preset, or points (m, m).",
+        group="Contact",
+        title="Gap",
+        essential=True,
+    )
+    radius = quantity(
+        5.0,
+        (1e-9, 1e15),
+        (0.5, 50.0),
+        "Radius R of the parabola; the gap is (x - length / 2)^2 / (2 R).",
+        group="Contact",
+        title="Radius R",
+        unit="m",
+        logarithmic=True,
+        applies=lambda settings: settings.gap == "parabola",
+        essential=True,
+    )
+    length = quantity(
+        0.1,
+        (1e-6, 1e4),
+        (0.01, 1.0),
+        "Length of the body.",
+        group="Body",
+        title="Length",
+        unit="m",
+        logarithmic=True,
+    )
+    height = quantity(
+        0.05,
+        (1e-6, 1e4),
+        (0.01, 1.0),
+        "Height of the body.",
+        group="Body",
+        title="Height",
+        unit="m",
+        logarithmic=True,
+    )
+    body_force_x = quantity(
+        0.0,
+        (-1e15, 1e15),
+        (-1e9, 1e9),
+        "Largest force per volume along x.",
+        group="Body force",
+        title="Body force along x",
+        unit="N/m^3",
+    )
+    body_force_y = quantity(
+        0.0,
+        (-1e15, 1e15),
+        (-1e9, 1e9),
+        "Largest force per volume along y, upward; weight is negative.",
+        group="Body force",
+        title="Body force along y",
+        unit="N/m^3",
+    )
+    body_load = choice(
+        "hold",
+        PRESETS,
+        "Path of the body force over time.",
+        group="Body force",
+        title="Path of the body force",
+        applies=lambda settings: settings.body_force_x != 0.0 or settings.body_force_y != 0.0,
+    )
+    top = redefined(SideSettings.param["top"], "displacement")
+    top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
+    top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
+
+
+def block(settings: BlockSettings) -> Stack:
+    """Make the block that the settings describe; one metre thick."""
+    rest = np.zeros(settings.instants)
+    free = Given(False, rest, rest)
+    sides = {side: settings.side(side) for side in ("left", "right", "top")}
+    return Stack(
+        length=settings.length,
+        height=settings.height,
+        bodies=1,
+        elements=(settings.elements, settings.elements_up),
+        substructures=(settings.substructures, settings.substructures_up),
+        young=settings.young,
+        poisson=settings.poisson,
+        state=settings.plane,
+        friction=settings.friction,
+        support=Support(_gap(settings), settings.friction),
+        sides={**sides, "bottom": Side(free, free)},
+        body_force=_body_force(settings),
+        instants=settings.times(),
+        duration=settings.duration,
+    )
+
+
+def _gap(settings: BlockSettings) -> Array:
+    """Give the gap at the nodes of the lowest side, m."""
+    x = np.linspace(0.0, settings.length, settings.elements + 1)
+    if not isinstance(settings.gap, str):
+        return interpolate(settings.gap, x)
+    if settings.gap == "flat":
+        return np.zeros_like(x)
+    return np.asarray((x - 0.5 * settings.length) ** 2 / (2.0 * settings.radius))
+
+
+def _body_force(settings: BlockSettings) -> Array | None:
+    sizes = np.array([settings.body_force_x, settings.body_force_y])
+    return sizes[:, None] * settings.path("body_load", 1.0) if sizes.any() else None

@@ -1,0 +1,169 @@
+"""A stack of layers pressed together, pulled and bent: a leaf spring, a cable laid flat."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.loads import PRESETS
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.stack import Given, Side, Stack
+from solver.settings import choice, count, curve, quantity, redefined
+
+
+class LayersSettings(PlaneSettings):
+    """Settings of the stack; by default it is pressed, then its end is bent up and down."""
+
+    scene = "layers"
+
+    pressure = quantity(
+        2e6,
+        (0.0, 1e15),
+        (0.0, 2e7),
+        "Pressure on the top and the bottom of the stack.",
+        group="Load",
+        title="Pressure",
+        unit="Pa",
+        essential=True,
+    )
+    pressure_load = curve(
+        "hold",
+        PRESETS,
+        "time",
+        "pressure",
+        "Pressure over time: a preset, or points (s, Pa).",
+        group="Load",
+        title="Path of the pressure",
+    )
+    pull = quantity(
+        0.0,
+        (-1e15, 1e15),
+        (-1e8, 1e8),
+        "Largest axial traction on the right end.",
+        group="Load",
+        title="Pull",
+        unit="Pa",
+        essential=True,
+    )
+    pull_load = curve(
+        "hold",
+        PRESETS,
+        "time",
+        "traction",
+        "Pull over time: a preset, or points (s, Pa).",
+        group="Load",
+        title="Path of the pull",
+    )
+    bending = choice(
+        "deflection",
+        ["deflection", "moment"],
+        "What bends the stack at its right end: a prescribed transverse displacement, or a moment "
+        "that all layers share.",
+        group="Load",
+        title="Bending",
+        essential=True,
+    )
+    deflection = quantity(
+        1e-3,
+        (-1e12, 1e12),
+        (-1e-2, 1e-2),
+        "Largest transverse displacement of the right end.",
+        group="Load",
+        title="Deflection",
+        unit="m",
+        applies=lambda settings: settings.bending == "deflection",
+        essential=True,
+    )
+    moment = quantity(
+        1e3,
+        (-1e15, 1e15),
+        (-1e4, 1e4),
+        "Largest moment on the right end, counter-clockwise, for a metre of thickness.",
+        group="Load",
+        title="Moment",
+        unit="N",
+        applies=lambda settings: settings.bending == "moment",
+        essential=True,
+    )
+    bend_load = curve(
+        "delayed",
+        PRESETS,
+        "time",
+        "value",
+        "Deflection or moment over time: a preset, or points (s, m or N).",
+        group="Load",
+        title="Path of the bending",
+        essential=True,
+    )
+    layers = count(
+        4,
+        (2, 50),
+        (2, 12),
+        "Number of layers.",
+        group="Body",
+        title="Layers",
+        essential=True,
+    )
+    length = quantity(
+        0.5,
+        (1e-6, 1e4),
+        (0.05, 5.0),
+        "Length of the stack.",
+        group="Body",
+        title="Length",
+        unit="m",
+        logarithmic=True,
+    )
+    thickness = quantity(
+        0.01,
+        (1e-6, 1e4),
+        (0.001, 0.1),
+        "Thickness of one layer.",
+        group="Body",
+        title="Thickness of a layer",
+        unit="m",
+        logarithmic=True,
+    )
+    elements_up = redefined(PlaneSettings.param["elements_up"], 2)
+    substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)
+
+    @property
+    def n_bodies(self) -> int:
+        """Number of bodies."""
+        return self.layers
+
+
+def layers(settings: LayersSettings) -> Stack:
+    """Make the stack that the settings describe; its left end is clamped; one metre thick."""
+    rest = np.zeros(settings.instants)
+    held, free = Given(True, rest, rest), Given(False, rest, rest)
+    pressing = settings.path("pressure_load", settings.pressure)
+    pull = settings.path("pull_load", settings.pull)
+    if settings.bending == "deflection":
+        bent = Given(True, settings.path("bend_load", settings.deflection), rest)
+        right = Side(Given(False, pull, rest), bent)
+    else:
+        # A linear traction of this extreme over one layer has the moment extreme * thickness^2 / 6.
+        moment = settings.path("bend_load", settings.moment)
+        extreme = -6.0 * moment / (settings.layers * settings.thickness**2)
+        right = Side(Given(False, pull, extreme, each_body=True), free)
+    return Stack(
+        length=settings.length,
+        height=settings.thickness,
+        bodies=settings.layers,
+        elements=(settings.elements, settings.elements_up),
+        substructures=(settings.substructures, settings.substructures_up),
+        young=settings.young,
+        poisson=settings.poisson,
+        state=settings.plane,
+        friction=settings.friction,
+        support=None,
+        sides={
+            "left": Side(held, held),
+            "right": right,
+            "top": Side(free, Given(False, -pressing, rest)),
+            "bottom": Side(free, Given(False, pressing, rest)),
+        },
+        body_force=None,
+        instants=settings.times(),
+        duration=settings.duration,
+    )

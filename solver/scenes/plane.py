@@ -1,0 +1,215 @@
+"""Settings that the scenes of rectangular bodies in the plane share."""
+
+from __future__ import annotations
+
+import numpy as np
+import param
+
+from solver.loads import Array, load_path
+from solver.settings import (
+    Pairs,
+    SettingError,
+    Settings,
+    choice,
+    count,
+    quantity,
+    redefined,
+)
+
+LARGEST_FIELD = 50_000_000
+"""Numbers in one field over all degrees of freedom and instants; a run keeps about ten such."""
+LARGEST_MATRIX = 30_000_000
+"""Numbers in one dense matrix of a substructure, from its inside to its outline."""
+
+
+class PlaneSettings(Settings):
+    """Settings of elastic rectangles with frictional contact; one metre thick."""
+
+    duration = quantity(
+        1.0,
+        (1e-9, 1e9),
+        (0.1, 10.0),
+        "Length of the time interval. The answer does not depend on the rate.",
+        group="Load",
+        title="Duration T",
+        unit="s",
+        logarithmic=True,
+    )
+    instants = count(
+        81,
+        (1, 20_001),
+        (11, 401),
+        "Number of instants at which the problem is solved.",
+        group="Load",
+        title="Instants",
+        essential=True,
+    )
+    seed = count(
+        1,
+        (0, 2**31 - 1),
+        (0, 50),
+        "Seed of random load paths: the same seed gives the same path.",
+        group="Load",
+        title="Seed",
+        applies=lambda settings: settings.is_random,
+    )
+    friction = quantity(
+        0.3,
+        (0.0, 10.0),
+        (0.0, 1.0),
+        "Coefficient of friction mu.",
+        group="Contact",
+        title="Friction coefficient μ",
+        essential=True,
+    )
+    plane = choice(
+        "strain",
+        ["strain", "stress"],
+        "Plane strain (a long body) or plane stress (a thin one).",
+        group="Body",
+        title="Plane",
+    )
+    young = quantity(
+        210e9,
+        (1.0, 1e18),
+        (1e8, 1e12),
+        "Young's modulus.",
+        group="Body",
+        title="Young's modulus E",
+        unit="Pa",
+        logarithmic=True,
+    )
+    poisson = quantity(
+        0.3,
+        (0.0, 0.4999),
+        (0.0, 0.49),
+        "Poisson's ratio.",
+        group="Body",
+        title="Poisson's ratio ν",
+    )
+    elements = count(
+        48,
+        (1, 5000),
+        (8, 192),
+        "Number of bilinear elements along a body, equal in size.",
+        group="Body",
+        title="Elements along",
+        essential=True,
+    )
+    elements_up = count(
+        24,
+        (1, 5000),
+        (2, 96),
+        "Number of elements over the height of a body.",
+        group="Body",
+        title="Elements up",
+    )
+    substructures: param.Integer[int] = redefined(
+        Settings.param["substructures"],
+        4,
+        title="Substructures along",
+    )
+    substructures_up = count(
+        2,
+        (1, 5000),
+        (1, 16),
+        "Number of substructures over the height of a body.",
+        group="Decomposition",
+        title="Substructures up",
+        essential=True,
+    )
+    search_direction = redefined(Settings.param["search_direction"], "auto")
+    k_normal_scale = quantity(
+        1.0,
+        (1e-6, 1e6),
+        (0.01, 100.0),
+        "Further factor on the search direction of the contacts' normal components alone.",
+        group="Method",
+        title="Normal k factor",
+        logarithmic=True,
+    )
+    acceleration = redefined(Settings.param["acceleration"], "anderson")
+    local_stage = choice(
+        "full",
+        ["full"],
+        "Where the interface laws are evaluated: everywhere.",
+        group="Method",
+        title="Local stage",
+        applies=lambda settings: False,
+    )
+    start = choice(
+        "zero",
+        ["zero"],
+        "Where the iteration starts: from zero.",
+        group="Method",
+        title="Start",
+        applies=lambda settings: False,
+    )
+
+    @property
+    def n_bodies(self) -> int:
+        """Number of bodies."""
+        return 1
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures in all."""
+        return self.n_bodies * self.substructures * self.substructures_up
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Names of the settings that are load paths and do something."""
+        return tuple(
+            name for name in self.definitions() if name.endswith("_load") and self.applies(name)
+        )
+
+    @property
+    def is_random(self) -> bool:
+        """Whether any load path is random."""
+        return any(getattr(self, name) == "random" for name in self.paths)
+
+    def times(self) -> Array:
+        """Give the instants, shape (n_instants,), s; a single one stands at the end."""
+        if self.instants == 1:
+            return np.array([self.duration])
+        return np.linspace(0.0, self.duration, self.instants)
+
+    def path(self, name: str, peak: float) -> Array:
+        """Give a quantity over time from the setting of its path; a table has its own size."""
+        curve: str | Pairs = getattr(self, name)
+        return load_path(curve, self.times(), self.duration, peak, self.seed)
+
+    def with_change(self, name: str, value: object) -> PlaneSettings:
+        """Change one setting; fewer elements than substructures take these down with them."""
+        cut = {"elements": "substructures", "elements_up": "substructures_up"}.get(name)
+        if cut is not None and isinstance(value, int) and value < getattr(self, cut):
+            return self.replace(**{name: value, cut: max(value, 1)})
+        return self.replace(**{name: value})
+
+    def check_together(self) -> None:
+        """Refuse more substructures than elements, and fields or matrices beyond memory."""
+        for cut, elements in (("substructures", "elements"), ("substructures_up", "elements_up")):
+            if getattr(self, cut) > getattr(self, elements):
+                raise SettingError(
+                    cut,
+                    getattr(self, cut),
+                    f"1 to {elements} ({getattr(self, elements)})",
+                    f"give fewer substructures or raise {elements}",
+                )
+        unknowns = 2 * self.n_bodies * (self.elements + 1) * (self.elements_up + 1)
+        if unknowns * self.instants > LARGEST_FIELD:
+            raise SettingError(
+                "instants",
+                self.instants,
+                f"at most {LARGEST_FIELD // unknowns} with {unknowns} degrees of freedom",
+                "give fewer instants or fewer elements",
+            )
+        columns = -(-self.elements // self.substructures)
+        rows = -(-self.elements_up // self.substructures_up)
+        if 8 * columns * rows * (columns + rows) > LARGEST_MATRIX:
+            raise SettingError(
+                "substructures",
+                self.substructures,
+                f"parts smaller than {columns} by {rows} elements",
+                "give more substructures along or up, or fewer elements",
+            )

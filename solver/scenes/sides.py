@@ -1,0 +1,140 @@
+"""Settings of the sides of a rectangle: what is given there, how large, and along which path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from solver.loads import PRESETS
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.stack import Given, Side
+from solver.settings import Parameter, choice, curve, quantity
+
+LOADED_SIDES = ("left", "right", "top")
+COMPONENTS = ("normal", "tangential")
+PRESCRIBED: dict[str, tuple[bool, bool]] = {
+    "free": (False, False),
+    "roller": (True, False),
+    "clamped": (True, True),
+    "displacement": (True, True),
+    "traction": (False, False),
+    "pushed": (True, False),
+    "dragged": (False, True),
+}
+"""Whether the normal and the tangential displacement are prescribed; a traction is, otherwise."""
+AT_REST = ("free", "roller", "clamped")
+OUTWARD = {"left": -1.0, "right": 1.0, "top": 1.0}
+
+
+def _is_given(side: str) -> Callable[..., bool]:
+    """Make the test whether anything but rest is given along a side."""
+    return lambda settings: getattr(settings, side) not in AT_REST
+
+
+def _has_size(side: str, component: str, prescribed: bool) -> Callable[..., bool]:
+    """Make the test whether that value is of this kind, and follows a preset of some size."""
+
+    def applies(settings: PlaneSettings) -> bool:
+        kind, path = getattr(settings, side), getattr(settings, f"{side}_{component}_load")
+        own = PRESCRIBED[kind][COMPONENTS.index(component)]
+        return kind not in AT_REST and own == prescribed and isinstance(path, str)
+
+    return applies
+
+
+def _of_component(side: str, component: str) -> dict[str, Parameter]:
+    group, along = side.capitalize(), "x" if side == "top" else "y"
+    towards = "outward" if component == "normal" else f"along {along}"
+    name = f"{side}_{component}"
+    title = f"{group} {component}"
+    given = _is_given(side)
+    return {
+        f"{name}_traction": quantity(
+            0.0,
+            (-1e15, 1e15),
+            (-2e8, 2e8),
+            f"Mean {component} traction on the {side} side, positive {towards}.",
+            group=group,
+            title=f"{title} traction",
+            unit="Pa",
+            applies=_has_size(side, component, prescribed=False),
+            essential=True,
+        ),
+        f"{name}_displacement": quantity(
+            0.0,
+            (-1e12, 1e12),
+            (-1e-4, 1e-4),
+            f"Mean {component} displacement of the {side} side, positive {towards}.",
+            group=group,
+            title=f"{title} displacement",
+            unit="m",
+            applies=_has_size(side, component, prescribed=True),
+            essential=True,
+        ),
+        f"{name}_slope": quantity(
+            0.0,
+            (-1e6, 1e6),
+            (-1.0, 1.0),
+            "Linear variation along the side: at distance s from its lower or left end the value "
+            "is the mean times 1 + slope (2 s / length - 1).",
+            group=group,
+            title=f"{title} slope",
+            applies=given,
+        ),
+        f"{name}_load": curve(
+            "hold" if component == "normal" else "delayed",
+            PRESETS,
+            "time",
+            "value",
+            f"{title} value over time: a preset that reaches the mean, or points (s, Pa or m).",
+            group=group,
+            title=f"{title} path",
+            applies=given,
+        ),
+    }
+
+
+class SideSettings(PlaneSettings):
+    """Settings of a rectangle whose left, right and top side can be held or loaded."""
+
+    def side(self, side: str) -> Side:
+        """Give what is given along a side, for x and y."""
+        normal, tangential = (self._given(side, component) for component in COMPONENTS)
+        return Side(tangential, normal) if side == "top" else Side(normal, tangential)
+
+    def _given(self, side: str, component: str) -> Given:
+        kind = getattr(self, side)
+        prescribed = PRESCRIBED[kind][COMPONENTS.index(component)]
+        if kind in AT_REST:
+            rest = np.zeros(self.instants)
+            return Given(prescribed, rest, rest)
+        name = f"{side}_{component}"
+        size = getattr(self, f"{name}_{'displacement' if prescribed else 'traction'}")
+        sign = OUTWARD[side] if component == "normal" else 1.0
+        mean = sign * self.path(f"{name}_load", size)
+        return Given(prescribed, mean, mean * getattr(self, f"{name}_slope"))
+
+
+def _define(side: str) -> None:
+    SideSettings.param.add_parameter(
+        side,
+        choice(
+            "free",
+            PRESCRIBED,
+            "What is given: nothing (free), no normal displacement (roller), none at all "
+            "(clamped), both displacements, both tractions, the normal displacement with the "
+            "tangential traction (pushed), or the tangential displacement with the normal "
+            "traction (dragged).",
+            group=side.capitalize(),
+            title=f"{side.capitalize()} side",
+            essential=True,
+        ),
+    )
+    for component in COMPONENTS:
+        for name, definition in _of_component(side, component).items():
+            SideSettings.param.add_parameter(name, definition)
+
+
+for _side in LOADED_SIDES:
+    _define(_side)
