@@ -8,7 +8,7 @@ memory (Fortran order), because the friction law walks through time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -214,7 +214,10 @@ class Problem:
     @cached_property
     def has_cuts(self) -> bool:
         """Whether any two substructures meet."""
-        return bool(self.of_law(Perfect))
+        return any(
+            isinstance(law, Perfect) or (isinstance(law, Contact) and law.below is not None)
+            for law in self.interfaces.values()
+        )
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
@@ -227,27 +230,15 @@ class Problem:
         """
         columns, loads = [], []
         for interface in self.interfaces.values():
-            if isinstance(interface, Perfect):
-                rows = np.concatenate([interface.first, interface.second])
-                basis = np.concatenate([interface.macro, interface.macro])
-                load = np.zeros((basis.shape[1], self.n_instants))
-            elif isinstance(interface, Neumann):
-                rows, basis = interface.rows, interface.macro
-                load = basis.T @ interface.force
-            else:
-                continue
-            block = sparse.coo_array(
-                (
-                    basis.ravel(),
-                    (
-                        np.repeat(rows, basis.shape[1]),
-                        np.tile(np.arange(basis.shape[1]), len(rows)),
-                    ),
-                ),
-                shape=(self.n_rows, basis.shape[1]),
-            )
-            columns.append(block)
-            loads.append(load)
+            for rows, basis, force in _in_equilibrium(interface):
+                points, modes = basis.nonzero()
+                block = sparse.coo_array(
+                    (basis[points, modes], (rows[points], modes)),
+                    shape=(self.n_rows, basis.shape[1]),
+                )
+                columns.append(block)
+                none = np.zeros((basis.shape[1], self.n_instants))
+                loads.append(none if force is None else basis.T @ force)
         return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
 
     @cached_property
@@ -297,6 +288,24 @@ class Problem:
         none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
         rows = np.concatenate([none[0], *(law.rows for law in parts)])
         return self.row_dofs[rows], np.concatenate([none[1], *(law.displacement for law in parts)])
+
+
+def _in_equilibrium(interface: Interface) -> Iterable[tuple[Indices, Array, Array | None]]:
+    """Give rows whose forces, on both sides together, are known; their macro basis; the forces.
+
+    None stands for no force.
+    """
+    if isinstance(interface, Neumann):
+        yield interface.rows, interface.macro, interface.force
+    pairs: list[tuple[Indices, Indices]] = []
+    if isinstance(interface, Perfect):
+        pairs = [(interface.first, interface.second)]
+    elif isinstance(interface, Contact) and interface.below is not None:
+        pairs = list(zip(components(interface), interface.below, strict=True))
+    if isinstance(interface, Perfect | Contact) and interface.macro is not None:
+        both_sides = np.concatenate([interface.macro, interface.macro])
+        for first, second in pairs:
+            yield np.concatenate([first, second]), both_sides, None
 
 
 def components(law: Friction | Contact) -> tuple[Indices, ...]:

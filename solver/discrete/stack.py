@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
 from solver.discrete.plane import Condensed, Rectangle, both, elastic_matrix
@@ -19,8 +20,6 @@ Place = tuple[int, int, int]
 Corner = tuple[int, int]
 """First column and row of its elements in its body."""
 OPPOSITE = {"right": "left", "top": "bottom"}
-MACRO_DEGREE = 1
-"""Polynomials of each component on a cut: resultants, and moment with linear extension."""
 
 
 @dataclass(eq=False)
@@ -214,7 +213,7 @@ def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, 
             if isinstance(beyond, str) or beyond[2] != place[2]:
                 continue
             other = parts[beyond]
-            basis = _macro_basis(len(part.rows[side]))
+            basis = np.kron(_macro_basis(len(part.rows[side]), scene.macro_degree), np.eye(2))
             yield (
                 f"cut {_name(place)} to {_name(beyond)}",
                 Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
@@ -228,11 +227,10 @@ def _name(place: Place) -> str:
     return f"{column + 1}.{row + 1}" + (f" of {body + 1}" if body else "")
 
 
-def _macro_basis(n_points: int) -> Array:
-    """Give polynomials over a cut for each of two interleaved components."""
+def _macro_basis(n_points: int, degree: int) -> Array:
+    """Give polynomials up to a degree over the side of a substructure, (n_points, n_macro)."""
     along = np.linspace(-1.0, 1.0, n_points)
-    powers = along[:, None] ** np.arange(MACRO_DEGREE + 1)
-    return np.asarray(np.kron(powers, np.eye(2)))
+    return np.asarray(along[:, None] ** np.arange(min(degree, n_points - 1) + 1))
 
 
 def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Contact]]:
@@ -268,8 +266,15 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 weights=weights * scene.length,
                 gap=gap,
                 friction=np.full(len(points), friction),
+                macro=None if under is None else _macro_of_contact(above, scene.macro_degree),
             ),
         )
+
+
+def _macro_of_contact(above: list[_Part], degree: int) -> Array:
+    """Give polynomials over the lower side of every substructure, shape (n_pairs, n_macro)."""
+    bases = [_macro_basis(part.condensed.rectangle.columns + 1, degree) for part in above]
+    return np.asarray(sparse.block_diag(bases).toarray())
 
 
 def _prescribed(

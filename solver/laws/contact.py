@@ -44,6 +44,9 @@ class Contact:
         overlap.
     friction
         Coefficient mu of each pair, shape (n_pairs,), non-negative.
+    macro
+        Macro basis of each component, shape (n_pairs, n_macro): forces on two bodies are opposite,
+        whatever the law, and so are their macro parts. None on a rigid support.
     """
 
     normal: Indices
@@ -54,6 +57,7 @@ class Contact:
     weights: Array
     gap: Array
     friction: Array
+    macro: Array | None = None
 
     def by_point(self, values: Array) -> Array:
         """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""

@@ -110,6 +110,7 @@ def block(settings: BlockSettings) -> Stack:
         body_force=_body_force(settings),
         instants=settings.times(),
         duration=settings.duration,
+        macro_degree=settings.macro_degree,
     )
 
 

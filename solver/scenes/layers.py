@@ -63,7 +63,7 @@ class LayersSettings(PlaneSettings):
         essential=True,
     )
     deflection = quantity(
-        1e-3,
+        2e-3,
         (-1e12, 1e12),
         (-1e-2, 1e-2),
         "Largest transverse displacement of the right end.",
@@ -123,6 +123,7 @@ class LayersSettings(PlaneSettings):
         unit="m",
         logarithmic=True,
     )
+    macro_degree = redefined(PlaneSettings.param["macro_degree"], 2)
     elements_up = redefined(PlaneSettings.param["elements_up"], 2)
     substructures_up = redefined(PlaneSettings.param["substructures_up"], 1)
 
@@ -166,4 +167,5 @@ def layers(settings: LayersSettings) -> Stack:
         body_force=None,
         instants=settings.times(),
         duration=settings.duration,
+        macro_degree=settings.macro_degree,
     )

@@ -118,6 +118,16 @@ class PlaneSettings(Settings):
         title="Substructures up",
         essential=True,
     )
+    macro_degree = count(
+        1,
+        (0, 8),
+        (0, 4),
+        "Degree of the macro forces on a cut or contact: 0 for resultants, 1 for moment and linear "
+        "extension as well.",
+        group="Decomposition",
+        title="Degree of macro forces",
+        applies=lambda settings: settings.n_substructures > 1 and settings.multiscale,
+    )
     search_direction = redefined(Settings.param["search_direction"], "auto")
     k_normal_scale = quantity(
         1.0,
