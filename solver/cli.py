@@ -10,10 +10,11 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from solver.discrete import discretise
+from solver.discrete import Problem, discretise
 from solver.files import save_result, scene_settings, settings_from_command, summary
 from solver.latin import Ending, solve
-from solver.reference.distance import distance_to
+from solver.laws import Contact
+from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, about, allowed
@@ -97,8 +98,7 @@ def _run(chosen: argparse.Namespace) -> int:
     if chosen.out is not None and (chosen.out.is_dir() or not chosen.out.parent.is_dir()):
         raise SettingError("--out", str(chosen.out), "a file in an existing folder", "make it")
     problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
-    solution = solve(problem, settings, distance=distance)
+    solution = solve(problem, settings, distance=_distance(problem))
     figures = summary(settings, solution)
     if chosen.out is not None:
         save_result(chosen.out, settings, solution)
@@ -114,6 +114,13 @@ def _run(chosen: argparse.Namespace) -> int:
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
+def _distance(problem: Problem) -> Distance | None:
+    """Give the distance to the incremental reference; it knows friction of known bound alone."""
+    if problem.of_law(Contact):
+        return None
+    return distance_to(incremental(problem), problem)
+
+
 def _scenes(chosen: argparse.Namespace) -> int:
     for name, entry in CATALOGUE.items():
         print(f"{name:<10} {entry.title} ({entry.source})")
@@ -121,11 +128,13 @@ def _scenes(chosen: argparse.Namespace) -> int:
 
 
 def _settings(chosen: argparse.Namespace) -> int:
-    for name, definition in scene_settings(chosen.scene).definitions().items():
+    definitions = scene_settings(chosen.scene).definitions()
+    width = max(map(len, definitions)) + 1
+    for name, definition in definitions.items():
         unit = about(definition).unit or "-"
         default = json.dumps(definition.default)
-        print(f"{name:<22} {unit:<5} default {default:<10} {allowed(definition)}")
-        print(f"{'':<22} {definition.doc}")
+        print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
+        print(f"{'':<{width}} {definition.doc}")
     return 0
 
 

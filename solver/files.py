@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.latin import Solution
+from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, Settings, parse, resolve
@@ -109,6 +109,9 @@ def _bases(reduction: Reduction | None) -> dict[str, int]:
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     """Give the arrays of a result file (SI; space first, time last).
 
+    Along a line x (n_points,), displacement, friction_force and status; in the plane what
+    `_in_the_plane` says.
+
     With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
     shape (n_iterations, n_substructures), as in `ReductionRecord`.
     """
@@ -126,14 +129,46 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
                 [getattr(part, name) for part in entry.reduction] for entry in solution.records
             ]
     return {
-        "x": problem.positions,
         "t": problem.instants,
-        "displacement": iterate.displacement,
-        "friction_force": iterate.friction_force,
-        "status": iterate.status,
+        **(_on_a_line(iterate) if problem.inside is None else _in_the_plane(iterate)),
         **{name: np.array(column) for name, column in history.items()},
         "settings": json.dumps({"scene": settings.scene, **settings.values()}),
     }
+
+
+def _on_a_line(iterate: Iterate) -> dict[str, Any]:
+    return {
+        "x": iterate.problem.positions,
+        "displacement": iterate.displacement,
+        "friction_force": iterate.friction_force,
+        "status": iterate.status,
+    }
+
+
+def _in_the_plane(iterate: Iterate) -> dict[str, Any]:
+    """Give all nodes, elements, displacement and contacts.
+
+    Shapes (n_nodes, 2), (n_elements, 4) and (n_nodes, 2, n_instants). Fields of a contact are those
+    of `ContactFields`, its `points` their places along it, m.
+    """
+    inside = iterate.problem.inside
+    assert inside is not None
+    found: dict[str, Any] = {
+        "x": inside.nodes,
+        "elements": inside.elements,
+        "displacement": inside.displacement(iterate.displacement, slice(None)),
+    }
+    for name, law in iterate.problem.rubbing.items():
+        fields = iterate.contact(name)
+        found |= {
+            f"interface/{name}/points": law.positions,
+            f"interface/{name}/normal_force": fields.normal_force,
+            f"interface/{name}/tangential_force": fields.tangential_force,
+            f"interface/{name}/gap": fields.opening,
+            f"interface/{name}/slip": fields.slip,
+            f"interface/{name}/status": fields.status,
+        }
+    return found
 
 
 def save_result(path: Path, settings: Settings, solution: Solution) -> None:

@@ -213,10 +213,11 @@ def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, 
             if isinstance(beyond, str) or beyond[2] != place[2]:
                 continue
             other = parts[beyond]
-            basis = np.kron(_macro_basis(len(part.rows[side]), scene.macro_degree), np.eye(2))
+            basis = _macro_basis(len(part.rows[side]), scene.macro_degree)
+            both_components = np.asarray(np.kron(basis, np.eye(2)), dtype=np.float64)
             yield (
                 f"cut {_name(place)} to {_name(beyond)}",
-                Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
+                Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), both_components),
             )
     for side, given in scene.sides.items():
         yield from _prescribed(scene, parts, side, given)
