@@ -128,11 +128,13 @@ def _scenes(chosen: argparse.Namespace) -> int:
 
 
 def _settings(chosen: argparse.Namespace) -> int:
-    for name, definition in scene_settings(chosen.scene).definitions().items():
+    definitions = scene_settings(chosen.scene).definitions()
+    width = max(map(len, definitions)) + 1
+    for name, definition in definitions.items():
         unit = about(definition).unit or "-"
         default = json.dumps(definition.default)
-        print(f"{name:<22} {unit:<5} default {default:<10} {allowed(definition)}")
-        print(f"{'':<22} {definition.doc}")
+        print(f"{name:<{width}} {unit:<5} default {default:<10} {allowed(definition)}")
+        print(f"{'':<{width}} {definition.doc}")
     return 0
 
 
