@@ -231,7 +231,7 @@ def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, 
             basis = np.asarray(np.kron(_macro_basis(scene, len(part.rows[side])), np.eye(2)))
             yield (
                 f"cut {_name(place)} to {_name(beyond)}",
-                Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), both_components),
+                Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
             )
     for side, given in scene.sides.items():
         yield from _prescribed(scene, parts, side, given)
@@ -292,12 +292,6 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 ),
             ),
         )
-
-
-def _macro_of_contact(above: list[_Part], degree: int) -> Array:
-    """Give polynomials over the lower side of every substructure, shape (n_pairs, n_macro)."""
-    bases = [_macro_basis(part.condensed.rectangle.columns + 1, degree) for part in above]
-    return np.asarray(sparse.block_diag(bases).toarray())
 
 
 def _prescribed(

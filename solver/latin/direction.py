@@ -33,8 +33,7 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
     automatic k is the stiffness of as much of the structure as is expected to slide,
     `SLIDING_STIFFNESS` ES / s at every node, whatever the mesh and the substructures (theory.md,
     5: small k converges fast globally and slowly locally, large k the reverse). In the plane it
-    is that of a body as a whole, on contacts in both components, and `CUT_FACTOR` times the
-    paper's elsewhere.
+    is that of a body as a whole on contacts, and `CUT_STIFFNESS` times the paper's elsewhere.
     """
     k: Array = settings.k_scale * problem.direction
     if settings.search_direction == "auto":
@@ -61,11 +60,6 @@ def _automatic(problem: Problem, settings: Settings, k: Array) -> None:
             k[rows] = modulus * easier * share
     if not contacts:
         k[problem.sliding[0]] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
-
-
-def pressing_rows(law: Contact) -> tuple[Indices, ...]:
-    """Give the rows of the normal components, of both sides."""
-    return (law.normal,) if law.below is None else (law.normal, law.below[0])
 
 
 def pressing_rows(law: Contact) -> tuple[Indices, ...]:

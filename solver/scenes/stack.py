@@ -82,9 +82,6 @@ class Stack:
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
     instants, duration
         s.
-    macro_degree
-        Of the polynomials of the macro basis on cuts and contacts: 0 has resultants, 1 moment and
-        linear extension as well.
     """
 
     length: float
@@ -103,4 +100,3 @@ class Stack:
     body_force: Array | None
     instants: Array
     duration: float
-    macro_degree: int = 1
