@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.discrete.problem import Array, Problem, components, components_below
+from solver.discrete.problem import Array, Problem, components, components_below, sliding_rows
 from solver.laws import Contact, Friction
 
 NO_SLIP = 1e-9
@@ -115,7 +115,8 @@ def status_of(
     slip = np.diff(position, axis=1, prepend=0.0)
     total = np.zeros((len(law.positions), slip.shape[1]))
     np.add.at(total, law.points, slip)
-    total[np.abs(total) <= NO_SLIP * np.abs(position).max(initial=0.0)] = 0.0
+    largest = max(np.abs(displacement[rows]).max(initial=0.0) for rows in sliding_rows(law))
+    total[np.abs(total) <= NO_SLIP * largest] = 0.0
     status = np.sign(total).astype(np.int8)
     if isinstance(law, Contact) and force is not None:
         status[law.by_point(force[law.normal]) <= 0.0] = OPEN

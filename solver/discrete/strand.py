@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
-from solver.discrete.problem import Elasticity, Indices, Problem, Scales, Substructure
+from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
 from solver.discrete.rod import rod_stiffness, tributary
 from solver.laws import Dirichlet, Friction, Interface, Neumann, Perfect
 from solver.scenes.strand import Strand
@@ -25,8 +25,8 @@ def discretise_strand(scene: Strand) -> Problem:
     (`discretise_bar`), the same on both sides of a contact. Degrees of freedom run along wire
     after wire; the broken wire has two at its break, and no boundary row there. "contact 1-2" lies
     between wires 1 and 2, the second being the body above. Its points run along the wires; at the
-    break of either there are two, one for each of the parts that have come apart. Where both sides
-    are held there is no bound: friction there could not be told from the reactions.
+    break of either there are two, one for each of the parts that have come apart. Held ends are
+    no points: nothing slips there, and friction could not be told from the reactions.
     """
     pieces = _Pieces(scene)
     shared: dict[tuple[object, ...], Elasticity] = {}
@@ -43,6 +43,22 @@ def discretise_strand(scene: Strand) -> Problem:
     )
 
 
+def axial_forces(scene: Strand, displacement: Array) -> Array:
+    """Give the axial force of every element, shape (n_wires, n_elements, n_instants), N.
+
+    `displacement` is that of the problem's degrees of freedom, shape (n_dofs, n_instants), m.
+    """
+    elongation = np.diff(displacement, axis=0)
+    between = (scene.elements + 1) * np.arange(1, scene.wires) - 1
+    if scene.broken is not None:
+        wire, node = scene.broken
+        between += np.arange(1, scene.wires) >= wire
+        between = np.append(between, (wire - 1) * (scene.elements + 1) + node)
+    stiffness = scene.stiffness * scene.elements / scene.length
+    inside = np.delete(elongation, between, axis=0)
+    return np.asarray(stiffness * inside.reshape(scene.wires, scene.elements, -1))
+
+
 class _Pieces:
     """How the wires are cut, and the numbers of degrees of freedom and rows.
 
@@ -55,6 +71,8 @@ class _Pieces:
         Pieces of every wire.
     sizes, starts
         Their elements and first nodes.
+    rubbing
+        Nodes of each piece that rub, numbered from its first.
     broken
         Index of the broken wire, and of the piece to the left of its break; or None.
     nodes_of_dofs
@@ -67,19 +85,23 @@ class _Pieces:
         self.sizes, before = _dealt(scene)
         self.count = len(self.sizes)
         self.starts = np.concatenate([[0], np.cumsum(self.sizes)[:-1]])
+        self.rubbing = [np.arange(size + 1) for size in self.sizes]
+        self.rubbing[0] = self.rubbing[0][1:]
+        if scene.rigid_grip:
+            self.rubbing[-1] = self.rubbing[-1][:-1]
         self.broken = None if scene.broken is None else (scene.broken[0] - 1, before - 1)
         self.nodes_of_dofs = [np.arange(scene.elements + 1)] * scene.wires
         if scene.broken is not None:
             wire, node = scene.broken
             self.nodes_of_dofs[wire - 1] = np.insert(self.nodes_of_dofs[wire - 1], node, node)
         self._first_dof = np.concatenate([[0], np.cumsum([len(x) for x in self.nodes_of_dofs])])
-        self._contact_size = scene.elements + self.count
+        self._first_row = np.concatenate([[0], np.cumsum([len(own) for own in self.rubbing])])
         self._contacts = scene.wires - 1
         ends = np.ones((2, self.count, scene.wires), dtype=bool)
         if self.broken is not None:
             wire, column = self.broken
             ends[1, column, wire] = ends[0, column + 1, wire] = False
-        first = 2 * self._contacts * self._contact_size
+        first = 2 * self._contacts * self._first_row[-1]
         rows = np.where(ends.ravel(), first - 1 + np.cumsum(ends.ravel()), NO_ROW)
         self.left, self.right = rows.reshape(ends.shape)
 
@@ -92,12 +114,13 @@ class _Pieces:
 
     def contact_rows(self, contact: int, side: int) -> Indices:
         """Give the rows of a contact, 0 the first, of its lower (0) or upper (1) side."""
-        first = (side * self._contacts + contact) * self._contact_size
-        return np.arange(first, first + self._contact_size)
+        size = self._first_row[-1]
+        first = (side * self._contacts + contact) * size
+        return np.arange(first, first + size)
 
     def rows(self, wire: int, column: int) -> list[Indices]:
         """Give the rows of one piece on the wire before, on the wire after, and at its ends."""
-        own = self.starts[column] + column + np.arange(self.sizes[column] + 1)
+        own = slice(self._first_row[column], self._first_row[column + 1])
         found = []
         if wire > 0:
             found.append(self.contact_rows(wire - 1, 1)[own])
@@ -125,29 +148,24 @@ def _substructure(
     column: int,
     shared: dict[tuple[object, ...], Elasticity],
 ) -> Substructure:
-    size = pieces.sizes[column]
+    size, rubbing = pieces.sizes[column], pieces.rubbing[column]
     rows = pieces.rows(wire, column)
     ends = pieces.left[column, wire] != NO_ROW, pieces.right[column, wire] != NO_ROW
-    # Pieces at a prescribed end see other macro forces, so they are no group with the others.
-    held = column == 0, scene.rigid_grip and column == pieces.count - 1
-    key = size, len(rows), ends, held
+    key = size, len(rows), ends, len(rubbing), int(rubbing[0])
     if key not in shared:
-        shared[key] = _elasticity(size, scene.elements, len(rows) - 1, ends)
-    return Substructure(
-        shared[key], pieces.dofs(wire, column), np.concatenate(rows), body_force=None
-    )
+        held = np.array([0, size])[list(ends)]
+        traces = [*[rubbing] * (len(rows) - 1), held]
+        shared[key] = _elasticity(size, scene.elements, np.concatenate(traces), len(held))
+    dofs = pieces.dofs(wire, column)
+    return Substructure(shared[key], dofs, np.concatenate(rows), body_force=None)
 
 
-def _elasticity(size: int, elements: int, contacts: int, ends: tuple[bool, bool]) -> Elasticity:
+def _elasticity(size: int, elements: int, trace: Indices, ends: int) -> Elasticity:
     element = 1.0 / elements
     part = size * element
-    held = np.array([0, size])[list(ends)]
-    rubbing = np.full(contacts * (size + 1), element / part**2)
-    return Elasticity(
-        rod_stiffness(size, float(elements)),
-        trace=np.concatenate([*[np.arange(size + 1)] * contacts, held]),
-        direction=np.concatenate([rubbing, np.full(len(held), 1.0 / part)]),
-    )
+    direction = np.full(len(trace), 1.0 / part)
+    direction[: len(trace) - ends] *= element / part
+    return Elasticity(rod_stiffness(size, float(elements)), trace, direction)
 
 
 def _interfaces(scene: Strand, pieces: _Pieces) -> dict[str, Interface]:
@@ -162,7 +180,7 @@ def _interfaces(scene: Strand, pieces: _Pieces) -> dict[str, Interface]:
         whole = first != NO_ROW
         macro = np.eye(int(whole.sum()))
         found[f"cut {column + 1}-{column + 2}"] = Perfect(first[whole], second[whole], macro)
-    # L / ES times the tension, over L; or the tension over ES: the same number.
+    # Over ES the tension is a scaled force, and the scaled displacement of an end under it.
     given = np.tile(scene.tension / scene.stiffness, (scene.wires, 1))
     last = pieces.right[-1]
     found["load"] = (
@@ -172,34 +190,30 @@ def _interfaces(scene: Strand, pieces: _Pieces) -> dict[str, Interface]:
 
 
 def _contact(scene: Strand, pieces: _Pieces, number: int) -> Friction:
+    rubbing = pieces.rubbing
+    element = scene.length / scene.elements
     weights = np.concatenate(
-        [tributary(size, scene.length / scene.elements) for size in pieces.sizes]
+        [tributary(size, element)[own] for size, own in zip(pieces.sizes, rubbing, strict=True)]
     )
-    node = np.concatenate(
-        [
-            np.arange(start, start + size + 1)
-            for start, size in zip(pieces.starts, pieces.sizes, strict=True)
-        ]
-    )
-    held = (node == 0) | (scene.rigid_grip & (node == scene.elements))
-    points, positions = node, scene.nodes
-    if pieces.broken is not None and number + 1 in (pieces.broken[0], pieces.broken[0] + 1):
-        beyond = np.arange(len(node)) >= pieces.starts[pieces.broken[1] + 1] + pieces.broken[1] + 1
-        points = node + beyond
-        gap = pieces.starts[pieces.broken[1] + 1]
-        positions = np.insert(positions, gap, positions[gap])
+    node = np.concatenate([start + own for start, own in zip(pieces.starts, rubbing, strict=True)])
+    place = node.copy()
+    if pieces.broken is not None and number in (pieces.broken[0] - 1, pieces.broken[0]):
+        column = np.repeat(np.arange(pieces.count), [len(own) for own in rubbing])
+        place += column > pieces.broken[1]
+    points = place - place[0]
+    positions = np.zeros(points[-1] + 1)
+    positions[points] = scene.nodes[node]
     return Friction(
         rows=pieces.contact_rows(number, 1),
         points=points,
         positions=positions,
         weights=weights,
-        bound=np.where(held, 0.0, scene.bound * weights / scene.stiffness),
+        bound=scene.bound * weights / scene.stiffness,
         below=pieces.contact_rows(number, 0),
-        macro=_macro(pieces.sizes),
+        macro=sparse.csr_array(sparse.block_diag([_polynomials(len(own)) for own in rubbing])),
     )
 
 
-def _macro(sizes: list[int]) -> sparse.csr_array:
-    """Give polynomials over each piece of a contact."""
-    blocks = [np.vander(np.linspace(-1.0, 1.0, size + 1), MACRO_DEGREE + 1) for size in sizes]
-    return sparse.csr_array(sparse.block_diag(blocks))
+def _polynomials(nodes: int) -> Array:
+    """Give the macro basis on one piece of a contact, shape (nodes, n_macro)."""
+    return np.vander(np.linspace(-1.0, 1.0, nodes), min(MACRO_DEGREE + 1, nodes))

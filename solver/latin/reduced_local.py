@@ -7,11 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.linalg import qr
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.discrete.problem import Array, Indices, Problem, sliding_rows
 from solver.latin.linear import Group
 from solver.latin.local import LocalStage
 from solver.latin.reduced_linear import Family, ReducedLinearStage
-from solver.reduction.basis import References, SeparatedBasis
+from solver.laws import Friction
+from solver.reduction.basis import References
 from solver.settings import Settings
 
 
@@ -38,9 +39,13 @@ class ReducedLocalStage:
         self._points = settings.local_points
         self._instants = settings.local_instants
         self._refresh = settings.local_refresh
-        rubs = np.zeros(problem.n_rows, dtype=bool)
-        rubs[problem.friction.rows] = True
-        self._rubs = rubs
+        self._rubs = np.zeros(problem.n_rows, dtype=bool)
+        self._partner = np.arange(problem.n_rows)
+        for law in problem.of_law(Friction):
+            assert isinstance(law, Friction)
+            self._rubs[np.concatenate(sliding_rows(law))] = True
+            if law.below is not None:
+                self._partner[law.rows], self._partner[law.below] = law.below, law.rows
         self._laws: LocalStage | None = None
         self.references: References | None = None
 
@@ -81,10 +86,12 @@ class ReducedLocalStage:
         self.adopt(
             References(
                 np.union1d(instants, [0, n_instants - 1]),
-                tuple(
-                    self._reference_rows(group.rows[:, family.members[0]], family.basis)
-                    for group, own in zip(self._linear_stage.groups, state, strict=True)
-                    for family in own
+                self._with_partners(
+                    [
+                        (group.rows[:, family.members], self._reference_rows(group, family))
+                        for group, own in zip(self._linear_stage.groups, state, strict=True)
+                        for family in own
+                    ]
                 ),
             ),
             state,
@@ -149,7 +156,28 @@ class ReducedLocalStage:
             fitted[:, self._before] * (1.0 - self._share) + fitted[:, self._after] * self._share
         )
 
-    def _reference_rows(self, rows: Indices, basis: SeparatedBasis) -> Indices:
+    def _with_partners(self, chosen: list[tuple[Indices, Indices]]) -> tuple[Indices, ...]:
+        """Add the places whose partners on the other side of a contact are reference rows.
+
+        Parameters
+        ----------
+        chosen
+            Of every family the rows of its members, shape (n_boundary, n_members), and places.
+        """
+        wanted = np.zeros(self._problem.n_rows, dtype=bool)
+        for rows, places in chosen:
+            wanted[rows[places]] = True
+        grown = True
+        while grown:
+            before = wanted
+            wanted = before | before[self._partner]
+            for rows, _ in chosen:
+                wanted[rows] = wanted[rows].any(axis=1, keepdims=True)
+            grown = not np.array_equal(wanted, before)
+        return tuple(np.flatnonzero(wanted[rows].any(axis=1)) for rows, _ in chosen)
+
+    def _reference_rows(self, group: Group[list[Family]], family: Family) -> Indices:
+        rows, basis = group.rows[:, family.members[0]], family.basis
         rubs = self._rubs[rows]
         friction = np.flatnonzero(rubs)
         wanted = round(self._points * len(friction))

@@ -99,7 +99,7 @@ class FrictionLaw:
 
 def as_slice(rows: Indices) -> slice | Indices:
     """Give rows as a slice when they follow each other, so that reading them copies nothing."""
-    first = int(rows[0])
+    first = int(rows[0]) if len(rows) else 0
     return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
 
 

@@ -1,0 +1,203 @@
+"""A broken wire regains its force from its neighbours as friction allows, and no faster."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from solver.discrete import discretise
+from solver.discrete.strand import axial_forces
+from solver.latin import Ending, solve
+from solver.reference.broken_wire import broken_wire
+from solver.scenes.strand import StrandSettings, strand
+
+FAST = {
+    "search_direction": "auto",
+    "acceleration": "anderson",
+    "start": "nested",
+    "tolerance": 1e-18,
+    "max_iterations": 2000,
+    "instants": 41,
+}
+PAIR = {"wires": 2, "broken": 1, "peak": 437.0}
+GRIPPED = {"grip": "displacement"}
+
+
+def solved(**changes):
+    """Give the scene of some settings, and its converged iterate."""
+    settings = StrandSettings.checked({**FAST, **changes})
+    solution = solve(discretise(settings), settings)
+    assert solution.status.ending is Ending.CONVERGED
+    return strand(settings), solution.iterate
+
+
+def wire_forces(**changes):
+    scene, iterate = solved(**changes)
+    return axial_forces(scene, iterate.displacement)
+
+
+def points(scene):
+    """Give the nodes, that of the break twice, which are points of the interfaces: none held."""
+    return slice(1, -1 if scene.rigid_grip else None)
+
+
+def relative(found, exact):
+    return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
+
+
+@pytest.mark.parametrize(
+    ("change", "sides"),
+    [({"wires": 2, "broken": 1}, 1), ({"wires": 2, "broken": 2}, 1), ({"wires": 3}, 2)],
+)
+def test_it_regains_its_force_linearly_over_the_tension_by_the_friction_bound(change, sides):
+    # 300 N over 1500 N/m for each rubbing side: 12 elements of 1/60 m, or 6.
+    scene, iterate = solved(**change, load="ramp", peak=300.0)
+    found = axial_forces(scene, iterate.displacement)[scene.broken[0] - 1, :, -1]
+    place = (np.arange(60) + 0.5) / 60
+    expected = np.minimum(300.0, sides * 1500.0 * np.abs(place - 0.5))
+    np.testing.assert_allclose(found, expected, atol=1e-4)
+    assert sides * np.count_nonzero(found < 299.99) == 24
+
+
+@pytest.mark.parametrize(
+    "change",
+    [PAIR, {"peak": 437.0}, {**PAIR, **GRIPPED, "break_position": 0.3}, GRIPPED],
+    ids=["pair", "middle of three", "pair in a grip", "middle of three in a grip"],
+)
+def test_refinement_brings_it_to_the_closed_form(change):
+    errors = []
+    for elements in (20, 40, 80):
+        scene, iterate = solved(**change, elements=elements, instants=21, tolerance=1e-14)
+        exact = broken_wire(scene)
+        number = scene.broken[0]
+        contact = iterate.contact("contact 1-2")
+        side = 1.0 if number == 2 else -1.0
+        friction = scene.rubbing_sides * side * contact.tangential_force
+        errors.append(
+            [
+                relative(side * contact.slip, exact.slip[points(scene)]),
+                relative(friction, exact.friction_force[points(scene)]),
+            ]
+        )
+    slopes = np.log2(np.array(errors[0]) / errors[-1]) / 2.0
+    assert slopes[0] > 0.9
+    assert errors[-1][0] < 4e-3
+    assert errors[-1][1] < 1e-3
+
+
+@pytest.mark.parametrize("load", ["triangle", "decaying", "random"])
+def test_the_closed_form_holds_on_any_tension_path(load):
+    scene, iterate = solved(load=load, peak=333.0, elements=60)
+    contact = iterate.contact("contact 1-2")
+    exact = broken_wire(scene)
+    assert relative(contact.slip, exact.slip[points(scene)]) < 0.03
+    assert relative(2.0 * contact.tangential_force, exact.friction_force[points(scene)]) < 1e-5
+
+
+def test_all_of_it_slips_where_friction_is_too_small_to_give_the_force_back():
+    scene, iterate = solved(**GRIPPED, load="ramp", peak=2000.0, friction=0.03)
+    found = axial_forces(scene, iterate.displacement)[1, :, -1]
+    place = (np.arange(60) + 0.5) / 60
+    np.testing.assert_allclose(found, 300.0 * np.abs(place - 0.5), atol=1e-3)
+    status = iterate.contact("contact 1-2").status[:, -1]
+    np.testing.assert_array_equal(status, np.repeat([-1, 1], 30))
+
+
+def test_without_friction_it_carries_nothing_and_the_others_what_the_grip_asks_for():
+    scene, iterate = solved(**GRIPPED, friction=0.0, wires=4)
+    found = axial_forces(scene, iterate.displacement)
+    np.testing.assert_allclose(found[1], 0.0, atol=1e-3)
+    for whole in (0, 2, 3):
+        np.testing.assert_allclose(found[whole], scene.tension + 0.0 * found[whole], atol=1e-3)
+
+
+def test_with_endless_friction_nothing_slips_but_the_break_opens_by_an_element():
+    scene, iterate = solved(friction=1e5)
+    found = axial_forces(scene, iterate.displacement)
+    np.testing.assert_allclose(found, scene.tension + 0.0 * found, atol=1e-2)
+    assert not iterate.contact("contact 1-2").status.any()
+
+
+def test_the_break_mirrored_mirrors_everything():
+    left = wire_forces(**GRIPPED, wires=4, break_position=0.25)
+    right = wire_forces(**GRIPPED, wires=4, break_position=0.75)
+    assert relative(right[:, ::-1], left) < 1e-5
+    last = wire_forces(**GRIPPED, wires=4, break_position=0.25, broken=3)
+    assert relative(last[::-1], left) < 1e-5
+
+
+@pytest.mark.parametrize("wires", [2, 5])
+@pytest.mark.parametrize("grip", ["force", "displacement"])
+def test_equal_wires_without_a_break_never_slip(wires, grip):
+    scene, iterate = solved(wires=wires, broken=0, grip=grip, elements=30)
+    found = axial_forces(scene, iterate.displacement)
+    assert relative(found, scene.tension + 0.0 * found) < 1e-7
+    for number in range(1, wires):
+        contact = iterate.contact(f"contact {number}-{number + 1}")
+        assert np.abs(contact.tangential_force).max() < 1e-4
+        assert not contact.status.any()
+
+
+@pytest.mark.parametrize("wires", [3, 6, 40])
+def test_every_section_carries_what_the_grip_gives_whatever_the_number_of_wires(wires):
+    scene, iterate = solved(
+        wires=wires, elements=24, substructures=4, instants=9, peak=400.0, load="triangle"
+    )
+    whole = axial_forces(scene, iterate.displacement).sum(axis=0)
+    assert relative(whole, wires * scene.tension + 0.0 * whole) < 1e-6
+
+
+def test_an_edge_wire_regains_its_force_at_the_bound_of_its_one_neighbour():
+    scene, iterate = solved(wires=6, broken=1, load="ramp", peak=300.0)
+    found = axial_forces(scene, iterate.displacement)[0, :, -1]
+    np.testing.assert_allclose(np.diff(found[30:40]), 1500.0 / 60, rtol=1e-4)
+
+
+def strain_energy(scene, forces):
+    """Give the energy of axial forces, shape (n_instants,), J."""
+    element = scene.length / scene.elements
+    return 0.5 * element / scene.stiffness * (forces**2).sum(axis=(0, 1))
+
+
+def work_of_the_grip(iterate):
+    """Give the work of each step, by the force at its end, shape (n_instants,), J."""
+    rows, scales = iterate.problem.interfaces["load"].rows, iterate.problem.scales
+    steps = np.diff(iterate.boundary_displacement[rows], axis=1, prepend=0.0)
+    work = (iterate.boundary_force[rows] * steps).sum(axis=0)
+    return work * scales.force * scales.displacement
+
+
+def dissipation(iterate):
+    """Give the bound times the slip of each step, shape (n_instants,), J."""
+    found = np.zeros(iterate.problem.n_instants)
+    for name, law in iterate.problem.rubbing.items():
+        bound = law.by_point(law.bound) * iterate.problem.scales.force
+        found += bound @ np.abs(np.diff(iterate.contact(name).slip, axis=1, prepend=0.0))
+    return found
+
+
+@pytest.mark.parametrize("change", [PAIR, {"wires": 5}, {**PAIR, **GRIPPED, "peak": 2000.0}])
+def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
+    """By backward Euler a step also takes the strain energy of its increment."""
+    scene, iterate = solved(**change, elements=30, tolerance=1e-22, max_iterations=4000)
+    forces = axial_forces(scene, iterate.displacement)
+    stored = strain_energy(scene, forces)
+    taken = strain_energy(scene, np.diff(forces, axis=2, prepend=0.0))
+    first, second = 8, 24  # the peaks of the tension
+    cycle = slice(first + 1, second + 1)
+    dissipated = dissipation(iterate)[cycle].sum()
+    left_over = work_of_the_grip(iterate)[cycle].sum() - taken[cycle].sum() - dissipated
+    assert dissipated > 0.01
+    assert left_over == pytest.approx(stored[second] - stored[first], abs=1e-6 * dissipated)
+    if scene.wires == 2:
+        # Each side of the break is a friction bar, whose cycles are closed (theory.md, 6).
+        assert stored[second] == pytest.approx(stored[first], abs=1e-6 * dissipated)
+
+
+def test_a_cycle_dissipates_what_friction_bars_do():
+    """Twice 2 T^3 / (3 K q) over cycles of +-T, with K = ES / 2; an eighth of it from 0 to T."""
+    settings = {**PAIR, "peak": 600.0, "elements": 120, "instants": 21}
+    scene, iterate = solved(**settings, tolerance=1e-14)
+    expected = 2.0 * 2.0 * 600.0**3 / (3.0 * 0.5 * scene.stiffness * scene.bound) / 8.0
+    measured = dissipation(iterate)[5:13].sum()
+    assert measured == pytest.approx(expected, rel=0.02)
