@@ -19,8 +19,11 @@ ENDINGS = {
 }
 
 
-def status_line(run: Recording, running: bool, sought: int | None) -> str:
-    """Say what runs, how far it is, and how it ended with what to try (HTML)."""
+def status_line(run: Recording, running: bool, sought: int | None, *, held: bool = False) -> str:
+    """Say what runs, how far it is, and how it ended with what to try (HTML).
+
+    A run that is `held` waits for a study that is timed.
+    """
     if run.notice and not run.records:
         return f"<b>{escape(run.notice)}</b>"
     settings = run.settings.values()
@@ -33,6 +36,8 @@ def status_line(run: Recording, running: bool, sought: int | None) -> str:
     if run.status is not None:
         counted = "iteration" if run.iteration == 1 else "iterations"
         state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
+    elif held:
+        state = f"<b>waits</b> for the study that is timed, at iteration {run.iteration}"
     elif not running:
         state = f"<b>paused</b> at iteration {run.iteration}"
     else:

@@ -101,6 +101,13 @@ class Roster:
         """All processes that are in use, or kept ready."""
         return list(self._posts)
 
+    def at_work_beside(self, seat: Seat) -> int:
+        """Count the posts at work at runs of other seats, and not only waiting."""
+        return sum(
+            post.seat is not None and post.seat is not seat and not post.idle
+            for post in self._posts.values()
+        )
+
     def run(self, seat: Seat, order: Run) -> None:
         """Take up a new run for a seat."""
         seat.begin(order)

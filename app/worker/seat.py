@@ -69,6 +69,11 @@ class Seat:
         """Stop the run and free its process; afterwards all orders are ignored."""
         self._pool.leave(self)
 
+    @property
+    def others_at_work(self) -> int:
+        """Runs of other seats that are at work, and not only waiting."""
+        return self._pool.at_work_beside(self)
+
     def begin(self, order: Run) -> None:
         """Take up a new run."""
         self.ticket = order.ticket
