@@ -39,6 +39,9 @@ class Session:
         The one whose modes are looked at, from 0 at the clamp; None is the last one.
     running, pace
         Whether iterations go on by themselves, and how many a second (None: all it can).
+    warm_start
+        Whether a changed setting starts from the run before, where that is better; a run that is
+        reset never does. It is no setting of the method: a run alone has none before it.
     follows
         Whether the newest iterate is looked at, not one that was sought.
     study, stability
@@ -59,6 +62,7 @@ class Session:
         self.substructure: int | None = None
         self.running = True
         self.pace: float | None = DEFAULT_PACE
+        self.warm_start = False
         self.watch: frozenset[str] = frozenset()
         self.follows = True
         self.study = Errand(bench)
@@ -72,10 +76,13 @@ class Session:
         self._pending: Settings | None = None
         self.run = Recording(0, settings, "")
 
-    def start(self, settings: Settings | None = None, *, waits: bool = False) -> None:
+    def start(
+        self, settings: Settings | None = None, *, waits: bool = False, warm: bool = False
+    ) -> None:
         """Start a run, with new settings or the same, in place of the one at work.
 
-        A run that `waits` does one iteration until the page is connected.
+        A run that `waits` does one iteration until the page is connected; a `warm` one starts
+        from the last iterate of the run at work, where that is better.
         """
         self._retire()
         changed = {
@@ -85,7 +92,7 @@ class Session:
         }
         self.settings = settings or self.settings
         label = _label(self.settings, changed) if changed else self.run.label
-        self.run = Recording(self.run.ticket + 1, self.settings, label)
+        self.run = Recording(self.run.ticket + 1, self.settings, label, is_warm=warm)
         self.follows = True
         self._pending = None
         self._seat.run(
@@ -97,6 +104,7 @@ class Session:
                 pause_after=None if self._is_free and not waits else 1,
                 watch=self.watch,
                 substructure=self.substructure,
+                warm=warm,
             )
         )
 
@@ -116,7 +124,7 @@ class Session:
             return
         self._pending = settings
         if self.run.newest is not None or self.run.notice or self.run.ticket == 0:
-            self.start(settings)
+            self.start(settings, warm=self.warm_start)
 
     def collect(self) -> bool:
         """Take the waiting reports; tell whether anything is new."""
@@ -129,7 +137,7 @@ class Session:
         if reports and self.run.begun is not None:
             self.instant = round(self.phase * (len(self.run.begun.instants) - 1))
         if self._pending is not None and (self.run.newest is not None or self.run.notice):
-            self.start(self._pending)
+            self.start(self._pending, warm=self.warm_start)
         return bool(reports)
 
     def go(self) -> None:

@@ -52,6 +52,8 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
         line += f" · η = {number(last.indicator)}"
         line += f" · friction force error {percent(last.error_force)}"
         line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
+    if run.is_warm:
+        line += f"<br>{start_line(run)}"
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
     if run.status is not None:
@@ -59,6 +61,20 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
     elif run.notice:
         line += f"<br>{escape(run.notice)}"
     return line
+
+
+def start_line(run: Recording) -> str:
+    """Say from where a run started that could have started from the one before it (HTML)."""
+    own = "coarser meshes" if run.settings.values()["start"] == "nested" else "zero"
+    if run.begun is None:
+        return ""
+    if run.choice is None:
+        return f"Started from {own}: the run before it was not at hand."
+    previous, other = number(run.choice.previous), number(run.choice.own)
+    figures = f"k-free indicator after one iteration {previous}, from {own} {other}"
+    if run.choice.is_previous:
+        return f"Started from the run before it: {figures}."
+    return f"Started from {own}, since the run before it is not clearly nearer: {figures}."
 
 
 def key_figures(run: Recording, before: Recording | None, shown: Record | None) -> str:
@@ -76,7 +92,7 @@ def key_figures(run: Recording, before: Recording | None, shown: Record | None) 
     if before is not None:
         rows.append(
             (
-                f"before ({escape(before.label)})" if before.label else "before",
+                f"before ({escape(before.title)})" if before.label else "before",
                 before,
                 before.records[-1] if before.records else None,
             )

@@ -146,7 +146,7 @@ def curve(
 
 
 def _is_reduced(settings: Settings) -> bool:
-    return bool(settings.linear_stage == "pgd")
+    return settings.is_reduced
 
 
 def _is_sampled(settings: Settings) -> bool:
@@ -459,6 +459,11 @@ class Settings(param.Parameterized):
     def coarser(self) -> Self | None:
         """Give the same scene on the next coarser mesh, or None where that makes no sense."""
         return None
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether the linear stage works on separated bases."""
+        return bool(self.linear_stage == "pgd")
 
     def applies(self, name: str) -> bool:
         """Tell whether a setting does anything under the present values."""
