@@ -72,6 +72,7 @@ class Sidebar:
             size="small",
             sizing_mode="stretch_width",
         )
+        self._warm._debounce = 0  # as for the settings, or a slider moved next would overtake it
         self._warm.param.watch(self._on_warm, "value")
         self.view = pmui.Column(sizing_mode="stretch_width", margin=0)
 

@@ -52,15 +52,14 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
         line += f" · η = {number(last.indicator)}"
         line += f" · friction force error {percent(last.error_force)}"
         line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
-    if run.is_warm:
-        line += f"<br>{start_line(run)}"
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
+    more = [start_line(run)] if run.is_warm else []
     if run.status is not None:
-        line += f"<br>{escape(run.status.advice)}"
+        more.append(escape(run.status.advice))
     elif run.notice:
-        line += f"<br>{escape(run.notice)}"
-    return line
+        more.append(escape(run.notice))
+    return f"{line}<br>{' '.join(more)}" if more else line
 
 
 def start_line(run: Recording) -> str:
