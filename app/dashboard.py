@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
@@ -14,6 +14,7 @@ from panel.util import edit_readonly
 from app.pulse import Pulse, send_without_delay
 from app.session import Session
 from app.sidebar import Sidebar
+from app.tabs import Tabs
 from app.transport import Transport
 from app.views.basis_size import BasisSize
 from app.views.convergence import Convergence
@@ -22,31 +23,10 @@ from app.views.error_time import ErrorTime
 from app.views.friction import FrictionForce
 from app.views.loop import Loop
 from app.views.modes import SpaceModes, TimeFunctions
-from app.views.paper_figures import PaperFigures
 from app.views.spectra import Spectra
-from app.views.stability import StabilityReport
 from app.views.status_map import StatusMap
-from app.views.study import StudyReport
 from app.words import card_title, key_figures, status_line
 
-LIVE = "Live"
-TABS = {
-    "& button": {
-        "color": "#fff",
-        "borderColor": "rgba(255, 255, 255, 0.6)",
-        "textTransform": "none",
-        "whiteSpace": "nowrap",
-        "padding": "3px 14px",
-        "fontSize": "15px",
-    },
-    "& button.Mui-selected, & button.Mui-selected:hover": {
-        "color": "#0b3d66",
-        "backgroundColor": "#fff",
-    },
-}
-"""White on the blue of the header, in both themes."""
-PLAIN = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 0"}}
-"""On a phone, where they stand below the header."""
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 IN_FLIGHT = 1
@@ -56,21 +36,6 @@ VIEWS_AT_ONCE = 3
 VIEWS_AT_FIRST = 1
 FIRST_ROW = 3
 LOST_AFTER = 2.0
-
-
-class Tab(Protocol):
-    """What can be looked at in place of the live run.
-
-    Attributes
-    ----------
-    view
-        What stands on the page.
-    """
-
-    view: Any
-
-    def open(self) -> None:
-        """Show it; whatever is in it may be made only now."""
 
 
 class Dashboard:
@@ -104,24 +69,7 @@ class Dashboard:
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
         self._live = self._make_live()
-        self._study = StudyReport(
-            session.study, self._style, lambda: session.wanted, lambda: session.crowd
-        )
-        self._stability = StabilityReport(session.stability, self._style)
-        self._beside: dict[str, Tab] = {
-            "Figures": PaperFigures(self._style),
-            "Study": self._study,
-            "Stability": self._stability,
-        }
-        self._tabs = pmui.RadioButtonGroup(
-            options=[LIVE, *self._beside], value=LIVE, size="small", margin=(0, 12), sx=TABS
-        )
-        self._tabs.param.watch(self._on_tab, "value")
-        self._main = pn.Column(
-            self._live,
-            *(tab.view for tab in self._beside.values()),
-            sizing_mode="stretch_width",
-        )
+        self._tabs = Tabs(session, self._live, self._style, self._mark)
         self.page = self._make_page()
         self._sidebar.show(session.wanted)
         self._arrange()
@@ -157,8 +105,7 @@ class Dashboard:
             self._alone = alone
             self.session.rest(alone)
         if self.session.attend():
-            self._study.refresh()
-            self._stability.refresh()
+            self._tabs.refresh()
             self._mark()
         self._collect()
 
@@ -209,8 +156,8 @@ class Dashboard:
             logo=STATIC / "logo.svg",
             sidebar=[self._sidebar.view],
             sidebar_width=310,
-            header=[self._tabs],
-            main=[self._main],
+            header=[self._tabs.bar],
+            main=[self._tabs.main],
             busy_indicator=None,
             meta_description="A laboratory for frictional contact: LATIN iterations, live.",
         )
@@ -281,7 +228,7 @@ class Dashboard:
             self._dirty = True
         now = time.monotonic()
         in_flight = self._pulse.frame - self._pulse.painted
-        looked_at = self._loaded and bool(self._live.visible)
+        looked_at = self._loaded and self._tabs.shows_the_run
         waiting = looked_at and (self._dirty or bool(self._owed))
         # The first picture of a run overtakes what is still on its way.
         first = self.session.shown is not None and self.session.run.ticket != self._drawn_ticket
@@ -338,22 +285,12 @@ class Dashboard:
         if event.new == self._pulse.frame:
             self._rest_until = now + REST * (now - self._sent_at)
 
-    def _on_tab(self, event: Any) -> None:
-        """Show the live run, which goes on in any case, or a report."""
-        self._live.visible = event.new == LIVE
-        for name, tab in self._beside.items():
-            tab.view.visible = event.new == name
-            if event.new == name:
-                tab.open()
-        self._mark()
-
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:
             self.page.sidebar_open = False
-        if self._loaded and self._pulse.phone and self._tabs not in self._main:
+        if self._loaded and self._pulse.phone:
             self.page.header = []
-            self._tabs.param.update(sx=PLAIN, sizing_mode="stretch_width", margin=(6, 10))
-            self._main.insert(0, self._tabs)
+            self._tabs.leave_the_header()
 
     def _on_key(self, event: Any) -> None:
         action = {
