@@ -14,6 +14,7 @@ from panel.util import edit_readonly
 from app.pulse import Pulse, send_without_delay
 from app.session import Session
 from app.sidebar import Sidebar
+from app.tabs import Tabs
 from app.transport import Transport
 from app.views.basis_size import BasisSize
 from app.views.convergence import Convergence
@@ -22,27 +23,10 @@ from app.views.error_time import ErrorTime
 from app.views.friction import FrictionForce
 from app.views.loop import Loop
 from app.views.modes import SpaceModes, TimeFunctions
-from app.views.paper_figures import PaperFigures
 from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
 from app.words import card_title, key_figures, status_line
 
-LIVE, PAPER = "Live", "Figures"
-TABS = {
-    "& button": {
-        "color": "#fff",
-        "borderColor": "rgba(255, 255, 255, 0.6)",
-        "textTransform": "none",
-        "whiteSpace": "nowrap",
-        "padding": "3px 14px",
-        "fontSize": "15px",
-    },
-    "& button.Mui-selected, & button.Mui-selected:hover": {
-        "color": "#0b3d66",
-        "backgroundColor": "#fff",
-    },
-}
-"""White on the blue of the header, in both themes."""
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 IN_FLIGHT = 1
@@ -65,10 +49,6 @@ class Dashboard:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self._pulse = Pulse()
-        self._pulse.param.watch(self._on_painted, "painted")
-        self._pulse.param.watch(self._on_key, "key")
-        self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         self._sent_at = 0.0
         self._dirty = False
         self._alone = True
@@ -77,18 +57,9 @@ class Dashboard:
         self._owed: list[View] = []
         self._drawn_ticket = -1
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
+        self._pulse = self._make_pulse()
         self.transport = Transport(session, self._mark)
-        self._views: list[View] = [
-            FrictionForce(),
-            StatusMap(self.transport.choose_time),
-            Loop(),
-            Convergence(),
-            Spectra(),
-            ErrorTime(),
-            SpaceModes(),
-            TimeFunctions(),
-            BasisSize(self.transport.choose_substructure),
-        ]
+        self._views = self._make_views()
         self._titles: dict[str, Any] = {}
         self._cards: dict[str, Any] = {}
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
@@ -97,20 +68,8 @@ class Dashboard:
         self._plots = pn.Column(
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
-        self._paper = PaperFigures(self._style)
-        self._live = pn.Column(
-            self.transport.view,
-            self._status,
-            self._figures,
-            self._plots,
-            self._pulse,
-            sizing_mode="stretch_width",
-            margin=(4, 10),
-        )
-        self._tabs = pmui.RadioButtonGroup(
-            options=[LIVE, PAPER], value=LIVE, size="small", margin=(0, 12), sx=TABS
-        )
-        self._tabs.param.watch(self._on_tab, "value")
+        self._live = self._make_live()
+        self._tabs = Tabs(session, self._live, self._style, self._mark)
         self.page = self._make_page()
         self._sidebar.show(session.wanted)
         self._arrange()
@@ -145,6 +104,9 @@ class Dashboard:
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
+        if self.session.attend():
+            self._tabs.refresh()
+            self._mark()
         self._collect()
 
     def end(self, context: Any) -> None:
@@ -156,6 +118,37 @@ class Dashboard:
         if pn.state.notifications is not None:
             pn.state.notifications.error(text, duration=8000)
 
+    def _make_pulse(self) -> Pulse:
+        pulse = Pulse()
+        pulse.param.watch(self._on_painted, "painted")
+        pulse.param.watch(self._on_key, "key")
+        pulse.param.watch(lambda event: self._on_narrow(), "narrow")
+        return pulse
+
+    def _make_views(self) -> list[View]:
+        return [
+            FrictionForce(),
+            StatusMap(self.transport.choose_time),
+            Loop(),
+            Convergence(),
+            Spectra(),
+            ErrorTime(),
+            SpaceModes(),
+            TimeFunctions(),
+            BasisSize(self.transport.choose_substructure),
+        ]
+
+    def _make_live(self) -> pn.Column:
+        return pn.Column(
+            self.transport.view,
+            self._status,
+            self._figures,
+            self._plots,
+            self._pulse,
+            sizing_mode="stretch_width",
+            margin=(4, 10),
+        )
+
     def _make_page(self) -> pmui.Page:
         page = pmui.Page(
             title="Slipfront",
@@ -163,8 +156,8 @@ class Dashboard:
             logo=STATIC / "logo.svg",
             sidebar=[self._sidebar.view],
             sidebar_width=310,
-            header=[self._tabs],
-            main=[pn.Column(self._live, self._paper.view, sizing_mode="stretch_width")],
+            header=[self._tabs.bar],
+            main=[self._tabs.main],
             busy_indicator=None,
             meta_description="A laboratory for frictional contact: LATIN iterations, live.",
         )
@@ -235,7 +228,7 @@ class Dashboard:
             self._dirty = True
         now = time.monotonic()
         in_flight = self._pulse.frame - self._pulse.painted
-        looked_at = self._loaded and bool(self._live.visible)
+        looked_at = self._loaded and self._tabs.shows_the_run
         waiting = looked_at and (self._dirty or bool(self._owed))
         # The first picture of a run overtakes what is still on its way.
         first = self.session.shown is not None and self.session.run.ticket != self._drawn_ticket
@@ -259,7 +252,9 @@ class Dashboard:
             view.draw(picture)
             self._titles[view.name].object = card_title(view.name, view.keys)
         sought = frame.iteration if frame is not None and not session.follows else None
-        self._status.object = status_line(session.run, session.running, sought)
+        self._status.object = status_line(
+            session.run, session.running, sought, held=session.is_held
+        )
         if at_once:
             return
         self.transport.show()
@@ -290,17 +285,12 @@ class Dashboard:
         if event.new == self._pulse.frame:
             self._rest_until = now + REST * (now - self._sent_at)
 
-    def _on_tab(self, event: Any) -> None:
-        """Show the live run, which goes on in any case, or the paper's figures."""
-        self._live.visible = event.new == LIVE
-        self._paper.view.visible = event.new == PAPER
-        if event.new == PAPER:
-            self._paper.open()
-        self._mark()
-
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:
             self.page.sidebar_open = False
+        if self._loaded and self._pulse.phone:
+            self.page.header = []
+            self._tabs.leave_the_header()
 
     def _on_key(self, event: Any) -> None:
         action = {

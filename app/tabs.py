@@ -1,0 +1,116 @@
+"""The tabs of the page: the live run, and the reports beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.session import Session
+from app.views.paper_figures import PaperFigures
+from app.views.stability import StabilityReport
+from app.views.study import StudyReport
+
+LIVE = "Live"
+IN_HEADER = {
+    "& button": {
+        "color": "#fff",
+        "borderColor": "rgba(255, 255, 255, 0.6)",
+        "textTransform": "none",
+        "whiteSpace": "nowrap",
+        "padding": "3px 14px",
+        "fontSize": "15px",
+    },
+    "& button.Mui-selected, & button.Mui-selected:hover": {
+        "color": "#0b3d66",
+        "backgroundColor": "#fff",
+    },
+}
+"""White on the blue of the header, in both themes."""
+BELOW = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 0"}}
+
+
+class Tab(Protocol):
+    """What can be looked at in place of the live run.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    """
+
+    view: Any
+
+    def open(self) -> None:
+        """Show it; whatever is in it may be made only now."""
+
+
+class Tabs:
+    """The choice between the live run, which goes on in any case, and the reports.
+
+    Parameters
+    ----------
+    session
+        Has the reports made.
+    live
+        The live run.
+    style
+        Style sheet.
+    changed
+        Called when another one was chosen.
+
+    Attributes
+    ----------
+    bar
+        The choice.
+    main
+        What is chosen, of which nothing else is seen.
+    """
+
+    def __init__(
+        self, session: Session, live: Any, style: str, changed: Callable[[], None]
+    ) -> None:
+        self._live = live
+        self._changed = changed
+        self._study = StudyReport(
+            session.study, style, lambda: session.wanted, lambda: session.crowd
+        )
+        self._stability = StabilityReport(session.stability, style)
+        self._beside: dict[str, Tab] = {
+            "Figures": PaperFigures(style),
+            "Study": self._study,
+            "Stability": self._stability,
+        }
+        self.bar = pmui.RadioButtonGroup(
+            options=[LIVE, *self._beside], value=LIVE, size="small", margin=(0, 12), sx=IN_HEADER
+        )
+        self.bar.param.watch(self._on_choice, "value")
+        self.main = pn.Column(
+            live, *(tab.view for tab in self._beside.values()), sizing_mode="stretch_width"
+        )
+
+    @property
+    def shows_the_run(self) -> bool:
+        """Whether the live run is looked at."""
+        return bool(self._live.visible)
+
+    def refresh(self) -> None:
+        """Show what the reports have come to."""
+        self._study.refresh()
+        self._stability.refresh()
+
+    def leave_the_header(self) -> None:
+        """Stand above what is chosen: a phone's header has no room."""
+        if self.bar not in self.main:
+            self.bar.param.update(sx=BELOW, sizing_mode="stretch_width", margin=(6, 10))
+            self.main.insert(0, self.bar)
+
+    def _on_choice(self, event: Any) -> None:
+        self._live.visible = event.new == LIVE
+        for name, tab in self._beside.items():
+            tab.view.visible = event.new == name
+            if event.new == name:
+                tab.open()
+        self._changed()
