@@ -286,11 +286,15 @@ class Problem:
 
     @cached_property
     def prescribed(self) -> tuple[Indices, Array]:
-        """Degrees of freedom with prescribed displacement, and its values (n, n_instants)."""
+        """Degrees of freedom with prescribed displacement, each once, and its values.
+
+        Shapes (n,) and (n, n_instants).
+        """
         parts = [law for law in self.of_law(Dirichlet) if isinstance(law, Dirichlet)]
         none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
         rows = np.concatenate([none[0], *(law.rows for law in parts)])
-        return self.row_dofs[rows], np.concatenate([none[1], *(law.displacement for law in parts)])
+        dofs, first = np.unique(self.row_dofs[rows], return_index=True)
+        return dofs, np.concatenate([none[1], *(law.displacement for law in parts)])[first]
 
 
 def _macro(interface: Interface) -> Iterator[tuple[Indices, sparse.coo_array, Array | None]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
+from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
@@ -278,7 +279,7 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 positions=np.linspace(0.0, scene.length, scene.elements[0] + 1),
                 weights=weights * scene.length,
                 gap=gap,
-                friction=np.full(len(points), friction),
+                friction=np.where(_is_held(scene, points), 0.0, friction),
                 moduli=(
                     float(scene.stiffness[body]),
                     np.inf if under is None else float(scene.stiffness[body - 1]),
@@ -292,6 +293,16 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 ),
             ),
         )
+
+
+def _is_held(scene: Stack, points: Indices) -> NDArray[np.bool_]:
+    """Tell at which points of a contact a side holds the opening.
+
+    The pressing force there could not be told from the side's reaction, nor could friction.
+    """
+    left, right = (scene.sides[side].y.prescribed for side in ("left", "right"))
+    held: NDArray[np.bool_] = (points == 0) & left | (points == scene.elements[0]) & right
+    return held
 
 
 def _prescribed(

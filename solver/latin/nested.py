@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from solver.discrete.problem import Array, Indices, Problem
 from solver.laws import Friction
-from solver.reference.incremental import assembled_stiffness
+from solver.reference.assembly import assembled_stiffness
 
 
 def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k: Array) -> Array:

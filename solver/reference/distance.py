@@ -7,29 +7,32 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.discrete.problem import Problem
+from solver.discrete.problem import Indices, Problem
 from solver.laws import Neumann
+from solver.reference.condensation import jumps
+from solver.reference.states import rules_of
 
 Array = NDArray[np.float64]
 
 
 class Fields(Protocol):
-    """What is compared: an iterate, or a reference; SI, shape (n_points, n_instants)."""
+    """What is compared: an iterate, or a reference; SI."""
 
     @property
     def displacement(self) -> Array:
-        """Displacement, m."""
+        """Displacement, shape (n_dofs, n_instants), m."""
 
     @property
-    def friction_force(self) -> Array:
-        """Nodal friction force, N."""
+    def contact_force(self) -> Array:
+        """Nodal forces of all interfaces with friction, stacked, (n_forces, n_instants), N."""
 
 
 class Distance:
     """Relative L2 distance over space and time to a reference on the same mesh and instants.
 
-    Where the reference field vanishes, the distance is relative to `load` instead, and absolute
-    if that vanishes too. Forces are compared where they are determinate.
+    Displacements are compared at interfaces. Where the reference field vanishes, the distance is
+    relative to `load` instead, and absolute if that vanishes too. Forces are compared where they
+    are determinate.
 
     Parameters
     ----------
@@ -39,8 +42,10 @@ class Distance:
         Shape (n_instants,).
     load
         Forces that act on the structure, shape (n, n_instants), N.
+    dofs
+        Degrees of freedom at interfaces, shape (n,).
     determinate
-        Where the friction force is, shape (n_points, n_instants); a point that is held still by
+        Where the contact force is, shape (n_forces, n_instants); a point that is held still by
         a support shares its force with that support in any way.
     """
 
@@ -49,22 +54,25 @@ class Distance:
         reference: Fields,
         time_weights: Array,
         load: Array,
+        dofs: Indices,
         determinate: NDArray[np.bool_],
     ) -> None:
         self._weights = time_weights
         self._determinate = determinate
-        self._displacement = reference.displacement
-        self._force = reference.friction_force * determinate
+        self._dofs = dofs
+        self._displacement = reference.displacement[dofs]
+        self._force = reference.contact_force * determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
         self._force_size = self._norm(self._force) or self._norm(load) or 1.0
 
     def of_displacement(self, fields: Fields) -> float:
         """Give the relative error of the displacement."""
-        return self._norm(fields.displacement - self._displacement) / self._displacement_size
+        difference = fields.displacement[self._dofs] - self._displacement
+        return self._norm(difference) / self._displacement_size
 
     def of_friction_force(self, fields: Fields) -> float:
-        """Give the relative error of the friction force."""
-        force = fields.friction_force * self._determinate
+        """Give the relative error of the contact forces: friction, and pressure if unknown."""
+        force = fields.contact_force * self._determinate
         return self._norm(force - self._force) / self._force_size
 
     def _norm(self, field: Array) -> float:
@@ -78,11 +86,30 @@ class Distance:
 def distance_to(reference: Fields, problem: Problem) -> Distance:
     """Prepare the distance to a reference of a problem."""
     forces = [law.force for law in problem.of_law(Neumann) if isinstance(law, Neumann)]
+    if not forces:
+        forces = [part.body_force for part in problem.substructures if part.body_force is not None]
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])
-    law = problem.friction
+    return Distance(
+        reference,
+        problem.time_weights,
+        load * problem.scales.force,
+        np.unique(problem.row_dofs),
+        determinate_forces(problem),
+    )
+
+
+def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
+    """Tell where contact forces are determinate, stacked, shape (n_forces, n_instants).
+
+    Where prescribed displacements alone make a jump, a normal force is not, nor is the friction
+    that it carries; friction of a known bound is while it slips.
+    """
     dofs, displacement = problem.prescribed
-    still = np.zeros((problem.n_dofs, problem.n_instants), dtype=bool)
-    still[dofs] = np.diff(displacement, axis=1, prepend=0.0) == 0.0
-    determinate = np.ones((len(law.positions), problem.n_instants), dtype=bool)
-    determinate[law.points] = ~still[problem.row_dofs[law.rows]]
-    return Distance(reference, problem.time_weights, load * problem.scales.force, determinate)
+    free = np.ones(problem.n_dofs)
+    free[dofs] = 0.0
+    all_jumps, rules = jumps(problem), rules_of(problem)
+    moves = abs(all_jumps) @ free > 0.0
+    slips = np.diff(all_jumps[:, dofs] @ displacement, axis=1, prepend=0.0) != 0.0
+    slips[rules.normal] = False
+    slips &= (moves | ~rules.normal)[rules.partner][:, None]
+    return np.asarray(moves[:, None] & (moves | ~rules.normal)[rules.partner][:, None] | slips)

@@ -21,8 +21,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import blas, solveh_banded
 
-from solver.discrete.problem import Array, Problem, space_time
-from solver.laws import Neumann
+from solver.discrete.contact_fields import ContactFields, contact_fields
+from solver.discrete.problem import Array, Problem
+from solver.reference.assembly import assembled_stiffness, external_force
 
 NEWTON_LIMIT = 8  # steps from one guess of the statuses before a better one is sought
 COARSEST = 8  # degrees of freedom below which no coarser mesh is asked for a guess
@@ -39,28 +40,50 @@ class Reference:
 
     Attributes
     ----------
+    problem
+        What it solves.
     displacement
         Shape (n_dofs, n_instants), m.
-    friction_force
-        Nodal friction force on the body, shape (n_points, n_instants), N.
+    contact_force
+        Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says, shape
+        (n_forces, n_instants), N.
     status
-        Shape (n_points, n_instants): -1 slip backward, 0 stick, +1 slip forward. The increment of
-        a sticking point is exactly zero.
+        Shape (n_points, n_instants), the points stacked interface by interface: -1 slip backward,
+        0 stick, +1 slip forward, 2 open. The increment of a sticking point is zero.
     residual
-        Distance of 0 from the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided
-        by the sum of |g|; the maximum over the instants. Storing v in doubles costs as much.
+        Relative KKT residual, the maximum over the instants. Of `incremental`: distance of 0 from
+        the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|;
+        storing v in doubles costs as much.
+    converged
+        Whether the instants are solved, shape (n_instants,).
     steps
         Newton steps, which are linear systems of full size, in all.
     seconds
         Time taken.
     """
 
+    problem: Problem
     displacement: Array
-    friction_force: Array
+    contact_force: Array
     status: NDArray[np.int8]
     residual: float
+    converged: NDArray[np.bool_]
     steps: int
     seconds: float
+
+    @property
+    def friction_force(self) -> Array:
+        """Nodal friction force on the body, (n_points, n_instants), N, where its bound is known."""
+        return self.contact_force
+
+    def contact(self, name: str) -> ContactFields:
+        """Show one interface with friction."""
+        problem = self.problem
+        sizes = [len(law.positions) for law in problem.rubbing.values()]
+        first = sum(sizes[: list(problem.rubbing).index(name)])
+        status = self.status[first : first + len(problem.rubbing[name].positions)]
+        rows = self.displacement[problem.row_dofs] / problem.scales.displacement
+        return contact_fields(problem, name, self.contact_force, rows, status)
 
 
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
@@ -97,10 +120,12 @@ def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Ref
         balance, status = found.pull, found.status
         residual = max(residual, found.residual)
     return Reference(
+        problem=problem,
         displacement=np.cumsum(increments, axis=0).T * problem.scales.displacement,
-        friction_force=0.0 - pulls.T[structure.point_dofs] * problem.scales.force,
+        contact_force=0.0 - pulls.T[structure.point_dofs] * problem.scales.force,
         status=np.sign(increments.T[structure.point_dofs]).astype(np.int8),
         residual=residual,
+        converged=np.ones(problem.n_instants, dtype=bool),
         steps=structure.band.solutions,
         seconds=time.perf_counter() - start,
     )
@@ -278,27 +303,3 @@ class _Band:
 def _pairs(field: Array) -> Array:
     """Sum over successive pairs; an odd last one stays alone."""
     return np.add.reduceat(field, np.arange(0, len(field), 2))
-
-
-def assembled_stiffness(problem: Problem) -> sparse.csr_array:
-    """Give K of the whole structure, shape (n_dofs, n_dofs), scaled."""
-    parts = [
-        (part.dofs, sparse.coo_array(part.elasticity.stiffness)) for part in problem.substructures
-    ]
-    rows, columns = (
-        np.concatenate([dofs[own.coords[axis]] for dofs, own in parts]) for axis in (0, 1)
-    )
-    values = np.concatenate([own.data for _, own in parts])
-    return sparse.csr_array((values, (rows, columns)), shape=(problem.n_dofs, problem.n_dofs))
-
-
-def external_force(problem: Problem) -> Array:
-    """Give the forces on the whole structure, shape (n_dofs, n_instants), scaled."""
-    total = space_time(problem.n_dofs, problem.n_instants)
-    for part in problem.substructures:
-        if part.body_force is not None:
-            np.add.at(total, part.dofs, part.body_force)
-    for law in problem.of_law(Neumann):
-        assert isinstance(law, Neumann)
-        np.add.at(total, problem.row_dofs[law.rows], law.force)
-    return total

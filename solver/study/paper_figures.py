@@ -94,7 +94,7 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
     law = problem.friction
     lengths = law.by_point(law.weights)[1:]
     moments = {time: int(np.argmin(np.abs(problem.instants - time))) for time in INSTANTS}
-    forces = {label: fields.friction_force[1:] for label, fields in solutions.items()}
+    forces = {label: fields.contact_force[1:] for label, fields in solutions.items()}
     displacements = {label: fields.displacement[1:] for label, fields in solutions.items()}
     root = np.sqrt(lengths)[:, None]
     panels = tuple(

@@ -88,10 +88,10 @@ def rates(
 def balance(solutions: Mapping[str, Fields], moment: int) -> Finding:
     """Add up the friction force along the bar, which a load of zero must find balanced."""
     totals = {
-        label: float(fields.friction_force[1:, moment].sum()) for label, fields in solutions.items()
+        label: float(fields.contact_force[1:, moment].sum()) for label, fields in solutions.items()
     }
     exact = totals["reference"]
-    size = float(np.abs(solutions["reference"].friction_force[1:, moment]).sum())
+    size = float(np.abs(solutions["reference"].contact_force[1:, moment]).sum())
     words = ", ".join(f"{round(total, 1) + 0.0:.1f} N {label}" for label, total in totals.items())
     return Finding(
         f"Friction force added up along the bar at t = 0.5 s: {words}; its size adds up to "

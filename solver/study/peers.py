@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.discrete.problem import Array, Problem, space_time
-from solver.reference.incremental import assembled_stiffness, external_force
+from solver.reference.assembly import assembled_stiffness, external_force
 
 Solve = Callable[[Array, Array], Array]
 """From the bounds of K w, each of shape (n,), to w, shape (n,)."""
@@ -76,12 +76,12 @@ class PeerFields:
     ----------
     displacement
         Shape (n_dofs, n_instants), m.
-    friction_force
+    contact_force
         Nodal friction force on the body, shape (n_points, n_instants), N.
     """
 
     displacement: Array
-    friction_force: Array
+    contact_force: Array
 
 
 def solve_by_peer(problem: Problem, peer: Peer, tolerance: float) -> PeerFields:

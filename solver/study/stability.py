@@ -18,8 +18,9 @@ from solver.discrete import discretise
 from solver.discrete.problem import Array, Problem
 from solver.latin import Ending, Solution, iterations, solve
 from solver.latin.direction import search_direction
+from solver.reference.assembly import assembled_stiffness
 from solver.reference.distance import distance_to
-from solver.reference.incremental import assembled_stiffness, incremental
+from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings
 from solver.study.stability_cases import PRECISE, RIGHT, Case
 

@@ -1,0 +1,194 @@
+"""A structure seen from its contacts: stiffness and load between the jumps of all pairs.
+
+With J the jumps of the displacement (above minus below), the structure answers to contact forces
+f by K u = F + J' f. A body that only contact holds makes K singular, so springs rho join the
+pairs first and the laws take them out again: with K_r = K + J' rho J and C = J K_r^-1 J',
+
+    S jump = f + q,    S = C^-1 - rho,    q = C^-1 J K_r^-1 F,
+
+which holds for every rho > 0 and needs no more than that the structure, glued at its contacts,
+is held. Jumps and forces are stacked as `Problem.sum_of_contact` says.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from scipy import linalg, sparse
+from scipy.sparse.linalg import splu
+
+from solver.discrete.problem import Array, Indices, Problem, components
+from solver.laws import Contact, Friction
+from solver.reference.assembly import assembled_stiffness, external_force
+
+LOOSE = 1e-14
+"""Pivot, as a share of its diagonal entry, below which a structure counts as not held."""
+
+
+class NotHeldError(ValueError):
+    """The structure can move even where all its contacts are closed and stick."""
+
+
+class Condensation:
+    """The structure between its contacts.
+
+    Jumps that follow from prescribed displacements alone are no unknowns: the forces there go
+    into the supports.
+
+    Attributes
+    ----------
+    moving
+        Which jumps are unknown, shape (n_moving,), places in the stack.
+    stiffness
+        S of them, shape (n_moving, n_moving), symmetric, scaled.
+    load
+        q of them, shape (n_moving, n_instants), scaled.
+    given
+        Jumps that prescribed displacements make, shape (n_forces, n_instants); final where a jump
+        is not unknown.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        fixed, prescribed = problem.prescribed
+        free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
+        self._whole = assembled_stiffness(problem)
+        self._force = external_force(problem)
+        self._jumps = jumps(problem)
+        self._fixed, self._prescribed, self._free = fixed, prescribed, free
+        self.given: Array = self._jumps[:, fixed] @ prescribed
+        own = self._jumps[:, free]
+        self.moving: Indices = np.flatnonzero(np.diff(own.indptr))
+        self._condense(own[self.moving])
+
+    def _condense(self, own: sparse.csr_array) -> None:
+        """Factor once, and solve for the jumps and all instants together."""
+        free = self._free
+        stiffness = self._whole[free]
+        load = self._force[free] - stiffness[:, self._fixed] @ self._prescribed
+        stiffness = stiffness[:, free]
+        diagonal = stiffness.diagonal()
+        self._springs = 1.0 / (abs(own) @ (1.0 / diagonal))
+        held = stiffness + own.T @ sparse.diags_array(self._springs) @ own
+        n_own = len(self.moving)
+        patterns, course = _separated(load)
+        sides = np.empty((len(free), n_own + patterns.shape[1]), order="F")
+        sides[:, :n_own], sides[:, n_own:] = own.T.toarray(order="F"), patterns
+        solved = _solve(sparse.csc_array(held), sides)
+        self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
+        compliance = own @ self._answers
+        inverse = _inverse(0.5 * (compliance + compliance.T))
+        self.stiffness: Array = inverse - np.diag(self._springs)
+        given = self.given[self.moving]
+        self.load: Array = inverse @ (own @ self._alone) + self.stiffness @ given
+
+    def displacement(self, jump: Array, force: Array) -> Array:
+        """Give all displacements from those of the contacts, shape (n_dofs, n_instants), scaled.
+
+        Parameters
+        ----------
+        jump, force
+            Of the unknown jumps, shape (n_moving, n_instants), scaled.
+        """
+        found = np.empty_like(self._force)
+        found[self._fixed] = self._prescribed
+        springs = self._springs[:, None] * (jump - self.given[self.moving])
+        found[self._free] = self._alone + self._answers @ (force + springs)
+        return found
+
+    def jump(self, displacement: Array) -> Array:
+        """Give the jumps of a displacement, shape (n_forces, n_instants)."""
+        return np.asarray(self._jumps @ displacement)
+
+    def unbalanced(self, displacement: Array, force: Array) -> Array:
+        """Give the forces out of balance where nothing is prescribed, (n_free, n_instants).
+
+        Parameters
+        ----------
+        displacement
+            Shape (n_dofs, n_instants), scaled.
+        force
+            Of all contacts, shape (n_forces, n_instants), scaled.
+        """
+        outer = self._force + self._jumps.T @ force
+        return np.asarray((self._whole @ displacement - outer)[self._free])
+
+    @cached_property
+    def largest_force(self) -> float:
+        """Largest force on any degree of freedom, of loads and of prescribed displacements."""
+        pushed = self._whole[:, self._fixed] @ self._prescribed
+        return float(max(np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0)))
+
+
+def jumps(problem: Problem) -> sparse.csr_array:
+    """Give J, the jumps of all pairs, shape (n_forces, n_dofs)."""
+    rows, columns, values, first = [], [], [], 0
+    for law in problem.rubbing.values():
+        points, pairs = np.unique(law.points, return_index=True)
+        for above, below in zip(components(law), _below(law), strict=True):
+            for side, value in ((above, 1.0), (below, -1.0)):
+                if side is not None:
+                    rows.append(first + points)
+                    columns.append(problem.row_dofs[side[pairs]])
+                    values.append(np.full(len(points), value))
+            first += len(law.positions)
+    entries = np.concatenate(rows), np.concatenate(columns)
+    return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))
+
+
+def _below(law: Friction | Contact) -> tuple[Indices | None, ...]:
+    if isinstance(law, Friction):
+        return (law.below,)
+    return law.below or (None, None)
+
+
+def _separated(load: Array) -> tuple[Array, Array]:
+    """Write loads, (n, n_instants), as patterns (n, rank) times courses, exact up to rounding.
+
+    A structure has few patterns of load, and instants many: so there is less to solve for. Where
+    it has many patterns, every instant counts as one.
+    """
+    patterns, rest = np.zeros((0, len(load))), load.copy()
+    smallest = float(np.finfo(float).eps * np.abs(load).max(initial=0.0))
+    while len(patterns) < load.shape[1] // 2:
+        largest = int(np.abs(rest).max(axis=0, initial=0.0).argmax())
+        pattern = rest[:, largest] - patterns.T @ (patterns @ rest[:, largest])
+        if np.abs(pattern).max(initial=0.0) <= smallest:
+            return patterns.T, patterns @ load
+        pattern /= np.linalg.norm(pattern)
+        patterns = np.vstack([patterns, pattern])
+        rest -= pattern[:, None] * (pattern @ rest)
+    return load, np.eye(load.shape[1])
+
+
+def _solve(matrix: sparse.csc_array, sides: Array) -> Array:
+    try:
+        factor = splu(
+            matrix,
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except RuntimeError as trouble:
+        raise NotHeldError(_NOT_HELD) from trouble
+    pivots = factor.U.diagonal()
+    if np.any(pivots <= LOOSE * matrix.diagonal()[np.argsort(factor.perm_c)]):
+        raise NotHeldError(_NOT_HELD)
+    return np.asarray(factor.solve(sides))
+
+
+_NOT_HELD = (
+    "The structure can move as a whole even where all its contacts are closed and stick: "
+    "prescribe displacements on a side, or add a support."
+)
+
+
+def _inverse(compliance: Array) -> Array:
+    try:
+        factor = linalg.cho_factor(compliance, check_finite=False)
+    except linalg.LinAlgError as trouble:
+        raise NotHeldError(
+            "Contacts close a ring of bodies, so that their forces are not determinate."
+        ) from trouble
+    found = linalg.cho_solve(factor, np.eye(len(compliance)), check_finite=False)
+    return np.asarray(0.5 * (found + found.T))

@@ -1,0 +1,190 @@
+"""The incremental reference where contacts open or two sides rub: instant by instant, exact.
+
+The structure is condensed onto the jumps of its contacts once, for all instants together. Then
+every instant seeks the states of the jumps by a semismooth Newton method: solve the linear system
+of the states (`solver.reference.states`, the bound of friction coupled to the normal force), and
+correct the states by what it shows (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991),
+from the states of the instant before. Exact once they repeat. Where they cycle, following the
+solution down from large pressure finds them for sure (`solver.reference.unloading`).
+
+In time it is backward Euler on the jumps (Jean and Moreau), from rest at zero, as the laws of
+LATIN: friction opposes the increment of the tangential jump.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.discrete.contact_fields import OPEN
+from solver.discrete.problem import Array, Problem
+from solver.reference.condensation import Condensation
+from solver.reference.incremental import Interrupted, Reference
+from solver.reference.states import HELD, Response, Rules, Sides, States, rules_of
+from solver.reference.unloading import unload
+
+NEWTON_LIMIT = 30
+"""Newton steps from one guess of the states; more than a dozen means that they cycle."""
+CONVERGED = 1e-9
+"""Relative KKT residual up to which an instant counts as solved."""
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+
+
+def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
+    """Solve instant by instant.
+
+    Friction may have several solutions for a large mu, or none where contact alone holds a body.
+    Where several exist this is one of them; where none is found, `converged` is False, and the
+    contacts stay where they were, by forces that break the laws.
+
+    Where the normal jump is prescribed, contact shares its force with the support in any way: it
+    is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
+    its motion; at rest it is taken as zero.
+
+    Parameters
+    ----------
+    problem
+        A structure with any number of interfaces with friction.
+    stop
+        Called once per instant.
+
+    Raises
+    ------
+    Interrupted
+        As soon as `stop` gives True.
+    NotHeldError
+        If the structure can move with all contacts closed and stuck.
+    """
+    start = time.perf_counter()
+    condensed, rules = Condensation(problem), rules_of(problem)
+    newton = _Newton(condensed.stiffness, rules.kept(condensed.moving), condensed.load)
+    jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))
+    for instant, load in enumerate(condensed.load.T):
+        if stop is not None and stop():
+            raise Interrupted
+        jump[:, instant], force[:, instant] = newton(load)
+    displacement = condensed.displacement(jump, force)
+    jumps = condensed.jump(displacement)
+    jumps[condensed.moving] = jump
+    forces = _all_forces(condensed, rules, jumps, force)
+    residual = _residual(condensed, rules, displacement, forces)
+    return Reference(
+        problem=problem,
+        displacement=displacement * problem.scales.displacement,
+        contact_force=forces * problem.scales.force,
+        status=_status(rules, jumps, forces),
+        residual=float(residual.max(initial=0.0)),
+        converged=residual <= CONVERGED,
+        steps=newton.response.solutions,
+        seconds=time.perf_counter() - start,
+    )
+
+
+class _Newton:
+    """Finds jumps and forces of one instant after the other."""
+
+    def __init__(self, stiffness: Array, rules: Rules, load: Array) -> None:
+        self.response = Response(stiffness, rules)
+        self._stiffness, self._rules = stiffness, rules
+        self._position = np.zeros(len(rules.gap))
+        self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self._largest = float(np.abs(load).max(initial=0.0))
+
+    def __call__(self, load: Array) -> tuple[Array, Array]:
+        rules = self._rules
+        held = np.where(rules.normal, -rules.gap, self._position)
+        sides = Sides(load, rules.bound, held)
+        states, done = self._iterate(self._states, sides)
+        if not done:
+            found = unload(self.response, rules, sides, self._position)
+            if found is not None:
+                states, done = self._iterate(found, sides)
+        if not done:
+            return self._position, self._stiffness @ self._position - load
+        self._states = states
+        self._position, force = self.response(states, sides)
+        return self._position, force
+
+    def _iterate(self, states: States, sides: Sides) -> tuple[States, bool]:
+        """Seek the states, and tell whether they are right."""
+        seen = set()
+        for _ in range(NEWTON_LIMIT):
+            jump, force = self.response(states, sides)
+            corrected = self._corrected(states, jump, force)
+            if np.array_equal(corrected, states):
+                return states, self.response.unbalanced <= CONVERGED * self._largest
+            seen.add(states.tobytes())
+            states = corrected
+            if states.tobytes() in seen:
+                break
+        return states, False
+
+    def _corrected(self, states: States, jump: Array, force: Array) -> States:
+        """Give the states that jump and force call for; what is up to rounding calls for none."""
+        rules, unit = self._rules, self.response.unit
+        slack = ROUNDING * float((unit * np.abs(jump)).max() + self._largest)
+        moved = unit * (jump - np.where(rules.normal, -rules.gap, self._position))
+        bound = rules.bounds(force)
+        found = np.where(states == HELD, -np.sign(force) * (np.abs(force) > bound + slack), states)
+        slips = np.abs(states) == 1
+        found = np.where(slips, states * (states * moved >= -slack), found)
+        # A contact that closes rubs as its overlap and its slip would have it.
+        carried = rules.bound - rules.friction * np.minimum(moved[rules.partner], 0.0)
+        found = np.where(states == OPEN, np.sign(moved) * (np.abs(moved) > carried), found)
+        found[rules.smooth] = OPEN
+        closed = np.where(states == HELD, force >= -slack, moved < -slack)
+        found = np.where(rules.normal, np.where(closed, HELD, OPEN), found)
+        found[(rules.friction > 0.0) & (found[rules.partner] == OPEN)] = OPEN
+        return found.astype(np.int8)
+
+
+def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:
+    """Add the friction at jumps that follow from prescribed displacements, all instants."""
+    found = np.zeros_like(jumps)
+    found[condensed.moving] = force
+    given = ~rules.normal
+    given[condensed.moving] = False
+    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
+    found[given] = (-rules.bounds(found) * slip)[given]
+    return found
+
+
+def _residual(
+    condensed: Condensation, rules: Rules, displacement: Array, forces: Array
+) -> NDArray[np.float64]:
+    """Give the KKT residual of every instant, relative to the largest force of all.
+
+    The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
+    opening g, and of the friction force from f - r v cut to its bound, with the slip v. The
+    stiffness r of the jump alone makes a force of a length; the conditions hold if and only if
+    both distances vanish.
+    """
+    jumps = condensed.jump(displacement)
+    unit = np.zeros((len(jumps), 1))
+    unit[condensed.moving, 0] = np.diagonal(condensed.stiffness)
+    unit[unit == 0.0] = 1.0
+    opening = jumps + rules.gap[:, None]
+    slip = np.diff(jumps, axis=1, prepend=0.0)
+    bound = rules.bounds(forces)
+    pressed = np.maximum(forces - unit * opening, 0.0)
+    rubbed = np.clip(forces - unit * slip, -bound, bound)
+    wrong = np.abs(forces - np.where(rules.normal[:, None], pressed, rubbed))
+    # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
+    wrong[rules.normal & (np.isin(np.arange(len(jumps)), condensed.moving, invert=True))] = 0.0
+    unbalanced = np.abs(condensed.unbalanced(displacement, forces)).max(axis=0, initial=0.0)
+    largest = np.maximum(unbalanced, wrong.max(axis=0, initial=0.0))
+    size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
+    return np.asarray(largest / size if size > 0.0 else largest)
+
+
+def _status(rules: Rules, jumps: Array, forces: Array) -> NDArray[np.int8]:
+    """Give the status of every point, stacked interface by interface, (n_points, n_instants)."""
+    tangential = ~rules.normal
+    slip = np.diff(jumps, axis=1, prepend=0.0)
+    status = np.sign(slip).astype(np.int8)
+    with_normal = rules.normal[rules.partner][:, None]
+    status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN
+    return np.asarray(status[tangential])

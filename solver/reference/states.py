@@ -1,0 +1,176 @@
+"""One instant of frictional contact, its states known: a linear system.
+
+Every jump has a state. A normal one is HELD at the gap, or OPEN without force. A tangential one is
+HELD where it was, slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN:
+without force, as where the contact is open or there is no friction. With S jump = f + q
+(`solver.reference.condensation`), the jumps that are not held are the unknowns.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import lapack
+
+from solver.discrete.contact_fields import mean_by_point
+from solver.discrete.problem import Array, Indices, Problem
+from solver.laws import Friction
+
+States = NDArray[np.int8]
+HELD = 0
+SINGULAR = 1e-12
+"""Pivot, as a share of the largest, below which a system of free jumps is singular."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rules:
+    """What the jumps obey, stacked; shape (n,) each.
+
+    Attributes
+    ----------
+    normal
+        Whether the jump is a normal one.
+    gap
+        Opening where it vanishes, scaled; 0 of tangential ones.
+    partner
+        Place of the normal jump whose force carries the friction; the own place without one.
+    friction
+        Coefficient mu, 0 of normal jumps.
+    bound
+        Friction force r that needs no normal force, scaled; 0 of normal jumps.
+    """
+
+    normal: NDArray[np.bool_]
+    gap: Array
+    partner: Indices
+    friction: Array
+    bound: Array
+
+    @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Tangential jumps without friction."""
+        return np.asarray(~self.normal & (self.friction == 0.0) & (self.bound == 0.0))
+
+    def kept(self, moving: Indices) -> Rules:
+        """Keep the unknown jumps; friction needs its normal force among them."""
+        place = np.full(len(self.gap), -1)
+        place[moving] = np.arange(len(moving))
+        partner = place[self.partner[moving]]
+        alone = partner < 0
+        partner[alone] = np.flatnonzero(alone)
+        friction = self.friction[moving] * ~alone
+        return Rules(self.normal[moving], self.gap[moving], partner, friction, self.bound[moving])
+
+    def bounds(self, force: Array) -> Array:
+        """Give the largest friction force, r + mu f_n, of the same shape as the forces."""
+        shape = -1, *[1] * (force.ndim - 1)
+        carried = self.friction.reshape(shape) * force[self.partner]
+        return np.asarray(self.bound.reshape(shape) + np.maximum(carried, 0.0))
+
+
+def rules_of(problem: Problem) -> Rules:
+    """Stack the laws of all interfaces with friction, point by point."""
+    parts, first = [], 0
+    for law in problem.rubbing.values():
+        size = len(law.positions)
+        none, own = np.zeros(size), first + np.arange(size)
+        if isinstance(law, Friction):
+            parts.append((none, none, own, none, law.by_point(law.bound)))
+        else:
+            parts.append((none + 1.0, mean_by_point(law, law.gap), own, none, none))
+            parts.append((none, none, own, mean_by_point(law, law.friction), none))
+        first += size * (1 if isinstance(law, Friction) else 2)
+    normal, gap, partner, friction, bound = map(np.concatenate, zip(*parts, strict=True))
+    return Rules(normal > 0.0, gap, partner.astype(np.intp), friction, bound)
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """Right sides of one instant; columns, where there are several, are solved together.
+
+    Attributes
+    ----------
+    load
+        q, shape (n, ...).
+    bound
+        Friction force r that needs no normal force, shape (n, ...).
+    held
+        Where held jumps stand, shape (n, ...): minus the gap, or the position before.
+    """
+
+    load: Array
+    bound: Array
+    held: Array
+
+
+class Response:
+    """The linear system of given states; the last factorisation is kept.
+
+    Attributes
+    ----------
+    unit
+        Stiffness of every jump alone, shape (n,), scaled.
+    solutions
+        Systems solved.
+    unbalanced
+        Largest force out of balance in the last one; more than rounding, where a motion is free.
+    singular
+        Whether the last one left a motion free; then its smallest solution is given.
+    """
+
+    def __init__(self, stiffness: Array, rules: Rules) -> None:
+        self._stiffness = stiffness
+        self.unit: Array = np.diagonal(stiffness).copy()
+        self._partner, self._friction = rules.partner, rules.friction
+        self._states: States | None = None
+        self._factors: Array
+        self._pivots: Indices
+        self.solutions = 0
+        self.unbalanced = 0.0
+
+    def __call__(self, states: States, sides: Sides) -> tuple[Array, Array]:
+        """Give jump and force, shape (n, ...) each."""
+        if self._states is None or not np.array_equal(states, self._states):
+            self._factor(states)
+        self.solutions += 1
+        free, slope = self._free, self._slope
+        wide = sides.load.ndim > 1
+        jump = sides.held.copy()
+        jump[free] = 0.0
+        missing = sides.load - self._stiffness @ jump
+        way, slope = (self._way[:, None], slope[:, None]) if wide else (self._way, slope)
+        right = missing[free] - way * sides.bound[free] + slope * missing[self._under]
+        jump[free] = self._solve(right)
+        force = self._stiffness @ jump - sides.load
+        allowed = -way * sides.bound[free] - slope * force[self._under]
+        self.unbalanced = float(np.abs(force[free] - allowed).max(initial=0.0))
+        force[free] = allowed
+        return jump, force
+
+    def _factor(self, states: States) -> None:
+        self._states = states.copy()
+        self._free = free = np.flatnonzero(states)
+        self._way = np.where(np.abs(states[free]) == 1, states[free], 0).astype(float)
+        self._slope = self._way * self._friction[free]
+        self._under = self._partner[free]
+        matrix = self._stiffness[np.ix_(free, free)]
+        tied = np.flatnonzero(self._slope)
+        if len(tied):
+            under = self._stiffness[np.ix_(self._under[tied], free)]
+            matrix[tied] += self._slope[tied, None] * under
+        self._matrix = matrix
+        if len(free):
+            self._factors, self._pivots, _ = lapack.dgetrf(matrix)
+        else:
+            self._factors, self._pivots = matrix, free
+        sizes = np.abs(np.diagonal(self._factors))
+        self.singular = bool(sizes.min(initial=np.inf) <= SINGULAR * sizes.max(initial=0.0))
+
+    def _solve(self, right: Array) -> Array:
+        if not len(right):
+            return right
+        if self.singular:
+            return np.asarray(np.linalg.lstsq(self._matrix, right, rcond=SINGULAR)[0])
+        return np.asarray(lapack.dgetrs(self._factors, self._pivots, right)[0]).reshape(right.shape)

@@ -1,0 +1,127 @@
+"""The sure way to the states of one instant: follow the solution from large pressure downwards.
+
+Press all contacts together with lambda d and raise all known friction bounds by lambda d, with
+some d > 0. For large lambda everything is held. Between two changes of state jump and force are
+linear in lambda, and at a change one contact takes up its next state and lambda goes on, up or
+down. No state is met twice, so the walk ends, and where S is positive definite it can only end at
+lambda = 0: with no load but d the only solution is that nothing moves, whatever the friction, so
+the walk cannot come back from where it started. (This is Lemke's method, for the complementarity
+problem of plane friction: Klarbring, Ingenieur-Archiv 56, 1986; Cottle, Pang and Stone, The Linear
+Complementarity Problem, 1992, ch. 4.) If S is only semi-definite, lambda may grow for ever: then
+there is no solution within reach.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.discrete.contact_fields import OPEN
+from solver.discrete.problem import Array
+from solver.reference.states import HELD, Response, Rules, Sides, States
+
+CHANGES = 5
+"""Changes of state for each jump, at most."""
+FLAT = 1e-12
+"""Slope, as a share of the largest, that is none."""
+
+
+def unload(response: Response, rules: Rules, sides: Sides, before: Array) -> States | None:
+    """Find states that solve an instant, or None where the walk goes off to infinity.
+
+    Parameters
+    ----------
+    response, rules, sides
+        The instant, one column.
+    before
+        Position of the jumps one instant before, shape (n,), scaled.
+    """
+    walk = _Walk(response, rules, sides, before)
+    for _ in range(CHANGES * len(before)):
+        if walk.step():
+            return walk.states
+        if walk.lost:
+            return None
+    return None
+
+
+class _Walk:
+    """Where the walk is: states, lambda (`_level`), and whether it goes up or down."""
+
+    def __init__(self, response: Response, rules: Rules, sides: Sides, before: Array) -> None:
+        self._response, self._rules, self._before = response, rules, before
+        # An even d would let contacts of a symmetric structure change together, and the walk lose
+        # its way; multiples of the golden ratio spread it, alike in every run.
+        spread = 1.0 + np.arange(1, len(before) + 1) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
+        raised = ~rules.normal & (rules.bound > 0.0)
+        self._sides = Sides(
+            np.stack([sides.load, np.where(rules.normal, -spread, 0.0)], axis=1),
+            np.stack([sides.bound, np.where(raised, spread, 0.0)], axis=1),
+            np.stack([sides.held, np.zeros(len(before))], axis=1),
+        )
+        self.states = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self.lost = False
+        self._level, self._way = np.inf, -1.0
+        self._changed: tuple[int, int] | None = None
+
+    def step(self) -> bool:
+        """Go on to the next change of state; tell whether lambda = 0 comes before it."""
+        jump, force = self._response(self.states, self._sides)
+        room, slope = self._room(jump, force)
+        slope[np.abs(slope) <= FLAT * np.abs(slope).max(initial=0.0)] = 0.0
+        if self._changed is not None:
+            self._way = float(np.sign(slope[self._changed]))
+        self.lost = self._response.singular or self._way == 0.0
+        if self.lost:
+            return False
+        ending = slope * self._way < 0.0
+        levels = np.full(room.shape, self._way * np.inf)
+        levels[ending] = -room[ending] / slope[ending]
+        levels *= self._way
+        place, side = (int(one) for one in np.unravel_index(levels.argmin(), levels.shape))
+        level = self._way * max(float(levels[place, side]), self._way * self._level)
+        if self._way < 0.0 and level <= 0.0:
+            return True
+        self.lost = not np.isfinite(level)
+        if not self.lost:
+            self._level = level
+            self._change(place, side, jump[:, 0] + level * jump[:, 1])
+        return False
+
+    def _room(self, jump: Array, force: Array) -> tuple[Array, Array]:
+        """Give what has to stay positive at lambda = 0, and its slope; shape (n, 2), forces.
+
+        A held tangential jump has two bounds; all others have their first column alone.
+        """
+        rules, states = self._rules, self.states
+        room = np.full((2, len(states), 2), np.inf)
+        room[1] = 0.0
+        unit = self._response.unit[:, None]
+        offset = np.stack([np.where(rules.normal, rules.gap, -self._before), 0.0 * self._before])
+        moved = (unit * (jump + offset.T)).T
+        bound = self._sides.bound.T + rules.friction * force[rules.partner].T
+        held, opened = rules.normal & (states == HELD), rules.normal & (states == OPEN)
+        stuck, slips = ~rules.normal & (states == HELD), np.abs(states) == 1
+        force = force.T
+        room[:, held, 0] = force[:, held]
+        room[:, opened, 0] = moved[:, opened]
+        room[:, stuck, 0] = (bound - force)[:, stuck]
+        room[:, stuck, 1] = (bound + force)[:, stuck]
+        room[:, slips, 0] = (states * moved)[:, slips]
+        return room[0], room[1]
+
+    def _change(self, place: int, side: int, jump: Array) -> None:
+        """Give a jump its next state, and remember what has to grow from zero now."""
+        rules, states = self._rules, self.states
+        self._changed = place, 0
+        if not rules.normal[place]:
+            if states[place] == HELD:
+                states[place] = -1 if side == 0 else 1
+            else:
+                self._changed = place, int(states[place] == 1)
+                states[place] = HELD
+            return
+        opens = states[place] == HELD
+        states[place] = OPEN if opens else HELD
+        for rubbing in np.flatnonzero((rules.partner == place) & (rules.friction > 0.0)):
+            way = 1 if jump[rubbing] >= self._before[rubbing] else -1
+            states[rubbing] = OPEN if opens else way

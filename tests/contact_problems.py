@@ -1,0 +1,134 @@
+"""Small contact problems made by hand, shared by tests."""
+
+import numpy as np
+
+from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
+from solver.laws import Contact, Dirichlet, Friction
+from solver.scenes.stack import Given, Side, Stack, Support
+
+COURSES = ("random", "reversal", "open and close", "wander")
+
+
+def stiffness(rng, size, softest=1e-2):
+    """Give a random symmetric positive definite matrix whose parts are strongly coupled."""
+    factor = rng.normal(size=(size, size))
+    return factor @ factor.T / size + softest * np.eye(size)
+
+
+def course(rng, name, size, instants):
+    """Give loads, shape (size, instants), that make the contacts change their states."""
+    steps = rng.normal(size=(size, instants))
+    if name == "reversal":
+        return np.outer(rng.normal(size=size), np.where(np.arange(instants) % 2, 1.0, -1.0))
+    if name == "open and close":
+        normal = np.arange(size) % 2 == 1
+        steps[normal] += np.where(np.arange(instants) % 2, 2.0, -2.0)
+    if name == "wander":
+        return np.cumsum(steps, axis=1) * 0.3
+    return steps
+
+
+def substructure(matrix, first, force, extra_rows=0):
+    """Give a body whose every degree of freedom has a row, and the first ones a second."""
+    size = len(matrix)
+    trace = np.concatenate([np.arange(size), np.arange(extra_rows)])
+    dofs, rows = first[0] + np.arange(size), first[1] + np.arange(size + extra_rows)
+    return Substructure(Elasticity(matrix, trace, np.ones(len(trace))), dofs, rows, force)
+
+
+def problem(parts, interfaces, instants):
+    """Give a problem in which every scaled unit is one."""
+    size = sum(len(part.dofs) for part in parts)
+    return Problem(
+        tuple(parts),
+        interfaces,
+        np.zeros((size, 2)),
+        np.arange(instants, dtype=float),
+        Scales(1.0, 1.0, 1.0),
+    )
+
+
+def contact(normal, tangent, below, gap, friction):
+    """Give a contact of as many points as there are normal rows."""
+    count = len(normal)
+    points, ones = np.arange(count), np.ones(count)
+    return Contact(normal, tangent, below, points, 1.0 * points, ones, gap, friction * ones)
+
+
+def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
+    """Give one body, tangential and normal displacement of each point in turn, on a support."""
+    size = 2 * points
+    part = substructure(stiffness(rng, size), (0, 0), course(rng, load, size, instants))
+    gap = rng.choice([0.0, 0.1], size=points) if gap is None else np.full(points, gap)
+    law = contact(np.arange(1, size, 2), np.arange(0, size, 2), None, gap, friction)
+    return problem([part], {"support": law}, instants)
+
+
+def two_bodies(rng, points, friction, *, load="random", instants=6):
+    """Give a body on another that is clamped at its first two degrees of freedom."""
+    size = 2 * points
+    below = substructure(stiffness(rng, size + 2), (0, 0), None, extra_rows=2)
+    force = course(rng, load, size, instants)
+    above = substructure(stiffness(rng, size), (size + 2, size + 4), force)
+    normal, tangent = np.arange(1, size, 2), np.arange(0, size, 2)
+    law = contact(
+        normal + size + 4, tangent + size + 4, (normal + 2, tangent + 2), np.zeros(points), friction
+    )
+    clamp = Dirichlet(size + 2 + np.arange(2), np.zeros((2, instants)))
+    return problem([below, above], {"contact 1-2": law, "clamp": clamp}, instants)
+
+
+def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
+    """Give bodies that rub on their neighbours with a known bound; the ring closes it."""
+    parts = [
+        substructure(
+            stiffness(rng, points),
+            (points * one, points * one),
+            rng.normal(size=(points, instants)),
+        )
+        for one in range(strands)
+    ]
+    pairs = [(one + 1, one) for one in range(strands - 1)] + [(0, strands - 1)] * ring
+    along = np.arange(points)
+    laws = {
+        f"strand {above}-{below}": Friction(
+            points * above + along,
+            along,
+            1.0 * along,
+            np.ones(points),
+            rng.uniform(0.0, 0.5, size=points),
+            points * below + along,
+        )
+        for above, below in pairs
+    }
+    return problem(parts, laws, instants)
+
+
+def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, slope=0.0, **given):
+    """Give a block that is pressed on a rough support, then sheared back and forth on its top.
+
+    Shear and its change along the top are shares of the pressure, 1e-3 E.
+    """
+    instants = given.pop("instants", 17)
+    time, none = np.linspace(0.0, 1.0, instants), np.zeros(instants)
+    pressure = -1e6 * np.minimum(4.0 * time, 1.0)
+    swing = 1e6 * shear * np.where(time > 0.25, np.sin(2.0 * np.pi * (time - 0.25) / 0.75), 0.0)
+    tilt = slope * pressure * np.where(time > 0.25, np.sin(np.pi * (time - 0.25) / 0.75), 0.0)
+    free = Side(Given(False, none, none), Given(False, none, none))
+    top = Side(Given(False, swing, none), Given(False, pressure, tilt))
+    return Stack(
+        length=1.0,
+        height=given.pop("height", 0.6),
+        bodies=bodies,
+        elements=elements,
+        substructures=cuts,
+        young=1e9,
+        poisson=0.3,
+        state="strain",
+        friction=friction,
+        support=Support(np.zeros(elements[0] + 1), friction),
+        sides={"left": free, "right": free, "top": top, **given},
+        body_force=None,
+        instants=time,
+        duration=1.0,
+    )

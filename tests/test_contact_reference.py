@@ -1,0 +1,266 @@
+"""The incremental reference obeys the laws of contact exactly, or says where it does not."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from contact_problems import (
+    COURSES,
+    block,
+    on_a_support,
+    problem,
+    rubbing_strands,
+    stiffness,
+    substructure,
+    two_bodies,
+)
+
+from solver.discrete.bar import discretise_bar
+from solver.discrete.stack import discretise_stack
+from solver.laws import Contact, Dirichlet, Friction
+from solver.reference import contact as module
+from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NotHeldError
+from solver.reference.incremental import Interrupted, incremental
+from solver.scenes.bar import BarSettings, bar
+
+SMALL = 1e-10
+
+
+def components(of, found):
+    """Give opening or None, slip, normal force or bound, friction force of every interface."""
+    displacement = found.displacement
+    for name, law in of.rubbing.items():
+        fields = found.contact(name)
+        slip = np.diff(fields.slip, axis=1, prepend=0.0)
+        if isinstance(law, Contact):
+            bound = law.friction[:, None] * fields.normal_force
+            yield fields.opening, slip, fields.normal_force, bound, fields.tangential_force
+        else:
+            bound = np.broadcast_to(law.bound[:, None], slip.shape)
+            yield None, slip, None, bound, fields.tangential_force
+    assert np.isfinite(displacement).all()
+
+
+def assert_laws(of, found, slack=SMALL):
+    """Check Signorini and Coulomb on the fields, and equilibrium on the assembled structure."""
+    for opening, slip, normal, bound, friction in components(of, found):
+        if opening is not None:
+            assert opening.min() >= -slack
+            assert normal.min() >= -slack
+            np.testing.assert_allclose(opening * normal, 0.0, atol=slack)
+        assert np.all(np.abs(friction) <= bound + slack)
+        np.testing.assert_allclose(friction * slip, -bound * np.abs(slip), atol=slack)
+    free = np.setdiff1d(np.arange(of.n_dofs), of.prescribed[0])
+    total = external_force(of) - assembled_stiffness(of) @ found.displacement
+    for name, law in of.rubbing.items():
+        fields = found.contact(name)
+        force = [fields.tangential_force]
+        if isinstance(law, Friction):
+            above, below = [law.rows], [law.below]
+        else:
+            force = [fields.normal_force, fields.tangential_force]
+            above, below = [law.normal, law.tangent], law.below or (None, None)
+        for one, up, down in zip(force, above, below, strict=True):
+            total[of.row_dofs[up]] += one
+            if down is not None:
+                total[of.row_dofs[down]] -= one
+    np.testing.assert_allclose(total[free], 0.0, atol=slack)
+
+
+def all_solutions(of, before, instant):
+    """Enumerate the states of a body on a support; give the displacements that obey every law."""
+    matrix, load = of.substructures[0].elasticity.stiffness, external_force(of)[:, instant]
+    law, size = of.rubbing["support"], of.n_dofs
+    found = []
+    for states in product(("open", "stick", 1.0, -1.0), repeat=size // 2):
+        system, right = np.zeros((2 * size, 2 * size)), np.concatenate([load, np.zeros(size)])
+        system[:size, :size], system[:size, size:] = matrix, -np.eye(size)
+        for point, state in enumerate(states):
+            tangent, normal = 2 * point, 2 * point + 1
+            if state == "open":
+                system[[size + tangent, size + normal], [size + tangent, size + normal]] = 1.0
+                continue
+            system[size + normal, normal], right[size + normal] = 1.0, -law.gap[point]
+            if state == "stick":
+                system[size + tangent, tangent], right[size + tangent] = 1.0, before[tangent]
+            else:
+                system[size + tangent, size + tangent] = 1.0
+                system[size + tangent, size + normal] = state * law.friction[point]
+        displacement, force = np.linalg.solve(system, right).reshape(2, size)
+        slip, normal = (displacement - before)[::2], force[1::2]
+        bound = law.friction * normal
+        good = normal.min() >= -1e-12 and (displacement[1::2] + law.gap).min() >= -1e-12
+        good &= np.all(np.abs(force[::2]) <= bound + 1e-12)
+        if good and np.all(np.abs(force[::2] * slip + bound * np.abs(slip)) <= 1e-12):
+            found.append(displacement)
+    return found
+
+
+@pytest.mark.parametrize("friction", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("points", [1, 2, 3])
+def test_the_solution_is_one_of_those_that_trying_all_states_finds(points, friction):
+    rng = np.random.default_rng(points)
+    alone = 0
+    for load in COURSES:
+        of = on_a_support(rng, points, friction, load=load)
+        found = reference_of(of).displacement
+        before = np.zeros(of.n_dofs)
+        for instant, displacement in enumerate(found.T):
+            ways = all_solutions(of, before, instant)
+            apart = [np.abs(displacement - one).max() for one in ways]
+            assert min(apart) < SMALL
+            alone += max(apart) < SMALL
+            before = displacement
+    assert alone > 12 or friction > 1.0
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 1.0, 10.0])
+@pytest.mark.parametrize("load", COURSES)
+@pytest.mark.parametrize("make", [on_a_support, two_bodies])
+def test_whatever_the_load_and_the_friction_held_bodies_obey_every_law(make, load, friction):
+    rng = np.random.default_rng(5)
+    for points in (1, 4, 15):
+        of = make(rng, points, friction, load=load, instants=8)
+        found = reference_of(of)
+        assert found.residual <= SMALL
+        assert found.converged.all()
+        assert_laws(of, found)
+
+
+@pytest.mark.parametrize("strands", [2, 4])
+def test_strands_that_rub_on_each_other_obey_every_law(strands):
+    of = rubbing_strands(np.random.default_rng(3), strands, 9)
+    found = reference_of(of)
+    assert found.residual <= SMALL
+    assert_laws(of, found)
+    assert {-1, 0, 1} == set(np.unique(found.status))
+
+
+@pytest.mark.parametrize("make", [on_a_support, two_bodies])
+def test_following_the_solution_from_large_pressure_finds_the_same(make, monkeypatch):
+    of = make(np.random.default_rng(7), 12, 0.3, load="wander")
+    fast = reference_of(of)
+    monkeypatch.setattr(module, "NEWTON_LIMIT", 1)  # enough to see that states are right
+    sure = reference_of(of)
+    assert sure.converged.all()
+    assert sure.steps > 2 * fast.steps
+    assert np.array_equal(sure.status, fast.status)
+    np.testing.assert_allclose(sure.displacement, fast.displacement, atol=1e-12)
+
+
+def test_following_the_solution_from_large_bounds_finds_the_same(monkeypatch):
+    of = rubbing_strands(np.random.default_rng(3), 3, 9)
+    fast = reference_of(of)
+    monkeypatch.setattr(module, "NEWTON_LIMIT", 1)
+    sure = reference_of(of)
+    assert np.array_equal(sure.status, fast.status)
+    np.testing.assert_allclose(sure.displacement, fast.displacement, atol=1e-12)
+
+
+def test_a_gap_that_never_closes_leaves_the_body_alone():
+    of = on_a_support(np.random.default_rng(2), 6, 0.5, gap=1e6)
+    found = reference_of(of)
+    assert not found.contact_force.any()
+    assert np.all(found.status == 2)
+    alone = np.linalg.solve(of.substructures[0].elasticity.stiffness, external_force(of))
+    np.testing.assert_allclose(found.displacement, alone, atol=1e-10)
+
+
+def test_a_stuck_point_does_not_move_and_a_slipping_one_says_where():
+    of = on_a_support(np.random.default_rng(4), 10, 0.4, load="wander", instants=20)
+    found = reference_of(of)
+    fields = found.contact("support")
+    slip = np.diff(fields.slip, axis=1, prepend=0.0)
+    assert np.abs(slip[fields.status == 0]).max() < 1e-13
+    for way in (-1, 1):
+        assert np.all(way * slip[fields.status == way] > 0.0)
+    assert np.all(fields.normal_force[fields.status == 2] == 0.0)
+
+
+def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_support():
+    of = discretise_bar(bar(BarSettings.checked({"instants": 41, "peak": 1200.0})))
+    law, size = of.friction, len(of.friction.rows)
+    below = substructure(np.eye(size), (of.n_dofs, of.n_rows), None, extra_rows=size)
+    interfaces = {
+        **of.interfaces,
+        "friction": Friction(
+            law.rows, law.points, law.positions, law.weights, law.bound, below.rows[:size]
+        ),
+        "held": Dirichlet(below.rows[size:], np.zeros((size, of.n_instants))),
+    }
+    positions = np.zeros(of.n_dofs + size)
+    both = replace(
+        of,
+        substructures=(*of.substructures, below),
+        interfaces=interfaces,
+        positions=positions,
+    )
+    found, plain = reference_of(both), incremental(of)
+    assert found.residual <= 1e-12
+    assert np.array_equal(found.status, plain.status)
+    upper = found.displacement[: of.n_dofs]
+    np.testing.assert_allclose(upper, plain.displacement, atol=1e-14)
+    np.testing.assert_allclose(found.contact_force, plain.contact_force, atol=1e-9)
+
+
+def test_the_bar_keeps_its_own_solver():
+    of = discretise_bar(bar(BarSettings.checked({"instants": 21})))
+    found, plain = reference_of(of), incremental(of)
+    assert found.steps == plain.steps
+    assert np.array_equal(found.displacement, plain.displacement)
+
+
+def test_decomposition_changes_nothing():
+    whole, parts = (
+        reference_of(discretise_stack(block(cuts=cuts))[0]) for cuts in ((1, 1), (3, 2))
+    )
+    assert np.array_equal(whole.status, parts.status)
+    np.testing.assert_allclose(whole.contact_force, parts.contact_force, atol=1e-6)
+
+
+def test_a_block_under_more_shear_than_friction_carries_is_said_to_be_lost():
+    of = discretise_stack(block(shear=0.5, height=0.2))[0]
+    found = reference_of(of)
+    shear = 0.5 * np.sin(2.0 * np.pi * np.maximum(of.instants - 0.25, 0.0) / 0.75)
+    carried = np.abs(shear) < 0.3
+    assert np.array_equal(found.converged, carried)
+    assert found.residual > 1e-3
+    assert np.abs(found.displacement).max() < 0.1
+
+
+def test_without_friction_a_block_can_be_pressed_but_not_pushed():
+    still, pushed = (
+        reference_of(discretise_stack(block(friction=0.0, shear=shear))[0]) for shear in (0.0, 0.1)
+    )
+    assert still.converged.all()
+    swing = np.sin(8.0 * np.pi * np.maximum(pushed.problem.instants - 0.25, 0.0) / 3.0)
+    assert np.array_equal(pushed.converged, np.abs(swing) < 1e-12)
+
+
+def test_a_body_that_nothing_holds_even_glued_is_refused():
+    rng = np.random.default_rng(0)
+    rigid = np.ones((1, 4))  # moves all points together, at no energy
+    keep = np.eye(4) - rigid.T @ rigid / 4.0
+    parts = [
+        substructure(keep @ stiffness(rng, 4) @ keep, (4 * one, 4 * one), np.ones((4, 2)))
+        for one in range(2)
+    ]
+    of = rubbing_strands(rng, 2, 4, instants=2)
+    with pytest.raises(NotHeldError, match="even where all its contacts are closed"):
+        reference_of(problem(parts, of.interfaces, 2))
+
+
+def test_a_ring_of_bodies_is_refused():
+    with pytest.raises(NotHeldError, match="ring"):
+        reference_of(rubbing_strands(np.random.default_rng(0), 3, 4, ring=True))
+
+
+def test_a_stop_interrupts_between_instants():
+    of = on_a_support(np.random.default_rng(0), 2, 0.3)
+    calls = iter([False, False, True])
+    with pytest.raises(Interrupted):
+        reference_of(of, stop=lambda: next(calls))
+    assert next(calls, None) is None
