@@ -60,7 +60,7 @@ class Contact:
     weights: Array
     gap: Array
     friction: Array
-    moduli: tuple[float, float]
+    moduli: tuple[float, float] = (1.0, float("inf"))
     macro: sparse.csr_array | None = None
 
     def by_point(self, values: Array) -> Array:
