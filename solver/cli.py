@@ -110,9 +110,12 @@ def _run(chosen: argparse.Namespace) -> int:
 
 def _distance(problem: Problem) -> Distance | None:
     """Give the distance to the reference, or None for what it does not solve."""
+    return distance_to(incremental(problem), problem) if _has_reference(problem) else None
+
+
+def _has_reference(problem: Problem) -> bool:
     laws = list(problem.rubbing.values())
-    one_bar = len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
-    return distance_to(incremental(problem), problem) if one_bar else None
+    return len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
 
 
 def _scenes(chosen: argparse.Namespace) -> int:
@@ -167,6 +170,8 @@ def _study(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
     if chosen.repeats < 1:
         raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+    if not _has_reference(discretise(settings)):
+        raise SettingError("scene", settings.scene, "bar", "there is no reference for others yet")
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
         found = error_against_time(settings, chosen.repeats)
