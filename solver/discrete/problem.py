@@ -175,7 +175,8 @@ class Problem:
         P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
         theory.md, 2).
         """
-        columns, loads = [], []
+        entries, places, numbers, loads = [], [], [], []
+        n_macro = 0
         for interface in self.interfaces.values():
             if isinstance(interface, Perfect):
                 rows = np.concatenate([interface.first, interface.second])
@@ -186,19 +187,15 @@ class Problem:
                 load = basis.T @ interface.force
             else:
                 continue
-            block = sparse.coo_array(
-                (
-                    basis.ravel(),
-                    (
-                        np.repeat(rows, basis.shape[1]),
-                        np.tile(np.arange(basis.shape[1]), len(rows)),
-                    ),
-                ),
-                shape=(self.n_rows, basis.shape[1]),
-            )
-            columns.append(block)
+            own = basis.shape[1]
+            entries.append(basis.ravel())
+            places.append(rows.repeat(own))
+            numbers.append(np.arange(n_macro, n_macro + own)[None].repeat(len(rows), 0).ravel())
             loads.append(load)
-        return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
+            n_macro += own
+        found = (np.concatenate(entries), (np.concatenate(places), np.concatenate(numbers)))
+        shape = (self.n_rows, n_macro)
+        return sparse.csr_array(found, shape=shape), np.concatenate(loads)
 
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:

@@ -47,20 +47,23 @@ class CoarseProblem:
         basis, load = problem.macro
         carries = np.diff(basis.indptr) > 0
         self._members = []
-        columns, blocks = [], []
+        order, blocks = [], []
         constant = load.astype(float)
         for group in groups:
             own = np.flatnonzero(carries[group.rows].any(axis=1))
             forces = group.response.force_rows(own)
-            selected = sparse.csr_array(basis[group.rows[own].T.ravel()].T)
-            columns.append(selected)
-            blocks.append(sparse.kron(sparse.eye_array(group.rows.shape[1]), forces[:, own]))
+            rows = group.rows[own].ravel(order="F")
+            order.append(rows)
+            blocks.append(
+                np.broadcast_to(forces[:, own], (group.rows.shape[1], len(own), len(own)))
+            )
             if group.body is not None:
                 held = group.k[own, None, None] * group.body[own]
+                selected = sparse.csr_array(basis[rows].T)
                 constant += selected @ held.reshape(-1, held.shape[2], order="F")
             self._members.append((group, own, np.asfortranarray(forces)))
-        self._spread = sparse.csr_array(sparse.hstack(columns))
-        system = self._spread @ sparse.block_diag(blocks) @ self._spread.T
+        self._spread = sparse.csr_array(basis[np.concatenate(order)].T)
+        system = self._spread @ _diagonal(blocks) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
 
     def add_multiplier(self) -> None:
@@ -79,6 +82,21 @@ class CoarseProblem:
             part = multiplier[first : first + size]
             group.target[own] += part.reshape(len(own), -1, n_instants, order="F")
             first += size
+
+
+def _diagonal(blocks: list[Array]) -> sparse.csr_array:
+    """Set square blocks, stacked by size, shape (n, size, size), along a diagonal."""
+    columns, ends, first = [], [np.zeros(1, dtype=np.intp)], 0
+    for stack in blocks:
+        n, size, _ = stack.shape
+        starts = first + size * np.arange(n)
+        columns.append((starts[:, None, None] + np.arange(size)).repeat(size, axis=1).ravel())
+        ends.append(ends[-1][-1] + size * np.arange(1, n * size + 1))
+        first += n * size
+    entries = np.concatenate([stack.ravel() for stack in blocks])
+    return sparse.csr_array(
+        (entries, np.concatenate(columns), np.concatenate(ends)), shape=(first, first)
+    )
 
 
 def _solver(

@@ -5,28 +5,47 @@ from __future__ import annotations
 import numpy as np
 
 from solver.discrete.problem import Array, Problem
-from solver.laws import Dirichlet, Neumann
+from solver.laws import Dirichlet, Neumann, Perfect
 from solver.settings import Settings
 
-SLIDING_STIFFNESS = 6.5
-"""k of a friction node, times the sliding length over ES. Measured with Anderson acceleration and
-a nested start on 50 elements, decaying cycles: of 3, 6, 12, 24 and 48 ES/L the one with the fewest
-iterations to 1 % of friction force was 4.8 to 7.2 of this, at peaks of 300 to 2400 N."""
+FRICTION_FACTOR = 2.0
+"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h."""
+CUT_FACTOR = 10.0
+"""k of a cut over the paper's ES/l_sub. From 3 on, 1 % of friction force takes as many iterations
+with 50 substructures as with one; beyond 100 the cuts themselves are late."""
 
 
 def search_direction(problem: Problem, settings: Settings) -> Array:
     """Give k of every row, shape (n_rows,), scaled.
 
-    It is the paper's, or on friction points the automatic one, times the settings' factors. The
-    automatic k is the stiffness of as much of the structure as is expected to slide,
-    `SLIDING_STIFFNESS` ES / s at every node, whatever the mesh and the substructures (theory.md,
-    5: small k converges fast globally and slowly locally, large k the reverse).
+    It is the paper's, or the automatic one, times the settings' factors.
     """
-    k: Array = settings.k_scale * problem.direction
-    if settings.search_direction == "auto":
-        k[problem.friction.rows] = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
+    is_paper = settings.search_direction == "paper"
+    k: Array = settings.k_scale * (problem.direction if is_paper else automatic(problem))
     k[problem.friction.rows] *= settings.k_friction_scale
     return np.ascontiguousarray(k)
+
+
+def automatic(problem: Problem) -> Array:
+    """Give k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
+
+    Small k converges fast globally and slowly locally, large k the reverse (theory.md, 5). What
+    is global on the frictional interface is the length s that is expected to slide, what is local
+    the distance h of its points. So k of a point is `FRICTION_FACTOR` times the geometric mean of
+    ES/s and ES/h, for which neither end is slower than the other, and a row's share of it is by
+    tributary length, so that cuts change nothing. On cuts, k is `CUT_FACTOR` times the paper's.
+    """
+    k = problem.direction.copy()
+    friction = problem.friction
+    length = friction.weights.sum()
+    spacing = length / max(len(friction.positions) - 1, 1)
+    parts = length / spacing / sliding_share(problem)
+    k[friction.rows] = FRICTION_FACTOR * np.sqrt(parts) * friction.weights / spacing
+    for cut in problem.of_law(Perfect):
+        assert isinstance(cut, Perfect)
+        k[cut.first] *= CUT_FACTOR
+        k[cut.second] *= CUT_FACTOR
+    return k
 
 
 def sliding_share(problem: Problem) -> float:

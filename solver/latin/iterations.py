@@ -6,16 +6,14 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
-from solver.discrete import discretise
+from solver.discrete import coarser_problems
 from solver.discrete.problem import Array, Problem, space_time
-from solver.latin.acceleration import Anderson
+from solver.latin.acceleration import Anderson, anderson
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.local import LocalStage
-from solver.latin.nested import prolong
+from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import ReducedLocalStage
 from solver.reduction.basis import Reduction, References
@@ -88,10 +86,10 @@ class _Engine:
         else:
             full = FullLinearStage(problem, self.k, multiscale=settings.multiscale)
             if settings.acceleration == "anderson":
-                self._anderson = _anderson(problem, full, settings)
+                self._anderson = anderson(problem, full, settings.anderson_memory)
             self._linear_stage = full
         if start is None and settings.start == "nested":
-            start = nested_start(problem, settings, self.k)
+            start = nested_start(coarser_problems(settings), settings, problem, self.k)
         stage: LinearStage[Any] = self._linear_stage
         self._state = stage.start(start)
         self.incoming = space_time(problem.n_rows, problem.n_instants)
@@ -178,36 +176,6 @@ class _Engine:
             self._anderson.observe(before, state)
         self._anderson.seen, self._anderson.count = seen, count
         self._anderson.smallest = smallest
-
-
-def nested_start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
-    """Iterate on the next coarser mesh, itself started so, and carry the result over.
-
-    Returns
-    -------
-    None if the mesh is not to be coarsened.
-    """
-    coarser = settings.coarser()
-    if coarser is None:
-        return None
-    coarser = coarser.replace(linear_stage="full")
-    coarse = discretise(coarser)
-    engine = _Engine(coarse, coarser, None)
-    clock = _Clock(0.0)
-    for number in range(1, settings.nested_iterations + 1):
-        engine.step(number, clock)
-    outgoing, incoming = engine.outgoing, engine.incoming
-    displacement = 0.5 * (outgoing + incoming)
-    force = 0.5 * engine.k[:, None] * (outgoing - incoming)
-    return Checkpoint(0, 0.0, prolong(coarse, displacement, force, problem, k))
-
-
-def _anderson(problem: Problem, stage: FullLinearStage, settings: Settings) -> Anderson:
-    weights = [
-        group.k[:, None, None] * np.ones((1, group.rows.shape[1], 1)) * problem.time_weights
-        for group in stage.groups
-    ]
-    return Anderson(weights, [part.shape for part in weights], settings.anderson_memory)
 
 
 class _Clock:

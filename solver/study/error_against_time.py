@@ -43,8 +43,8 @@ ANDERSON: dict[str, Any] = {**AUTO, "acceleration": "anderson"}
 FORMS: dict[str, dict[str, Any]] = {
     "LATIN monoscale": {**PLAIN, "multiscale": False},
     "LATIN multiscale": PLAIN,
-    "LATIN auto k": AUTO,
     "LATIN auto k, Anderson": ANDERSON,
+    "LATIN auto k, nested": {**AUTO, "start": "nested"},
     "LATIN auto k, Anderson, nested": {**ANDERSON, "start": "nested"},
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
