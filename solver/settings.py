@@ -373,10 +373,12 @@ class Settings(param.Parameterized):
     )
     k_update = choice(
         "none",
-        ["none"],
-        "How the search direction changes along the run.",
+        ["none", "status"],
+        "How the search direction changes along the run: not at all, or once, when the contact "
+        "status has settled, with a smaller k where points slip; taken back if it does not help.",
         group="Method",
         title="Update of k",
+        applies=lambda settings: not _is_reduced(settings),
     )
     tolerance = quantity(
         1e-10,

@@ -67,8 +67,11 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     times the mean slip. Divided by the dissipation plus the largest elastic energy, so that it is
     defined where nothing slides.
     """
-    problem = iterate.problem
-    displacement, force = iterate.boundary_displacement, iterate.boundary_force
+    return behaviour_of(iterate.problem, iterate.boundary_displacement, iterate.boundary_force)
+
+
+def behaviour_of(problem: Problem, displacement: Array, force: Array) -> BehaviourIndicator:
+    """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     law = problem.friction
     noise = _rounding(displacement, force)
     slip = _beyond(np.diff(displacement[law.rows], axis=1, prepend=0.0), 2.0 * noise)

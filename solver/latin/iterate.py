@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,37 @@ from solver.reduction.basis import Modes, Reduction, References
 
 NO_SLIP = 1e-9
 """Slip, as a share of the largest displacement, up to which a point counts as stuck."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How far the update of k has come.
+
+    Attributes
+    ----------
+    phase
+        Whether k is still that of the start ("first"), on trial ("updated"), or that of the start
+        for good ("returned").
+    k
+        Search direction of the rows, shape (n_rows,).
+    count
+        First: iterations on end with hardly a change of status. Updated: iterations since the last
+        trial.
+    status
+        Contact status of the iteration before, shape (n_points, n_instants); None after the first
+        phase, and before the first iteration.
+    kept
+        Updated: W and F of the linear stage at the last trial, shape (n_rows, n_instants) each.
+    violation
+        Updated: the k-free indicator of these.
+    """
+
+    phase: Literal["first", "updated", "returned"]
+    k: Array
+    count: int = 0
+    status: NDArray[np.int8] | None = None
+    kept: tuple[Array, Array] | None = None
+    violation: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +65,8 @@ class Checkpoint:
         The states before, oldest first, that an acceleration remembers.
     memory
         What it counts: states seen, differences, and the smallest residual.
+    course
+        Of the update of k, if there is one.
     """
 
     number: int
@@ -42,11 +76,13 @@ class Checkpoint:
     references: References | None = None
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
+    course: Course | None = None
 
     @property
     def nbytes(self) -> int:
         """Bytes that it keeps, though others may share them."""
-        return self.outgoing.nbytes * (1 + len(self.history))
+        kept = self.course.kept if self.course else None
+        return self.outgoing.nbytes * (1 + len(self.history) + len(kept or ()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +112,8 @@ class Iterate:
     local_error
         Relative distance of what the reduced local stage rebuilt from what the laws say
         everywhere, in the norm of the search direction; 0 where they were evaluated everywhere.
-    history, memory
-        Of an acceleration, as in `Checkpoint`.
+    history, memory, course
+        Of an acceleration and of the update of k, as in `Checkpoint`.
     """
 
     number: int
@@ -93,6 +129,7 @@ class Iterate:
     local_error: float = 0.0
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
+    course: Course | None = None
 
     @property
     def checkpoint(self) -> Checkpoint:
@@ -105,6 +142,7 @@ class Iterate:
             self.references,
             self.history,
             self.memory,
+            self.course,
         )
 
     @property
@@ -147,10 +185,15 @@ class Iterate:
         is just at its bound moves by rounding alone, and that is not called slip. At a cut both
         sides have their say, and the larger slip wins.
         """
-        law = self.problem.friction
-        position = self.local_displacement[law.rows]
-        slip = np.diff(position, axis=1, prepend=0.0)
-        total = np.zeros((len(law.positions), slip.shape[1]))
-        np.add.at(total, law.points, slip)
-        total[np.abs(total) <= NO_SLIP * np.abs(position).max(initial=0.0)] = 0.0
-        return np.sign(total).astype(np.int8)
+        return contact_status(self.problem, self.local_displacement)
+
+
+def contact_status(problem: Problem, position: Array) -> NDArray[np.int8]:
+    """Give the contact status, as `Iterate.status`, of W^ of all rows."""
+    law = problem.friction
+    position = position[law.rows]
+    slip = np.diff(position, axis=1, prepend=0.0)
+    total = np.zeros((len(law.positions), slip.shape[1]))
+    np.add.at(total, law.points, slip)
+    total[np.abs(total) <= NO_SLIP * np.abs(position).max(initial=0.0)] = 0.0
+    return np.sign(total).astype(np.int8)
