@@ -190,8 +190,8 @@ class Settings(param.Parameterized):
     search_direction = choice(
         "paper",
         ["paper", "auto"],
-        "Rule for the search direction of friction points: the paper's, from the length of a "
-        "substructure, or from the length that is expected to slide.",
+        "Rule for the search direction: the paper's, from the length of a substructure, or on "
+        "friction points from the length that is expected to slide and that of an element.",
         group="Method",
         title="Search direction",
         essential=True,
@@ -365,8 +365,8 @@ class Settings(param.Parameterized):
     start = choice(
         "zero",
         ["zero", "nested"],
-        "Where the iteration starts: from zero, or from the solution of coarser meshes, each "
-        "started so itself. Their time is billed to the run.",
+        "Where the iteration starts: from zero, or from the solution of coarser meshes, uncut and "
+        "accelerated, each started so itself. Their time is billed to the run.",
         group="Method",
         title="Start",
         essential=True,
@@ -375,17 +375,19 @@ class Settings(param.Parameterized):
         40,
         (1, 10_000),
         (5, 100),
-        "Iterations on every coarser mesh.",
+        "Most iterations on every coarser mesh; it gets fewer once it has given what it can.",
         group="Method",
         title="Iterations per coarser mesh",
         applies=lambda settings: settings.start == "nested",
     )
     k_update = choice(
         "none",
-        ["none"],
-        "How the search direction changes along the run.",
+        ["none", "status"],
+        "How the search direction changes along the run: not at all, or once, when the contact "
+        "status has settled, with a smaller k where points slip; taken back if it does not help.",
         group="Method",
         title="Update of k",
+        applies=lambda settings: not _is_reduced(settings),
     )
     tolerance = quantity(
         1e-10,
@@ -469,10 +471,6 @@ class Settings(param.Parameterized):
     def with_change(self, name: str, value: object) -> Self:
         """Change one setting and bring along those that could not stand beside it."""
         return self.replace(**{name: value})
-
-    def coarser(self) -> Self | None:
-        """Give the same scene on the next coarser mesh, or None where that makes no sense."""
-        return None
 
     @property
     def is_reduced(self) -> bool:

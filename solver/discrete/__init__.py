@@ -26,4 +26,25 @@ def discretise(settings: Settings) -> Problem:
             raise TypeError(f"no discretisation for the settings of {settings.scene!r}")
 
 
-__all__ = ["Problem", "discretise"]
+def coarser_problems(settings: Settings) -> list[Problem]:
+    """Make the discrete problems of the same scene, uncut, on ever coarser meshes.
+
+    Returns
+    -------
+    The finest first; none where the scene's own mesh is as coarse as makes sense.
+    """
+    found = []
+    if isinstance(settings, BarSettings):
+        scene = bar(settings).coarser()
+        while scene is not None:
+            found.append(discretise_bar(scene))
+            scene = scene.coarser()
+    elif isinstance(settings, StrandSettings):
+        coarse = settings.coarser()
+        while coarse is not None:
+            found.append(discretise_strand(strand(coarse)))
+            coarse = coarse.coarser()
+    return found
+
+
+__all__ = ["Problem", "coarser_problems", "discretise"]

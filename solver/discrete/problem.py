@@ -234,15 +234,19 @@ class Problem:
         P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
         theory.md, 2).
         """
-        columns, loads = [], []
+        entries, places, numbers, loads = [], [], [], []
+        n_macro = 0
         for interface in self.interfaces.values():
-            for rows, basis, load in _macro(interface):
-                row, column = basis.coords
-                shape = (self.n_rows, basis.shape[1])
-                columns.append(sparse.coo_array((basis.data, (rows[row], column)), shape=shape))
-                nothing = np.zeros((basis.shape[1], self.n_instants))
-                loads.append(nothing if load is None else load)
-        return sparse.csr_array(sparse.hstack(columns)), np.concatenate(loads)
+            for own, basis, load in _macro(interface):
+                row, column = np.nonzero(basis) if isinstance(basis, np.ndarray) else basis.coords
+                entries.append(basis[row, column] if isinstance(basis, np.ndarray) else basis.data)
+                places.append(own[row])
+                numbers.append(n_macro + column)
+                loads.append(np.zeros((basis.shape[1], self.n_instants)) if load is None else load)
+                n_macro += basis.shape[1]
+        found = (np.concatenate(entries), (np.concatenate(places), np.concatenate(numbers)))
+        shape = (self.n_rows, n_macro)
+        return sparse.csr_array(found, shape=shape), np.concatenate(loads)
 
     @cached_property
     def mean_of_rows(self) -> sparse.csr_array:
@@ -297,15 +301,17 @@ class Problem:
         return dofs, np.concatenate([none[1], *(law.displacement for law in parts)])[first]
 
 
-def _macro(interface: Interface) -> Iterator[tuple[Indices, sparse.coo_array, Array | None]]:
+def _macro(
+    interface: Interface,
+) -> Iterator[tuple[Indices, Array | sparse.coo_array, Array | None]]:
     """Give the rows of both sides, their macro basis, and their load, for each component."""
     match interface:
         case Perfect():
             rows, macro = np.concatenate([interface.first, interface.second]), interface.macro
-            yield rows, sparse.coo_array(np.concatenate([macro, macro])), None
+            yield rows, np.concatenate([macro, macro]), None
         case Neumann():
             load = interface.macro.T @ interface.force
-            yield interface.rows, sparse.coo_array(interface.macro), load
+            yield interface.rows, interface.macro, load
         case Friction(macro=macro) | Contact(macro=macro) if macro is not None:
             both_sides = sparse.coo_array(sparse.vstack([macro, macro]))
             sides = zip(components(interface), components_below(interface), strict=True)

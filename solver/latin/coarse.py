@@ -47,21 +47,21 @@ class CoarseProblem:
     def __init__(self, problem: Problem, groups: Sequence[Member]) -> None:
         basis, load = problem.macro
         self._members = []
-        columns, blocks = [], []
+        seen, blocks = [], []
         constant = load.astype(float)
         for group in groups:
             own, local, assembly = _local_basis(basis, group.rows)
             forces = local.T @ group.response.force_rows(own)
-            columns.append(assembly)
-            n_members = group.rows.shape[1]
-            blocks.append(sparse.kron(sparse.eye_array(n_members), forces[:, own] @ local))
+            seen.append(assembly)
+            own_system = forces[:, own] @ local
+            blocks.append(np.broadcast_to(own_system, (group.rows.shape[1], *own_system.shape)))
             if group.body is not None:
                 held = group.k[own, None, None] * group.body[own]
                 held = local.T @ held.reshape(len(own), -1, order="F")
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
             self._members.append((group, own, local, np.asfortranarray(forces)))
-        self._spread = sparse.csr_array(sparse.hstack(columns))
-        system = self._spread @ sparse.block_diag(blocks) @ self._spread.T
+        self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
+        system = self._spread @ _diagonal(blocks) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
 
     def add_multiplier(self) -> None:
@@ -89,9 +89,14 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     -------
     Places of the rows that carry macro quantities, shape (n_own,); the basis on them, shape
     (n_own, n_local); and what adds up the members' macro forces, (n_macro, n_members n_local).
-    Where members do not see the same, the local basis is the identity.
+    Where members do not see the same, or a row has but one macro quantity, the local basis is the
+    identity.
     """
-    own = np.flatnonzero((np.diff(basis.indptr) > 0)[rows].any(axis=1))
+    counts = np.diff(basis.indptr)[rows]
+    own = np.flatnonzero(counts.any(axis=1))
+    whole = sparse.csr_array(basis[rows[own].ravel(order="F")].T)
+    if counts.max() == 1:
+        return own, np.eye(len(own)), whole
     members = [basis[rows[own, member]].tocoo() for member in range(rows.shape[1])]
     seen = []
     for member in members:
@@ -101,12 +106,26 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     local = members[0].toarray()[:, seen[0]]
     for member, column in zip(members, seen, strict=True):
         if len(column) != len(seen[0]) or not np.array_equal(member.toarray()[:, column], local):
-            whole = sparse.csr_array(basis[rows[own].T.ravel()].T)
             return own, np.eye(len(own)), whole
     chosen = np.concatenate(seen)
     shape = (basis.shape[1], len(chosen))
     ones = np.ones(len(chosen))
     return own, local, sparse.csr_array((ones, (chosen, np.arange(len(chosen)))), shape=shape)
+
+
+def _diagonal(blocks: list[Array]) -> sparse.csr_array:
+    """Set square blocks, stacked by size, shape (n, size, size), along a diagonal."""
+    columns, ends, first = [], [np.zeros(1, dtype=np.intp)], 0
+    for stack in blocks:
+        n, size, _ = stack.shape
+        starts = first + size * np.arange(n)
+        columns.append((starts[:, None, None] + np.arange(size)).repeat(size, axis=1).ravel())
+        ends.append(ends[-1][-1] + size * np.arange(1, n * size + 1))
+        first += n * size
+    entries = np.concatenate([stack.ravel() for stack in blocks])
+    return sparse.csr_array(
+        (entries, np.concatenate(columns), np.concatenate(ends)), shape=(first, first)
+    )
 
 
 def _solver(

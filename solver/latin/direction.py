@@ -5,19 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from solver.discrete.problem import Array, Indices, Problem, sliding_rows
-from solver.laws import Contact, Dirichlet, Friction, Neumann
+from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
-SLIDING_STIFFNESS = 6.5
-"""k of a friction node, times the sliding length over ES. Measured with Anderson acceleration and
-a nested start on 50 elements, decaying cycles: of 3, 6, 12, 24 and 48 ES/L the one with the fewest
-iterations to 1 % of friction force was 4.8 to 7.2 of this, at peaks of 300 to 2400 N."""
-PAIR = 2.0
-"""Times as much where two bodies of known bound rub on each other. Measured likewise on strands of
-2 to 30 wires: of 1/4, 1/2, 1, 2, 4, 8 and 16 the one with the fewest iterations was 2 or 4."""
-CUT_STIFFNESS = 8.0
-"""k per area of cuts and supports in the plane, times l_sub over E (theory.md, 5)."""
+FRICTION_FACTOR = 2.0
+"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h."""
+CUT_FACTOR = 10.0
+"""k of a cut over the paper's ES/l_sub. From 3 on, 1 % of friction force takes as many iterations
+with 50 substructures as with one; beyond 100 the cuts themselves are late."""
+PLANE_FACTOR = 8.0
+"""k of cuts and supports in the plane over the paper's E/l_sub per area."""
 CONTACT_STIFFNESS = 7.0
 """k per area of a contact in the plane, times its length over E. With both, 1 % of the contact
 force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs by at most two from
@@ -32,15 +30,10 @@ to 0.3, 33 with 1 (measured)."""
 def search_direction(problem: Problem, settings: Settings) -> Array:
     """Give k of every row, shape (n_rows,), scaled.
 
-    It is the paper's, or on friction points the automatic one, times the settings' factors. The
-    automatic k is the stiffness of as much of the structure as is expected to slide,
-    `SLIDING_STIFFNESS` ES / s at every node, whatever the mesh and the substructures (theory.md,
-    5: small k converges fast globally and slowly locally, large k the reverse). In the plane it
-    is that of a body as a whole on contacts, and `CUT_STIFFNESS` times the paper's elsewhere.
+    It is the paper's, or the automatic one, times the settings' factors.
     """
-    k: Array = settings.k_scale * problem.direction
-    if settings.search_direction == "auto":
-        _automatic(problem, settings, k)
+    is_paper = settings.search_direction == "paper"
+    k: Array = settings.k_scale * (problem.direction if is_paper else automatic(problem))
     for law in problem.rubbing.values():
         for rows in sliding_rows(law):
             k[rows] *= settings.k_friction_scale
@@ -50,23 +43,46 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
     return np.ascontiguousarray(k)
 
 
-def _automatic(problem: Problem, settings: Settings, k: Array) -> None:
-    contacts = [law for law in problem.of_law(Contact) if isinstance(law, Contact)]
-    if contacts:
-        k *= CUT_STIFFNESS
-    for law in contacts:
-        share = settings.k_scale * CONTACT_STIFFNESS * law.weights / law.weights.sum()
-        easier = 1.0 if law.below is None else BETWEEN_BODIES
-        for rows, modulus in zip(pressing_rows(law), law.moduli, strict=False):
-            k[rows] = modulus * share
-        for rows, modulus in zip(sliding_rows(law), law.moduli, strict=False):
-            k[rows] = modulus * easier * share
-    if contacts:
-        return
-    stiffness = settings.k_scale * SLIDING_STIFFNESS / sliding_share(problem)
-    for one in problem.rubbing.values():
-        for rows in sliding_rows(one):
-            k[rows] = stiffness if one.below is None else PAIR * stiffness
+def automatic(problem: Problem) -> Array:
+    """Give k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
+
+    Small k converges fast globally and slowly locally, large k the reverse (theory.md, 5). Along
+    rods, what is global on the frictional interface is the length s that is expected to slide,
+    what is local the distance h of its points. So k of a point is `FRICTION_FACTOR` times the
+    geometric mean of ES/s and ES/h, for which neither end is slower than the other, and a row's
+    share of it is by tributary length, so that cuts change nothing; between two rods of a strand
+    it serves as well (of 0.35 to 4 times as much, 0.7 and 1.4 take the fewest iterations). On
+    cuts, k is `CUT_FACTOR` times the paper's. In the plane k is that of a body as a whole on contacts, and `PLANE_FACTOR`
+    times the paper's elsewhere.
+    """
+    k = problem.direction.copy()
+    if problem.of_law(Contact):
+        k *= PLANE_FACTOR
+        for law in problem.rubbing.values():
+            assert isinstance(law, Contact)
+            _touching(law, k)
+        return k
+    parts = 1.0 / sliding_share(problem)
+    for law in problem.rubbing.values():
+        length = law.weights.sum()
+        spacing = length / max(len(law.positions) - 1, 1)
+        stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
+        for rows in sliding_rows(law):
+            k[rows] = stiffness * law.weights / spacing
+    for cut in problem.of_law(Perfect):
+        assert isinstance(cut, Perfect)
+        k[cut.first] *= CUT_FACTOR
+        k[cut.second] *= CUT_FACTOR
+    return k
+
+
+def _touching(law: Contact, k: Array) -> None:
+    share = CONTACT_STIFFNESS * law.weights / law.weights.sum()
+    easier = 1.0 if law.below is None else BETWEEN_BODIES
+    for rows, modulus in zip(pressing_rows(law), law.moduli, strict=False):
+        k[rows] = modulus * share
+    for rows, modulus in zip(sliding_rows(law), law.moduli, strict=False):
+        k[rows] = modulus * easier * share
 
 
 def pressing_rows(law: Contact) -> tuple[Indices, ...]:

@@ -70,11 +70,14 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     mean force. Divided by the dissipation plus the largest elastic energy, so that it is defined
     where nothing slides.
     """
-    problem = iterate.problem
-    displacement, force = iterate.boundary_displacement, iterate.boundary_force
+    return behaviour_of(iterate.problem, iterate.boundary_displacement, iterate.boundary_force)
+
+
+def behaviour_of(problem: Problem, displacement: Array, force: Array) -> BehaviourIndicator:
+    """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     noise = _rounding(displacement, force)
     found = [_Behaviour(law, displacement, force, noise) for law in problem.rubbing.values()]
-    energy = _elastic_energy(iterate, displacement, force) + sum(
+    energy = _elastic_energy(problem, displacement, force) + sum(
         float(one.dissipated.sum()) for one in found
     )
     allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
@@ -87,16 +90,16 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     return BehaviourIndicator(total / _share_of_friction(problem, force), map_)
 
 
-def _elastic_energy(iterate: Iterate, displacement: Array, force: Array) -> float:
+def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:
     """Give the largest elastic energy over time; body forces work on it like the interfaces."""
     work = np.einsum("ij,ij->j", displacement, force)
     loads = [
         (part.dofs, part.body_force)
-        for part in iterate.problem.substructures
+        for part in problem.substructures
         if part.body_force is not None
     ]
     if loads:
-        whole = iterate.problem.mean_of_rows @ displacement
+        whole = problem.mean_of_rows @ displacement
         for dofs, load in loads:
             work += np.einsum("ij,ij->j", load, whole[dofs])
     return 0.5 * max(float(work.max(initial=0.0)), 0.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,37 @@ from solver.discrete.contact_fields import ContactFields, contact_fields, status
 from solver.discrete.problem import Array, Problem
 from solver.laws import Contact, Friction
 from solver.reduction.basis import Modes, Reduction, References
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """How far the update of k has come.
+
+    Attributes
+    ----------
+    phase
+        Whether k is still that of the start ("first"), on trial ("updated"), or that of the start
+        for good ("returned").
+    k
+        Search direction of the rows, shape (n_rows,).
+    count
+        First: iterations on end with hardly a change of status. Updated: iterations since the last
+        trial.
+    status
+        Contact status of the iteration before, shape (n_points, n_instants); None after the first
+        phase, and before the first iteration.
+    kept
+        Updated: W and F of the linear stage at the last trial, shape (n_rows, n_instants) each.
+    violation
+        Updated: the k-free indicator of these.
+    """
+
+    phase: Literal["first", "updated", "returned"]
+    k: Array
+    count: int = 0
+    status: NDArray[np.int8] | None = None
+    kept: tuple[Array, Array] | None = None
+    violation: float = np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +64,8 @@ class Checkpoint:
         The states before, oldest first, that an acceleration remembers.
     memory
         What it counts: states seen, differences, and the smallest residual.
+    course
+        Of the update of k, if there is one.
     """
 
     number: int
@@ -41,11 +75,13 @@ class Checkpoint:
     references: References | None = None
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
+    course: Course | None = None
 
     @property
     def nbytes(self) -> int:
         """Bytes that it keeps, though others may share them."""
-        return self.outgoing.nbytes * (1 + len(self.history))
+        kept = self.course.kept if self.course else None
+        return self.outgoing.nbytes * (1 + len(self.history) + len(kept or ()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +111,8 @@ class Iterate:
     local_error
         Relative distance of what the reduced local stage rebuilt from what the laws say
         everywhere, in the norm of the search direction; 0 where they were evaluated everywhere.
-    history, memory
-        Of an acceleration, as in `Checkpoint`.
+    history, memory, course
+        Of an acceleration and of the update of k, as in `Checkpoint`.
     """
 
     number: int
@@ -92,6 +128,7 @@ class Iterate:
     local_error: float = 0.0
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
+    course: Course | None = None
 
     @property
     def checkpoint(self) -> Checkpoint:
@@ -104,6 +141,7 @@ class Iterate:
             self.references,
             self.history,
             self.memory,
+            self.course,
         )
 
     @property
@@ -170,5 +208,12 @@ class Iterate:
         Points of all interfaces with friction, one interface after the other.
         """
         force = self.boundary_local_force if self.problem.of_law(Contact) else None
-        laws = self.problem.rubbing.values()
-        return np.concatenate([status_of(law, self.local_displacement, force) for law in laws])
+        return contact_status(self.problem, self.local_displacement, force)
+
+
+def contact_status(
+    problem: Problem, displacement: Array, force: Array | None = None
+) -> NDArray[np.int8]:
+    """Give the contact status, as `Iterate.status`, of W^ and F^ of all rows."""
+    laws = problem.rubbing.values()
+    return np.concatenate([status_of(law, displacement, force) for law in laws])

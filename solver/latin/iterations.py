@@ -6,16 +6,15 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
-from solver.discrete import discretise
+from solver.discrete import coarser_problems
 from solver.discrete.problem import Array, Problem, space_time
-from solver.latin.acceleration import Anderson
+from solver.latin.acceleration import Anderson, anderson
 from solver.latin.direction import search_direction
-from solver.latin.iterate import Checkpoint, Iterate
+from solver.latin.direction_update import DirectionUpdate
+from solver.latin.iterate import Checkpoint, Course, Iterate
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.local import LocalStage
-from solver.latin.nested import prolong
+from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import ReducedLocalStage
 from solver.reduction.basis import Reduction, References
@@ -47,6 +46,8 @@ def iterations(
     outgoing = start.outgoing if start else _frozen(engine.outgoing)
     while True:
         number += 1
+        if engine.turn(clock):
+            read, outgoing, history = _frozen(engine.incoming), _frozen(engine.outgoing), []
         local_error = engine.step(number, clock)
         given = _frozen(engine.incoming)
         history = [*history, outgoing][-engine.remembered :] if engine.remembered else []
@@ -65,6 +66,7 @@ def iterations(
             local_error=local_error,
             history=tuple(history),
             memory=engine.memory,
+            course=engine.course,
         )
         read = given
 
@@ -73,9 +75,26 @@ class _Engine:
     """Both stages at work, with what the options add to them."""
 
     def __init__(self, problem: Problem, settings: Settings, start: Checkpoint | None) -> None:
-        self._settings = settings
-        self.k = search_direction(problem, settings)
-        self.k.flags.writeable = False
+        self._problem, self._settings = problem, settings
+        k = search_direction(problem, settings)
+        k.flags.writeable = False
+        self._update: DirectionUpdate | None = None
+        if settings.k_update == "status" and settings.linear_stage == "full":
+            self._update = DirectionUpdate(problem, k, start.course if start else None)
+            k = self._update.course.k
+        self._make_stages(k)
+        if start is None and settings.start == "nested":
+            start = nested_start(coarser_problems(settings), settings, problem, self.k)
+        stage: LinearStage[Any] = self._linear_stage
+        self._state = stage.start(start)
+        self.incoming = space_time(problem.n_rows, problem.n_instants)
+        if start is not None:
+            self._recall(start)
+        stage.incoming(self._state, self.incoming)
+
+    def _make_stages(self, k: Array) -> None:
+        problem, settings = self._problem, self._settings
+        self.k = k
         self._local_stage = LocalStage(problem, self.k)
         self._sampled: ReducedLocalStage | None = None
         self._anderson: Anderson | None = None
@@ -88,16 +107,25 @@ class _Engine:
         else:
             full = FullLinearStage(problem, self.k, multiscale=settings.multiscale)
             if settings.acceleration == "anderson":
-                self._anderson = _anderson(problem, full, settings)
+                self._anderson = anderson(problem, full, settings.anderson_memory)
             self._linear_stage = full
-        if start is None and settings.start == "nested":
-            start = nested_start(problem, settings, self.k)
-        stage: LinearStage[Any] = self._linear_stage
-        self._state = stage.start(start)
-        self.incoming = space_time(problem.n_rows, problem.n_instants)
-        if start is not None:
-            self._recall(start)
-        stage.incoming(self._state, self.incoming)
+
+    def turn(self, clock: _Clock) -> bool:
+        """Change k if it is time to, and say so; W and F stay, or go back to earlier ones."""
+        if self._update is None or not self._update.is_due:
+            return False
+        clock.go_on()
+        outgoing = self.outgoing
+        displacement = 0.5 * (outgoing + self.incoming)
+        found = self._update.turn(displacement, self.k[:, None] * (outgoing - displacement))
+        if found is not None:
+            displacement, force = found
+            self._make_stages(self._update.course.k)
+            outgoing = displacement + force / self.k[:, None]
+            self._state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
+            self._linear_stage.incoming(self._state, self.incoming)
+        clock.stop()
+        return found is not None
 
     def step(self, number: int, clock: _Clock) -> float:
         """Do one iteration; give the error of a reduced local stage, or 0."""
@@ -112,6 +140,8 @@ class _Engine:
             clock.go_on()
         else:
             self._linear_stage.read(self._local_stage(self.incoming))
+        if self._update is not None:
+            self._update.see(self.local_displacement)
         self._advance()
         if self._sampled is not None:
             self._sampled.keep_up(number, self._state)
@@ -153,6 +183,11 @@ class _Engine:
         found = self._anderson
         return (found.seen, found.count, found.smallest) if found else None
 
+    @property
+    def course(self) -> Course | None:
+        """How far the update of k has come."""
+        return self._update.course if self._update else None
+
     def _advance(self) -> None:
         if self._anderson is None:
             self._linear_stage.advance(self._state, self._settings.relaxation)
@@ -178,36 +213,6 @@ class _Engine:
             self._anderson.observe(before, state)
         self._anderson.seen, self._anderson.count = seen, count
         self._anderson.smallest = smallest
-
-
-def nested_start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
-    """Iterate on the next coarser mesh, itself started so, and carry the result over.
-
-    Returns
-    -------
-    None if the mesh is not to be coarsened.
-    """
-    coarser = settings.coarser()
-    if coarser is None:
-        return None
-    coarser = coarser.replace(linear_stage="full")
-    coarse = discretise(coarser)
-    engine = _Engine(coarse, coarser, None)
-    clock = _Clock(0.0)
-    for number in range(1, settings.nested_iterations + 1):
-        engine.step(number, clock)
-    outgoing, incoming = engine.outgoing, engine.incoming
-    displacement = 0.5 * (outgoing + incoming)
-    force = 0.5 * engine.k[:, None] * (outgoing - incoming)
-    return Checkpoint(0, 0.0, prolong(coarse, displacement, force, problem, k))
-
-
-def _anderson(problem: Problem, stage: FullLinearStage, settings: Settings) -> Anderson:
-    weights = [
-        group.k[:, None, None] * np.ones((1, group.rows.shape[1], 1)) * problem.time_weights
-        for group in stage.groups
-    ]
-    return Anderson(weights, [part.shape for part in weights], settings.anderson_memory)
 
 
 class _Clock:

@@ -323,10 +323,18 @@ class _Cholesky:
 
 def _factor(elasticity: Elasticity, k: Array):  # type: ignore[no-untyped-def]  # SuperLU
     stiffness = elasticity.stiffness
-    springs = np.bincount(elasticity.trace, weights=k, minlength=stiffness.shape[0])
+    n_dofs = stiffness.shape[0]
+    springs = np.bincount(elasticity.trace, weights=k, minlength=n_dofs)
     if isinstance(stiffness, np.ndarray):
         return _Cholesky(stiffness + np.diag(springs))
-    return splu(sparse.csc_array(stiffness + sparse.diags_array(springs)))
+    of_entries = np.repeat(np.arange(n_dofs), np.diff(stiffness.indptr))
+    diagonal = stiffness.indices == of_entries
+    if np.count_nonzero(diagonal) < n_dofs or not stiffness.has_sorted_indices:
+        return splu(sparse.csc_array(stiffness + sparse.diags_array(springs)))
+    entries = stiffness.data.copy()
+    entries[diagonal] += springs
+    # Symmetric, so its rows are its columns.
+    return splu(sparse.csc_array((entries, stiffness.indices, stiffness.indptr)))
 
 
 def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -192,13 +192,6 @@ class BarSettings(Settings):
             return self.replace(elements=value, substructures=max(value, 1))
         return self.replace(**{name: value})
 
-    def coarser(self) -> BarSettings | None:
-        """Give the same bar with half the elements, and no more substructures than these."""
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        return self.replace(elements=elements, substructures=min(self.substructures, elements))
-
     def check_together(self) -> None:
         """Refuse more substructures than elements, negative factors, and fields beyond memory."""
         if self.substructures > self.elements:
@@ -261,6 +254,15 @@ class Bar:
     def nodes(self) -> Array:
         """Positions of the nodes, shape (n_nodes,), m."""
         return np.linspace(0.0, self.length, self.elements + 1)
+
+    def coarser(self) -> Bar | None:
+        """Give the same bar uncut on half the elements, or None where a front could not be seen."""
+        elements = self.elements // 2
+        if elements < COARSEST:
+            return None
+        nodes = np.linspace(0.0, self.length, elements + 1)
+        bound = np.interp(nodes, self.nodes, self.bound)
+        return replace(self, elements=elements, substructures=1, bound=bound)
 
 
 def bar(settings: BarSettings) -> Bar:

@@ -187,7 +187,7 @@ class StrandSettings(Settings):
         return self.replace(**{name: value})
 
     def coarser(self) -> StrandSettings | None:
-        """Give the same strand with half the elements, and no more substructures than these.
+        """Give the same strand uncut with half the elements.
 
         None if its break, at the nearest node, left less than the tension to friction.
         """
@@ -195,7 +195,7 @@ class StrandSettings(Settings):
         if elements < COARSEST:
             return None
         try:
-            return self.replace(elements=elements, substructures=min(self.substructures, elements))
+            return self.replace(elements=elements, substructures=1)
         except SettingError:
             return None
 

@@ -38,15 +38,16 @@ PLAIN: dict[str, Any] = {
     "local_stage": "full",
     "acceleration": "none",
     "start": "zero",
+    "k_update": "none",
 }
 AUTO: dict[str, Any] = {**PLAIN, "search_direction": "auto"}
-ANDERSON: dict[str, Any] = {**AUTO, "acceleration": "anderson"}
+NESTED: dict[str, Any] = {**AUTO, "start": "nested", "acceleration": "anderson"}
 FORMS: dict[str, dict[str, Any]] = {
     "LATIN monoscale": {**PLAIN, "multiscale": False},
     "LATIN multiscale": PLAIN,
-    "LATIN auto k": AUTO,
-    "LATIN auto k, Anderson": ANDERSON,
-    "LATIN auto k, Anderson, nested": {**ANDERSON, "start": "nested"},
+    "LATIN auto k, nested": {**AUTO, "start": "nested"},
+    "LATIN auto k, nested, Anderson": NESTED,
+    "LATIN the same, k updated": {**NESTED, "k_update": "status"},
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
 """Settings that make the forms of LATIN; all others are those of the run."""

@@ -20,7 +20,7 @@ SIZES = {
     "substructures": (1, 2, 5, 10, 25, 50),
 }
 """Sizes by the setting that changes; the others stay as they are."""
-MEASURED = ("LATIN multiscale", "LATIN auto k, Anderson", "LATIN auto k, Anderson, nested")
+MEASURED = ("LATIN multiscale", "LATIN auto k, nested, Anderson")
 LEVEL = 0.01
 """Error of the friction force up to which iterations are counted."""
 
