@@ -131,6 +131,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
                 [getattr(part, name) for part in entry.reduction] for entry in solution.records
             ]
     return {
+        "x": problem.positions,
         "t": problem.instants,
         "displacement": iterate.displacement,
         "friction_force": iterate.friction_force,

@@ -42,6 +42,10 @@ def _delayed(phase: Array, seed: int) -> Array:
     return np.where(phase > HELD, np.sin(2.0 * np.pi * (phase - HELD) / (1.0 - HELD)), 0.0)
 
 
+def _pulsating(phase: Array) -> Array:
+    return 0.5 - 0.5 * np.cos(4.0 * np.pi * phase)
+
+
 PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "ramp": _polyline(np.array([0.0, 1.0])),
     "triangle": _polyline(np.array([0.0, 1.0, 0.0])),
@@ -57,9 +61,11 @@ PULLS: dict[str, Callable[[Array, int], Array]] = {
     "ramp": PRESETS["ramp"],
     "triangle": PRESETS["triangle"],
     "cycle": _polyline(np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])),
-    "sine": lambda phase, seed: 0.5 - 0.5 * np.cos(4.0 * np.pi * phase),
+    "sine": lambda phase, seed: _pulsating(phase),
     "decaying": _polyline(np.concatenate([[0.0], 0.5 + 0.5 * DECAY, [0.0]])),
     "random": lambda phase, seed: np.abs(_random_walk(phase, seed)),
+    "hold": PRESETS["hold"],
+    "delayed": lambda phase, seed: _pulsating(np.maximum(phase - HELD, 0.0) / (1.0 - HELD)),
 }
 """Presets that never push, for what carries tension alone."""
 
