@@ -52,8 +52,8 @@ def automatic(problem: Problem) -> Array:
     geometric mean of ES/s and ES/h, for which neither end is slower than the other, and a row's
     share of it is by tributary length, so that cuts change nothing; between two rods of a strand
     it serves as well (of 0.35 to 4 times as much, 0.7 and 1.4 take the fewest iterations). On
-    cuts, k is `CUT_FACTOR` times the paper's. In the plane k is that of a body as a whole on contacts, and `PLANE_FACTOR`
-    times the paper's elsewhere.
+    cuts, k is `CUT_FACTOR` times the paper's. In the plane k is that of a body as a whole on
+    contacts, and `PLANE_FACTOR` times the paper's elsewhere.
     """
     k = problem.direction.copy()
     if problem.of_law(Contact):
