@@ -10,10 +10,13 @@ from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 FRICTION_FACTOR = 2.0
-"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h."""
+"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h.
+Measured with Anderson acceleration and a nested start, sine and decaying cycles of 300 to 2400 N:
+1 % of friction force within 23 iterations with 1.5 and 2, 19 with 3, 28 with 1, 43 with 4; and
+1e-6 the later the larger it is."""
 CUT_FACTOR = 10.0
-"""k of a cut over the paper's ES/l_sub. From 3 on, 1 % of friction force takes as many iterations
-with 50 substructures as with one; beyond 100 the cuts themselves are late."""
+"""k of a cut over the paper's ES/l_sub. Measured with 1 to 50 substructures: 1 % of friction force
+takes 16 to 17 iterations with 10, 16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
 PLANE_FACTOR = 8.0
 """k of cuts and supports in the plane over the paper's E/l_sub per area."""
 CONTACT_STIFFNESS = 7.0
