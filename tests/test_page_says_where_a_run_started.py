@@ -1,0 +1,73 @@
+"""A run that may start from the one before it says from where it did, on the page and in files."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.recording import Recording
+from app.session import Session
+from app.sidebar import Sidebar
+from app.words import start_line, status_line
+from app.worker.bench import Bench
+from app.worker.pool import Pool
+from app.worker.protocol import Begun
+from solver.files import settings_from_toml
+from solver.latin.warm import StartChoice
+from solver.scenes.bar import BarSettings
+
+NEARER, FARTHER = StartChoice(0.01, 1.0), StartChoice(0.5, 1.0)
+
+
+def recording(choice: StartChoice | None, **changes: Any) -> Recording:
+    nothing = np.zeros(1, dtype=np.float32)
+    begun = Begun(1, *(nothing,) * 6, None, None, start=choice)
+    settings = BarSettings.checked(changes)
+    return Recording(1, settings, "peak 910 N", begun=begun, is_warm=True)
+
+
+@pytest.mark.parametrize(
+    ("choice", "changes", "words"),
+    [
+        (NEARER, {}, "Started from the run before it: k-free indicator after one iteration 0.01"),
+        (NEARER, {}, "from zero 1."),
+        (FARTHER, {}, "Started from zero, since the run before it is not clearly nearer"),
+        (FARTHER, {"start": "nested"}, "from coarser meshes 1."),
+        (None, {}, "Started from zero: the run before it was not at hand."),
+    ],
+)
+def test_the_status_line_gives_the_start_and_both_indicators(
+    choice: StartChoice | None, changes: Any, words: str
+) -> None:
+    run = recording(choice, **changes)
+    assert words in start_line(run)
+    assert words in status_line(run, True, None)
+
+
+def test_a_run_that_had_no_choice_says_nothing_of_it() -> None:
+    run = replace(recording(None), is_warm=False)
+    assert "tarted" not in status_line(run, True, None)
+
+
+def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> None:
+    assert recording(NEARER).title == "peak 910 N, from the run before it"
+    assert recording(FARTHER).title == "peak 910 N"
+    assert recording(None).title == "peak 910 N"
+
+
+def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
+    with closing(Pool(1)) as pool, closing(Bench()) as bench:
+        session = Session(pool, bench, BarSettings.checked({"peak": 910.0}))
+        sidebar = Sidebar(session, lambda: None, lambda text: None, lambda query: None)
+        plain = sidebar._saved().getvalue()
+        session.run = recording(NEARER, peak=910.0)
+        told = sidebar._saved().getvalue()
+        session.close()
+    assert told.endswith(plain)
+    assert "started from the solution of the run before it" in told.replace("\n# ", " ")
+    assert "started" not in plain
+    assert settings_from_toml(told).values() == session.settings.values()
