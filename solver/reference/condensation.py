@@ -15,7 +15,8 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from scipy import linalg, sparse
+from scipy import sparse
+from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
 from solver.discrete.problem import Array, Indices, Problem, components
@@ -24,6 +25,9 @@ from solver.reference.assembly import assembled_stiffness, external_force
 
 LOOSE = 1e-14
 """Pivot, as a share of its diagonal entry, below which a structure counts as not held."""
+
+SOFTEST = 1e-8
+"""Spring at a pair, at least, as a share of the stiffest degree of freedom."""
 
 
 class NotHeldError(ValueError):
@@ -68,6 +72,7 @@ class Condensation:
         load = self._force[free] - stiffness[:, self._fixed] @ self._prescribed
         stiffness = stiffness[:, free]
         diagonal = stiffness.diagonal()
+        diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
         self._springs = 1.0 / (abs(own) @ (1.0 / diagonal))
         held = stiffness + own.T @ sparse.diags_array(self._springs) @ own
         n_own = len(self.moving)
@@ -184,11 +189,11 @@ _NOT_HELD = (
 
 
 def _inverse(compliance: Array) -> Array:
-    try:
-        factor = linalg.cho_factor(compliance, check_finite=False)
-    except linalg.LinAlgError as trouble:
+    factor, trouble = lapack.dpotrf(compliance)
+    if trouble:
         raise NotHeldError(
-            "Contacts close a ring of bodies, so that their forces are not determinate."
-        ) from trouble
-    found = linalg.cho_solve(factor, np.eye(len(compliance)), check_finite=False)
-    return np.asarray(0.5 * (found + found.T))
+            "The forces of some contacts are not determinate: they join bodies in a ring, or one "
+            "body to two that are held there."
+        )
+    upper = np.triu(lapack.dpotri(factor)[0])
+    return np.asarray(upper + np.triu(upper, 1).T)

@@ -37,8 +37,8 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
     """Solve instant by instant.
 
     Friction may have several solutions for a large mu, or none where contact alone holds a body.
-    Where several exist this is one of them; where none is found, `converged` is False, and the
-    contacts stay where they were, by forces that break the laws.
+    Where several exist this is one of them, and `ambiguous` if that shows; where none is found,
+    `converged` is False, and the contacts stay where they were, by forces that break the laws.
 
     Where the normal jump is prescribed, contact shares its force with the support in any way: it
     is taken as zero, and so is the friction there. Where the tangential jump is, friction opposes
@@ -62,22 +62,26 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
     condensed, rules = Condensation(problem), rules_of(problem)
     newton = _Newton(condensed.stiffness, rules.kept(condensed.moving), condensed.load)
     jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))
+    ambiguous = np.zeros(problem.n_instants, dtype=bool)
     for instant, load in enumerate(condensed.load.T):
         if stop is not None and stop():
             raise Interrupted
         jump[:, instant], force[:, instant] = newton(load)
+        ambiguous[instant] = newton.response.turned
     displacement = condensed.displacement(jump, force)
     jumps = condensed.jump(displacement)
     jumps[condensed.moving] = jump
     forces = _all_forces(condensed, rules, jumps, force)
     residual = _residual(condensed, rules, displacement, forces)
+    converged = residual <= CONVERGED
     return Reference(
         problem=problem,
         displacement=displacement * problem.scales.displacement,
         contact_force=forces * problem.scales.force,
         status=_status(rules, jumps, forces),
         residual=float(residual.max(initial=0.0)),
-        converged=residual <= CONVERGED,
+        converged=converged,
+        ambiguous=ambiguous & converged,
         steps=newton.response.solutions,
         seconds=time.perf_counter() - start,
     )

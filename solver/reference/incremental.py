@@ -56,6 +56,9 @@ class Reference:
         storing v in doubles costs as much.
     converged
         Whether the instants are solved, shape (n_instants,).
+    ambiguous
+        Instants whose solution is certainly one of several, same shape; others may be, too, where
+        friction is large.
     steps
         Newton steps, which are linear systems of full size, in all.
     seconds
@@ -68,6 +71,7 @@ class Reference:
     status: NDArray[np.int8]
     residual: float
     converged: NDArray[np.bool_]
+    ambiguous: NDArray[np.bool_]
     steps: int
     seconds: float
 
@@ -126,6 +130,7 @@ def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Ref
         status=np.sign(increments.T[structure.point_dofs]).astype(np.int8),
         residual=residual,
         converged=np.ones(problem.n_instants, dtype=bool),
+        ambiguous=np.zeros(problem.n_instants, dtype=bool),
         steps=structure.band.solutions,
         seconds=time.perf_counter() - start,
     )

@@ -22,6 +22,8 @@ States = NDArray[np.int8]
 HELD = 0
 SINGULAR = 1e-12
 """Pivot, as a share of the largest, below which a system of free jumps is singular."""
+ROUNDING = 1e-14
+"""The same as a share of the largest stiffness of all jumps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +118,9 @@ class Response:
         Systems solved.
     unbalanced
         Largest force out of balance in the last one; more than rounding, where a motion is free.
+    turned
+        Whether the determinant of the last one is negative. That of a convex problem never is,
+        and the signs at all solutions of an instant add up to one: so it has others.
     singular
         Whether the last one left a motion free; then its smallest solution is given.
     """
@@ -165,8 +170,12 @@ class Response:
             self._factors, self._pivots, _ = lapack.dgetrf(matrix)
         else:
             self._factors, self._pivots = matrix, free
-        sizes = np.abs(np.diagonal(self._factors))
-        self.singular = bool(sizes.min(initial=np.inf) <= SINGULAR * sizes.max(initial=0.0))
+        diagonal = np.diagonal(self._factors)
+        swaps = np.count_nonzero(self._pivots != np.arange(len(free)))
+        self.turned = bool((np.count_nonzero(diagonal < 0.0) + swaps) % 2)
+        sizes = np.abs(diagonal)
+        least = max(SINGULAR * sizes.max(initial=0.0), ROUNDING * self.unit.max(initial=0.0))
+        self.singular = bool(sizes.min(initial=np.inf) <= least)
 
     def _solve(self, right: Array) -> Array:
         if not len(right):

@@ -1,0 +1,87 @@
+"""Two ways to one result: LATIN over all instants at once, and instant by instant."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+from contact_problems import block
+
+from solver.discrete.contact_fields import OPEN
+from solver.discrete.stack import discretise_stack
+from solver.latin import Ending, iterations, solve
+from solver.reference.choice import reference_of
+from solver.reference.distance import determinate_forces, distance_to
+from solver.scenes.bar import BarSettings
+from solver.scenes.stack import Given, Side
+
+HERE = np.linspace(0.0, 1.0, 17)
+LEANING = Side(Given(True, 1e-4 * HERE, 0.0 * HERE), Given(False, 0.0 * HERE, 0.0 * HERE))
+"""A side whose horizontal displacement is prescribed: it rubs on the support as it moves."""
+CASES = {
+    "pressed, then sheared back and forth": {},
+    "much friction": {"friction": 1.0, "shear": 0.5},
+    "tilted until it lifts off": {"shear": 0.0, "slope": 2.0},
+    "two bodies": {"bodies": 2, "height": 0.3, "elements": (12, 4), "cuts": (2, 1)},
+    "a side that moves": {"left": LEANING, "shear": 0.1},
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request):
+    problem = discretise_stack(block(**CASES[request.param]))
+    settings = BarSettings().replace(relaxation=0.9)
+    iterate = next(islice(iterations(problem, settings), 399, None))
+    return problem, reference_of(problem), iterate
+
+
+def test_converged_latin_is_the_reference(case):
+    problem, reference, iterate = case
+    distance = distance_to(reference, problem)
+    assert reference.converged.all()
+    assert reference.residual <= 1e-12
+    assert distance.of_displacement(iterate) < 1e-6
+    assert distance.of_friction_force(iterate) < 1e-6
+
+
+def test_both_show_the_same_at_every_interface(case):
+    problem, reference, iterate = case
+    size = np.abs(reference.displacement).max()
+    for name in problem.rubbing:
+        ours, theirs = iterate.contact(name), reference.contact(name)
+        np.testing.assert_allclose(ours.opening, theirs.opening, atol=1e-5 * size)
+        np.testing.assert_allclose(ours.slip, theirs.slip, atol=1e-5 * size)
+
+
+def test_the_tilted_block_lifts_off_and_comes_back():
+    reference = reference_of(discretise_stack(block(**CASES["tilted until it lifts off"])))
+    status = reference.contact("support").status
+    opened, closed = np.diff((status == OPEN).astype(int), axis=1) > 0, status[:, -1] != OPEN
+    assert (opened[:, 3:].any(axis=1) & closed).sum() > 3
+
+
+def test_a_reference_is_no_distance_from_itself(case):
+    problem, reference, _ = case
+    distance = distance_to(reference, problem)
+    assert distance.of_displacement(reference) == 0.0
+    assert distance.of_friction_force(reference) == 0.0
+
+
+def test_a_solve_records_its_errors_and_ends_by_its_rules():
+    problem = discretise_stack(block())
+    distance = distance_to(reference_of(problem), problem)
+    settings = BarSettings().replace(relaxation=0.9, tolerance=1e-14)
+    solution = solve(problem, settings, distance=distance)
+    assert solution.status.ending is Ending.CONVERGED
+    assert solution.records[-1].error_force < 1e-4 < 1e-2 < solution.records[0].error_force
+
+
+def test_only_forces_that_a_support_does_not_share_are_compared():
+    wall = Side(Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE))
+    for side, normal, tangential in ((LEANING, True, True), (wall, False, False)):
+        problem = discretise_stack(block(left=side))
+        places = problem.contact_places["support"]
+        first, second = (determinate_forces(problem)[place] for place in places)
+        assert np.all(first[0, 1:] == normal)
+        assert np.all(second[0, 1:] == tangential)
+        assert first[1:].all()
+        assert second[1:].all()
