@@ -229,9 +229,7 @@ def test_the_bar_keeps_its_own_solver():
 
 
 def test_decomposition_changes_nothing():
-    whole, parts = (
-        reference_of(discretise_stack(block(cuts=cuts))) for cuts in ((1, 1), (3, 2))
-    )
+    whole, parts = (reference_of(discretise_stack(block(cuts=cuts))) for cuts in ((1, 1), (3, 2)))
     assert np.array_equal(whole.status, parts.status)
     np.testing.assert_allclose(whole.contact_force, parts.contact_force, atol=1e-6)
 

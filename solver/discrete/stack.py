@@ -205,8 +205,9 @@ def _substructure(
         trace.append(np.searchsorted(part.kept.dofs, dofs.ravel()))
         direction.append(density * np.repeat(_edge_weights(rectangle, side), len(components)))
     found = Elasticity(part.kept.stiffness, np.concatenate(trace), np.concatenate(direction))
-    # A group of identical substructures has body forces on all or on none.
-    key = id(part.kept), part.force is not None
+    # Members of a group have body forces on all or on none, and see the same macro forces.
+    macro = [not isinstance(_neighbour(scene, part.place, side), str) for side in part.held]
+    key = id(part.kept), part.force is not None, *macro
     return Substructure(
         elasticity=shared.setdefault(key, found),
         dofs=np.searchsorted(skeleton, part.dofs),

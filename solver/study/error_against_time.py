@@ -17,10 +17,12 @@ from typing import Any, Literal
 import numpy as np
 
 from solver.discrete import discretise
-from solver.discrete.problem import Array
+from solver.discrete.problem import Array, Problem
 from solver.latin import iterations
+from solver.laws import Friction
+from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
-from solver.reference.incremental import incremental
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 from solver.study.machine import machine
 from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
@@ -51,6 +53,15 @@ FORMS: dict[str, dict[str, Any]] = {
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
 """Settings that make the forms of LATIN; all others are those of the run."""
+PLANE_FORMS: dict[str, dict[str, Any]] = {
+    "LATIN monoscale": {**PLAIN, "multiscale": False},
+    "LATIN multiscale": PLAIN,
+    "LATIN auto k": AUTO,
+    "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
+    "LATIN the same, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
+    "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
+}
+"""The same in the plane, where no run starts from coarser meshes."""
 INCREMENTAL = "incremental solver"
 Kind = Literal["latin", "incremental", "peer"]
 
@@ -153,28 +164,45 @@ def error_against_time(settings: Settings, repeats: int, tell: Tell = silent) ->
         for entry, times in zip(entries, samples, strict=True):
             times.append(entry.timed())
     courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
-    absent = tuple(peer.name for peer in PEERS if not peer.installed)
+    missing = tuple(peer.name for peer in PEERS if not peer.installed)
+    absent = missing if is_quadratic(discretise(settings)) else ()
     return Study(settings, repeats, machine(), tuple(courses), absent, tuple(troubles))
 
 
 def _entries(settings: Settings, troubles: list[str], tell: Tell) -> list[_Entry]:
     """Find the errors of all methods, without the clock."""
     problem = discretise(settings)
-    reference = incremental(problem)
+    reference = reference_of(problem)
     distance = distance_to(reference, problem)
-    peers = [peer for peer in PEERS if peer.installed]
+    peers = [peer for peer in PEERS if peer.installed] if is_quadratic(problem) else []
+    forms = forms_of(settings)
     entries = []
-    for number, (method, form) in enumerate(FORMS.items()):
-        tell(f"Errors of {method}", number / (len(FORMS) + len(peers)))
-        entries.append(_latin_entry(method, settings.replace(**form), distance))
+    for number, (method, form) in enumerate(forms.items()):
+        tell(f"Errors of {method}", number / (len(forms) + len(peers)))
+        entries.append(_latin_entry(method, form, distance))
     steps = [float(reference.steps)]
     entries.append(
         _Entry(INCREMENTAL, "incremental", steps, [(0.0, 0.0)], lambda: [by_increments(settings)])
     )
-    for number, peer in enumerate(peers, start=len(FORMS)):
-        tell(f"Errors of {peer.name}", number / (len(FORMS) + len(peers)))
+    for number, peer in enumerate(peers, start=len(forms)):
+        tell(f"Errors of {peer.name}", number / (len(forms) + len(peers)))
         entries += _peer_entry(peer, settings, distance, troubles)
     return entries
+
+
+def forms_of(settings: Settings) -> dict[str, Settings]:
+    """Give the settings of every form of LATIN that a scene has, by name."""
+    forms = PLANE_FORMS if isinstance(settings, PlaneSettings) else FORMS
+    return {method: settings.replace(**form) for method, form in forms.items()}
+
+
+def is_quadratic(problem: Problem) -> bool:
+    """Tell whether public QP solvers are asked: for a known bound on a rigid support.
+
+    Unilateral contact with friction is no quadratic programme.
+    """
+    laws = list(problem.rubbing.values())
+    return len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
 
 
 def _latin_entry(
@@ -207,7 +235,7 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
 def by_increments(settings: Settings) -> float:
     """Give the time of the incremental solver, from settings to result, s."""
     start = time.perf_counter()
-    incremental(discretise(settings))
+    reference_of(discretise(settings))
     return time.perf_counter() - start
 
 

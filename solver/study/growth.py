@@ -8,19 +8,32 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.discrete import discretise
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
+from solver.scenes.plane import PlaneSettings
 from solver.settings import SettingError, Settings
-from solver.study.error_against_time import FORMS, INCREMENTAL, by_increments, course_of
+from solver.study.error_against_time import INCREMENTAL, by_increments, course_of, forms_of
 from solver.study.progress import Tell, silent
 
 SIZES = {
     "elements": (50, 100, 200, 400, 800),
     "instants": (51, 101, 201, 401),
     "substructures": (1, 2, 5, 10, 25, 50),
+    "wires": (2, 4, 8, 16),
 }
 """Sizes by the setting that changes; the others stay as they are."""
-MEASURED = ("LATIN multiscale", "LATIN auto k, nested, Anderson")
+PLANE_SIZES = {
+    "elements": (24, 48, 96),
+    "instants": (41, 81, 161),
+    "substructures": (1, 2, 4, 8),
+    "layers": (2, 4, 8, 16),
+}
+"""The same in the plane."""
+MEASURED = (
+    "LATIN multiscale",
+    "LATIN auto k, nested, Anderson",
+    "LATIN auto k, Anderson",
+)
 LEVEL = 0.01
 """Error of the friction force up to which iterations are counted."""
 
@@ -64,7 +77,8 @@ class Growth:
 def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
     """Measure all sizes; those that the scene cannot have, or has no setting for, are left out."""
     found: dict[tuple[str, str], list[Size]] = {}
-    every = [(setting, size) for setting, sizes in SIZES.items() for size in sizes]
+    chosen = PLANE_SIZES if isinstance(settings, PlaneSettings) else SIZES
+    every = [(setting, size) for setting, sizes in chosen.items() for size in sizes]
     for number, (setting, size) in enumerate(every):
         tell(f"Growth: {size} {setting}", number / len(every))
         try:
@@ -78,11 +92,13 @@ def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
 
 def _one_size(settings: Settings, size: int) -> dict[str, Size]:
     problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
+    distance = distance_to(reference_of(problem), problem)
     seconds = statistics.median(by_increments(settings) for _ in range(3))
     found = {INCREMENTAL: Size(size, seconds, None, seconds)}
-    for method in MEASURED:
-        course = course_of(method, settings.replace(**FORMS[method]), distance, LEVEL)
+    for method, form in forms_of(settings).items():
+        if method not in MEASURED:
+            continue
+        course = course_of(method, form, distance, LEVEL)
         reached = course.reached(LEVEL)
         found[method] = Size(
             size,
