@@ -7,7 +7,8 @@ pairs first and the laws take them out again: with K_r = K + J' rho J and C = J 
     S jump = f + q,    S = C^-1 - rho,    q = C^-1 J K_r^-1 F,
 
 which holds for every rho > 0 and needs no more than that the structure, glued at its contacts,
-is held. Jumps and forces are stacked as `Problem.sum_of_contact` says.
+is held. Where contacts close a ring, jumps depend on each other; S takes them for independent, with
+a stiffness that ties them. Jumps and forces are stacked as `Problem.sum_of_contact` says.
 """
 
 from __future__ import annotations
@@ -22,12 +23,16 @@ from scipy.sparse.linalg import splu
 from solver.discrete.problem import Array, Indices, Problem, components
 from solver.laws import Contact, Friction
 from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.self_stress import self_stresses
 
 LOOSE = 1e-14
 """Pivot, as a share of its diagonal entry, below which a structure counts as not held."""
 
 SOFTEST = 1e-8
 """Spring at a pair, at least, as a share of the stiffest degree of freedom."""
+
+TIE = 1e3
+"""Stiffness that ties jumps which depend on each other, in springs at a pair."""
 
 
 class NotHeldError(ValueError):
@@ -48,6 +53,11 @@ class Condensation:
         S of them, shape (n_moving, n_moving), symmetric, scaled.
     load
         q of them, shape (n_moving, n_instants), scaled.
+    unit
+        Stiffness of each alone, shape (n_moving,), scaled.
+    stresses, tie
+        Where jumps depend on each other: forces that move nothing, (n_moving, n_stresses), and the
+        stiffness in S that keeps the jumps from coming apart along them, scaled.
     given
         Jumps that prescribed displacements make, shape (n_forces, n_instants); final where a jump
         is not unknown.
@@ -82,8 +92,12 @@ class Condensation:
         solved = _solve(sparse.csc_array(held), sides)
         self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
         compliance = own @ self._answers
+        self.stresses: Array = self_stresses(own)
+        self.tie = TIE * float(self._springs.max(initial=0.0))
+        compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
         inverse = _inverse(0.5 * (compliance + compliance.T))
         self.stiffness: Array = inverse - np.diag(self._springs)
+        self.unit: Array = np.diagonal(self.stiffness) - self.tie * (self.stresses**2).sum(axis=1)
         given = self.given[self.moving]
         self.load: Array = inverse @ (own @ self._alone) + self.stiffness @ given
 
@@ -191,9 +205,6 @@ _NOT_HELD = (
 def _inverse(compliance: Array) -> Array:
     factor, trouble = lapack.dpotrf(compliance)
     if trouble:
-        raise NotHeldError(
-            "The forces of some contacts are not determinate: they join bodies in a ring, or one "
-            "body to two that are held there."
-        )
+        raise NotHeldError(_NOT_HELD)
     upper = np.triu(lapack.dpotri(factor)[0])
     return np.asarray(upper + np.triu(upper, 1).T)

@@ -30,6 +30,10 @@ NEWTON_LIMIT = 30
 """Newton steps from one guess of the states; more than a dozen means that they cycle."""
 CONVERGED = 1e-9
 """Relative KKT residual up to which an instant counts as solved."""
+PASSES = 30
+"""Times at most that an instant is solved to keep dependent jumps together."""
+TOGETHER = 1e-12
+"""Force that still ties dependent jumps, as a share of the largest load."""
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
@@ -60,13 +64,13 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
     """
     start = time.perf_counter()
     condensed, rules = Condensation(problem), rules_of(problem)
-    newton = _Newton(condensed.stiffness, rules.kept(condensed.moving), condensed.load)
+    newton = _Newton(condensed, rules.kept(condensed.moving))
     jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))
     ambiguous = np.zeros(problem.n_instants, dtype=bool)
-    for instant, load in enumerate(condensed.load.T):
+    for instant in range(problem.n_instants):
         if stop is not None and stop():
             raise Interrupted
-        jump[:, instant], force[:, instant] = newton(load)
+        jump[:, instant], force[:, instant] = newton(instant)
         ambiguous[instant] = newton.response.turned
     displacement = condensed.displacement(jump, force)
     jumps = condensed.jump(displacement)
@@ -90,27 +94,49 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
 class _Newton:
     """Finds jumps and forces of one instant after the other."""
 
-    def __init__(self, stiffness: Array, rules: Rules, load: Array) -> None:
-        self.response = Response(stiffness, rules)
-        self._stiffness, self._rules = stiffness, rules
-        self._position = np.zeros(len(rules.gap))
+    def __init__(self, condensed: Condensation, rules: Rules) -> None:
+        self.response = Response(condensed.stiffness, rules)
+        self._condensed, self._rules = condensed, rules
+        self._position, self._self_stress = np.zeros((2, len(rules.gap)))
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
-        self._largest = float(np.abs(load).max(initial=0.0))
+        self._largest = float(np.abs(condensed.load).max(initial=0.0))
 
-    def __call__(self, load: Array) -> tuple[Array, Array]:
+    def __call__(self, instant: int) -> tuple[Array, Array]:
+        """Give jump and force, shape (n,) each.
+
+        The forces that move nothing are the multipliers that keep dependent jumps together
+        (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
+        """
+        condensed = self._condensed
+        stresses, load = condensed.stresses, condensed.load[:, instant]
+        for _ in range(PASSES):
+            solved = self._solved(load - self._self_stress)
+            if solved is None:
+                force = condensed.stiffness @ self._position - load + self._self_stress
+                return self._position, force
+            jump, force = self.response(solved, self._sides(load - self._self_stress))
+            apart = stresses.T @ (jump - condensed.given[condensed.moving, instant])
+            pull = condensed.tie * (stresses @ apart)
+            if np.abs(pull).max(initial=0.0) <= TOGETHER * self._largest:
+                break
+            self._self_stress = self._self_stress + pull
+        self._states, self._position = solved, jump
+        return jump, force
+
+    def _sides(self, load: Array) -> Sides:
         rules = self._rules
-        held = np.where(rules.normal, -rules.gap, self._position)
-        sides = Sides(load, rules.bound, held)
+        return Sides(load, rules.bound, np.where(rules.normal, -rules.gap, self._position))
+
+    def _solved(self, load: Array) -> States | None:
+        """Find the states under a load, or None."""
+        sides = self._sides(load)
         states, done = self._iterate(self._states, sides)
         if not done:
-            found = unload(self.response, rules, sides, self._position)
-            if found is not None:
-                states, done = self._iterate(found, sides)
-        if not done:
-            return self._position, self._stiffness @ self._position - load
-        self._states = states
-        self._position, force = self.response(states, sides)
-        return self._position, force
+            found = unload(self.response, self._rules, sides, self._position)
+            if found is None:
+                return None
+            states, done = self._iterate(found, sides)
+        return states if done else None
 
     def _iterate(self, states: States, sides: Sides) -> tuple[States, bool]:
         """Seek the states, and tell whether they are right."""
@@ -168,7 +194,7 @@ def _residual(
     """
     jumps = condensed.jump(displacement)
     unit = np.zeros((len(jumps), 1))
-    unit[condensed.moving, 0] = np.diagonal(condensed.stiffness)
+    unit[condensed.moving, 0] = condensed.unit
     unit[unit == 0.0] = 1.0
     opening = jumps + rules.gap[:, None]
     slip = np.diff(jumps, axis=1, prepend=0.0)

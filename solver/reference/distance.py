@@ -6,10 +6,12 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 
 from solver.discrete.problem import Indices, Problem
 from solver.laws import Neumann
 from solver.reference.condensation import jumps
+from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 
 Array = NDArray[np.float64]
@@ -102,7 +104,8 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
     """Tell where contact forces are determinate, stacked, shape (n_forces, n_instants).
 
     Where prescribed displacements alone make a jump, a normal force is not, nor is the friction
-    that it carries; friction of a known bound is while it slips.
+    that it carries; friction of a known bound is while it slips. Forces that can balance each other
+    (`solver.reference.self_stress`) are not.
     """
     dofs, displacement = problem.prescribed
     free = np.ones(problem.n_dofs)
@@ -112,4 +115,8 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
     slips = np.diff(all_jumps[:, dofs] @ displacement, axis=1, prepend=0.0) != 0.0
     slips[rules.normal] = False
     slips &= (moves | ~rules.normal)[rules.partner][:, None]
-    return np.asarray(moves[:, None] & (moves | ~rules.normal)[rules.partner][:, None] | slips)
+    moves &= (moves | ~rules.normal)[rules.partner]
+    own = np.flatnonzero(moves)
+    ring = np.any(self_stresses((all_jumps @ sparse.diags_array(free))[own]) != 0.0, axis=1)
+    moves[own[ring]] = False
+    return np.asarray(moves[:, None] | slips)
