@@ -16,6 +16,7 @@ from contact_problems import (
     two_bodies,
 )
 
+from solver.discrete import discretise
 from solver.discrete.bar import discretise_bar
 from solver.discrete.stack import discretise_stack
 from solver.laws import Contact, Dirichlet, Friction
@@ -26,6 +27,7 @@ from solver.reference.condensation import NotHeldError
 from solver.reference.distance import determinate_forces
 from solver.reference.incremental import Interrupted, incremental
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.strand import StrandSettings
 
 SMALL = 1e-10
 
@@ -155,6 +157,14 @@ def test_strands_that_rub_on_each_other_obey_every_law(strands, ring):
     assert determinate_forces(of).all() != ring
     assert_laws(of, found)
     assert {-1, 0, 1} == set(np.unique(found.status))
+
+
+@pytest.mark.parametrize("grip", ["force", "displacement"])
+def test_a_broken_wire_whose_two_ends_rub_on_both_neighbours_is_solved(grip):
+    of = discretise(StrandSettings.checked({"grip": grip, "instants": 41, "wires": 4}))
+    found = reference_of(of)
+    assert found.residual <= SMALL
+    assert np.count_nonzero(~determinate_forces(of)[:, 0]) == 4
 
 
 @pytest.mark.parametrize("make", [on_a_support, two_bodies])

@@ -53,8 +53,8 @@ class Condensation:
         S of them, shape (n_moving, n_moving), symmetric, scaled.
     load
         q of them, shape (n_moving, n_instants), scaled.
-    unit
-        Stiffness of each alone, shape (n_moving,), scaled.
+    springs
+        rho of each, shape (n_moving,), scaled.
     stresses, tie
         Where jumps depend on each other: forces that move nothing, (n_moving, n_stresses), and the
         stiffness in S that keeps the jumps from coming apart along them, scaled.
@@ -83,8 +83,8 @@ class Condensation:
         stiffness = stiffness[:, free]
         diagonal = stiffness.diagonal()
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
-        self._springs = 1.0 / (abs(own) @ (1.0 / diagonal))
-        held = stiffness + own.T @ sparse.diags_array(self._springs) @ own
+        self.springs: Array = 1.0 / (abs(own) @ (1.0 / diagonal))
+        held = stiffness + own.T @ sparse.diags_array(self.springs) @ own
         n_own = len(self.moving)
         patterns, course = _separated(load)
         sides = np.empty((len(free), n_own + patterns.shape[1]), order="F")
@@ -93,11 +93,10 @@ class Condensation:
         self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
         compliance = own @ self._answers
         self.stresses: Array = self_stresses(own)
-        self.tie = TIE * float(self._springs.max(initial=0.0))
+        self.tie = TIE * float(self.springs.max(initial=0.0))
         compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
         inverse = _inverse(0.5 * (compliance + compliance.T))
-        self.stiffness: Array = inverse - np.diag(self._springs)
-        self.unit: Array = np.diagonal(self.stiffness) - self.tie * (self.stresses**2).sum(axis=1)
+        self.stiffness: Array = inverse - np.diag(self.springs)
         given = self.given[self.moving]
         self.load: Array = inverse @ (own @ self._alone) + self.stiffness @ given
 
@@ -111,7 +110,7 @@ class Condensation:
         """
         found = np.empty_like(self._force)
         found[self._fixed] = self._prescribed
-        springs = self._springs[:, None] * (jump - self.given[self.moving])
+        springs = self.springs[:, None] * (jump - self.given[self.moving])
         found[self._free] = self._alone + self._answers @ (force + springs)
         return found
 

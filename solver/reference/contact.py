@@ -32,7 +32,7 @@ CONVERGED = 1e-9
 """Relative KKT residual up to which an instant counts as solved."""
 PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
-TOGETHER = 1e-12
+TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 
@@ -114,13 +114,14 @@ class _Newton:
             if solved is None:
                 force = condensed.stiffness @ self._position - load + self._self_stress
                 return self._position, force
+            self._states = solved
             jump, force = self.response(solved, self._sides(load - self._self_stress))
             apart = stresses.T @ (jump - condensed.given[condensed.moving, instant])
             pull = condensed.tie * (stresses @ apart)
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._largest:
                 break
             self._self_stress = self._self_stress + pull
-        self._states, self._position = solved, jump
+        self._position = jump
         return jump, force
 
     def _sides(self, load: Array) -> Sides:
@@ -188,13 +189,13 @@ def _residual(
     """Give the KKT residual of every instant, relative to the largest force of all.
 
     The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
-    opening g, and of the friction force from f - r v cut to its bound, with the slip v. The
-    stiffness r of the jump alone makes a force of a length; the conditions hold if and only if
-    both distances vanish.
+    opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness
+    r of the pair makes a force of a length; the conditions hold if and only if both distances
+    vanish.
     """
     jumps = condensed.jump(displacement)
     unit = np.zeros((len(jumps), 1))
-    unit[condensed.moving, 0] = condensed.unit
+    unit[condensed.moving, 0] = condensed.springs
     unit[unit == 0.0] = 1.0
     opening = jumps + rules.gap[:, None]
     slip = np.diff(jumps, axis=1, prepend=0.0)
