@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from solver.discrete.problem import Inside
 from solver.latin import Iterate, Solution
 from solver.laws import Friction
 from solver.reduction.basis import Reduction
@@ -110,9 +111,11 @@ def _bases(reduction: Reduction | None) -> dict[str, int]:
 def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     """Give the arrays of a result file (SI; space first, time last).
 
-    `displacement` is that of the degrees of freedom at `x`, body after body; `friction_force` and
-    `status` are those of the points of all interfaces with friction, one after the other. Where
-    there are several of them, each also has arrays of its own (`interface_arrays`).
+    Along rods `displacement` is that of the degrees of freedom at `x`, body after body;
+    `friction_force` and `status` are those of the points of all interfaces with friction, one after
+    the other. In the plane there are all nodes `x`, (n_nodes, 2), the nodes of `elements`,
+    (n_elements, 4), and their `displacement`, (n_nodes, 2, n_instants). Interfaces between bodies,
+    or that may open, have arrays of their own (`interface_arrays`).
 
     With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
     shape (n_iterations, n_substructures), as in `ReductionRecord`.
@@ -131,14 +134,30 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
                 [getattr(part, name) for part in entry.reduction] for entry in solution.records
             ]
     return {
-        "x": problem.positions,
         "t": problem.instants,
-        "displacement": iterate.displacement,
-        "friction_force": iterate.friction_force,
-        "status": iterate.status,
+        **(
+            _on_lines(iterate) if problem.inside is None else _in_the_plane(problem.inside, iterate)
+        ),
         **interface_arrays(iterate),
         **{name: np.array(column) for name, column in history.items()},
         "settings": json.dumps({"scene": settings.scene, **settings.values()}),
+    }
+
+
+def _on_lines(iterate: Iterate) -> dict[str, Any]:
+    return {
+        "x": iterate.problem.positions,
+        "displacement": iterate.displacement,
+        "friction_force": iterate.friction_force,
+        "status": iterate.status,
+    }
+
+
+def _in_the_plane(inside: Inside, iterate: Iterate) -> dict[str, Any]:
+    return {
+        "x": inside.nodes,
+        "elements": inside.elements,
+        "displacement": inside.displacement(iterate.displacement, slice(None)),
     }
 
 

@@ -97,11 +97,14 @@ class Inside(Protocol):
         Nodes of every element, counter-clockwise, shape (n_elements, 4).
     bodies
         Body of every element, shape (n_elements,).
+    components
+        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
     """
 
     nodes: Array
     elements: Indices
     bodies: Indices
+    components: Indices
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
         """Give the displacement of all nodes, shape (n_nodes, 2, n), m.

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
@@ -24,6 +23,19 @@ Corner = tuple[int, int]
 OPPOSITE = {"right": "left", "top": "bottom"}
 
 
+@dataclass(frozen=True)
+class _Held:
+    """Which rows a side of a substructure has: components, and nodes in order along the side."""
+
+    components: tuple[int, ...]
+    first: int = 0
+    last: int | None = None
+
+    @property
+    def span(self) -> slice:
+        return slice(self.first, self.last)
+
+
 @dataclass(eq=False)
 class _Part:
     """A substructure as it is made."""
@@ -32,7 +44,7 @@ class _Part:
     place: Place
     corner: Corner
     nodes: Indices
-    held: dict[str, tuple[int, ...]]
+    held: dict[str, _Held]
     rows: dict[str, Indices]
     force: Array | None
 
@@ -61,6 +73,7 @@ class StackInside:
             [part.place[2] for part in parts],
             [len(part.rectangle.elements) for part in parts],
         )
+        self.components: Indices = skeleton % 2
         self._places = [np.searchsorted(skeleton, part.dofs) for part in parts]
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
@@ -112,9 +125,10 @@ def discretise_stack(scene: Stack) -> Problem:
     parts = _parts(scene, grid)
     first = 0
     for part in parts:
-        for side, components in part.held.items():
-            size = len(components) * len(part.rectangle.edge(side))
-            part.rows[side] = np.arange(first, first + size).reshape(-1, len(components))
+        for side, held in part.held.items():
+            width = len(held.components)
+            size = width * len(part.rectangle.edge(side)[held.span])
+            part.rows[side] = np.arange(first, first + size).reshape(-1, width)
             first += size
     shared: dict[tuple[object, ...], Elasticity] = {}
     skeleton = np.unique(np.concatenate([part.dofs for part in parts]))
@@ -147,9 +161,9 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
                 nodes = grid.nodes[body, y : y + size[1] + 1, x : x + size[0] + 1]
                 place = column, row, body
                 held = {
-                    side: components
+                    side: found
                     for side in ("left", "right", "bottom", "top")
-                    if (components := _held(scene, place, side))
+                    if (found := _held(scene, place, side)).components
                 }
                 kind = shape, *held.items()
                 if kind not in kinds:
@@ -159,10 +173,10 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
     return parts
 
 
-def _kept(condensed: Condensed, held: dict[str, tuple[int, ...]]) -> Kept:
+def _kept(condensed: Condensed, held: dict[str, _Held]) -> Kept:
     edges = [
-        (2 * condensed.rectangle.edge(side)[:, None] + np.array(components)).ravel()
-        for side, components in held.items()
+        (2 * condensed.rectangle.edge(side)[one.span, None] + np.array(one.components)).ravel()
+        for side, one in held.items()
     ]
     return Kept(condensed, np.unique(np.concatenate(edges)))
 
@@ -182,13 +196,21 @@ def _neighbour(scene: Stack, place: Place, side: str) -> str | Place:
     return "support" if side == "bottom" and scene.support is not None else side
 
 
-def _held(scene: Stack, place: Place, side: str) -> tuple[int, ...]:
-    """Give the components that have rows along a side: all at an interface, or the prescribed."""
+def _held(scene: Stack, place: Place, side: str) -> _Held:
+    """Tell which rows a side has: all at an interface, or those of prescribed components.
+
+    A contact has none at an end where the left or right side prescribes the normal displacement:
+    any pressing force would be a solution there, and so would any friction up to it.
+    """
     beyond = _neighbour(scene, place, side)
-    if beyond == "support" or not isinstance(beyond, str):
-        return 0, 1
+    if beyond == "support" or (not isinstance(beyond, str) and beyond[2] != place[2]):
+        first = place[0] == 0 and scene.sides["left"].y.prescribed
+        last = place[0] == scene.substructures[0] - 1 and scene.sides["right"].y.prescribed
+        return _Held((0, 1), 1 if first else 0, -1 if last else None)
+    if not isinstance(beyond, str):
+        return _Held((0, 1))
     given = scene.sides[beyond]
-    return tuple(number for number, one in enumerate((given.x, given.y)) if one.prescribed)
+    return _Held(tuple(place for place, one in enumerate((given.x, given.y)) if one.prescribed))
 
 
 def _substructure(
@@ -200,10 +222,11 @@ def _substructure(
         rectangle.columns * rectangle.width * rectangle.rows * rectangle.height
     )
     trace, direction = [], []
-    for side, components in part.held.items():
-        dofs = 2 * rectangle.edge(side)[:, None] + np.array(components)
+    for side, held in part.held.items():
+        dofs = 2 * rectangle.edge(side)[held.span, None] + np.array(held.components)
         trace.append(np.searchsorted(part.kept.dofs, dofs.ravel()))
-        direction.append(density * np.repeat(_edge_weights(rectangle, side), len(components)))
+        weights = _edge_weights(rectangle, side)[held.span]
+        direction.append(density * np.repeat(weights, len(held.components)))
     found = Elasticity(part.kept.stiffness, np.concatenate(trace), np.concatenate(direction))
     # Members of a group have body forces on all or on none, and see the same macro forces.
     macro = [not isinstance(_neighbour(scene, part.place, side), str) for side in part.held]
@@ -257,53 +280,37 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
             continue
         above = [parts[column, 0, body] for column in range(columns)]
         under = [parts[column, rows - 1, body - 1] for column in range(columns)] if body else None
-        points = np.concatenate(
-            [part.corner[0] + np.arange(part.rectangle.columns + 1) for part in above]
-        )
-        weights = np.concatenate([_edge_weights(part.rectangle, "bottom") for part in above])
+        spans = [part.held["bottom"].span for part in above]
+        places = [part.corner[0] + np.arange(part.rectangle.columns + 1) for part in above]
+        weights = [_edge_weights(part.rectangle, "bottom") for part in above]
+        node = np.concatenate([own[span] for own, span in zip(places, spans, strict=True)])
+        found, points = np.unique(node, return_inverse=True)
         if body == 0 and scene.support is not None:
-            friction, gap = scene.support.friction, scene.support.gap[points] / scene.length
+            friction, gap = scene.support.friction, scene.support.gap[node] / scene.length
         else:
-            friction, gap = scene.friction, np.zeros(len(points))
+            friction, gap = scene.friction, np.zeros(len(node))
+        upper = np.concatenate([part.rows["bottom"] for part in above])
+        lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
+        bases = [_macro_basis(scene, len(part.rows["bottom"])) for part in above]
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
             Contact(
-                normal=np.concatenate([part.rows["bottom"][:, 1] for part in above]),
-                tangent=np.concatenate([part.rows["bottom"][:, 0] for part in above]),
-                below=None
-                if under is None
-                else (
-                    np.concatenate([part.rows["top"][:, 1] for part in under]),
-                    np.concatenate([part.rows["top"][:, 0] for part in under]),
-                ),
+                normal=upper[:, 1],
+                tangent=upper[:, 0],
+                below=None if lower is None else (lower[:, 1], lower[:, 0]),
                 points=points,
-                positions=np.linspace(0.0, scene.length, scene.elements[0] + 1),
-                weights=weights * scene.length,
+                positions=np.linspace(0.0, scene.length, scene.elements[0] + 1)[found],
+                weights=scene.length
+                * np.concatenate([own[span] for own, span in zip(weights, spans, strict=True)]),
                 gap=gap,
-                friction=np.where(_is_held(scene, points), 0.0, friction),
+                friction=np.full(len(node), friction),
                 moduli=(
                     float(scene.stiffness[body]),
-                    np.inf if under is None else float(scene.stiffness[body - 1]),
+                    np.inf if lower is None else float(scene.stiffness[body - 1]),
                 ),
-                macro=None
-                if under is None
-                else sparse.csr_array(
-                    sparse.block_diag(
-                        [_macro_basis(scene, len(part.rows["bottom"])) for part in above]
-                    )
-                ),
+                macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
             ),
         )
-
-
-def _is_held(scene: Stack, points: Indices) -> NDArray[np.bool_]:
-    """Tell at which points of a contact a side holds the opening.
-
-    The pressing force there could not be told from the side's reaction, nor could friction.
-    """
-    left, right = (scene.sides[side].y.prescribed for side in ("left", "right"))
-    held: NDArray[np.bool_] = (points == 0) & left | (points == scene.elements[0]) & right
-    return held
 
 
 def _prescribed(

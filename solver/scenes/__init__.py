@@ -28,12 +28,12 @@ CATALOGUE = {
     ),
     "block": Entry(
         "Block pressed and sheared on a rough support",
-        "Signorini contact with Coulomb friction; theory.md, 6",
+        "Johnson, Contact Mechanics, 1985, ch. 4 and 7",
         BlockSettings,
     ),
     "layers": Entry(
         "Stack of layers bent under pressure",
-        "leaf spring, or the flattened section of a cable",
+        "a leaf spring, or the section of a cable laid flat",
         LayersSettings,
     ),
     "strand": Entry(

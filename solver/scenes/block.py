@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from solver.loads import PRESETS, Array, interpolate
+from solver.scenes.equilibrium import loss_of_equilibrium
 from solver.scenes.sides import SideSettings
 from solver.scenes.stack import Given, Side, Stack, Support
-from solver.settings import choice, curve, quantity, redefined
+from solver.settings import SettingError, choice, curve, quantity, redefined
 
 GAPS = ("flat", "parabola")
 
@@ -88,6 +89,19 @@ class BlockSettings(SideSettings):
     top = redefined(SideSettings.param["top"], "displacement")
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
+
+    def check_together(self) -> None:
+        """Refuse loads under which contact alone cannot hold the body."""
+        super().check_together()
+        loss = loss_of_equilibrium(block(self))
+        if loss is not None:
+            raise SettingError(
+                "top",
+                self.top,
+                "sides and loads that leave the body in equilibrium",
+                f"nothing but contact holds it, and from {loss.instant:g} s on {loss.reason}: "
+                "lower that load, press more, raise friction, or hold a side",
+            )
 
 
 def block(settings: BlockSettings) -> Stack:

@@ -63,7 +63,7 @@ class LayersSettings(PlaneSettings):
         essential=True,
     )
     deflection = quantity(
-        1e-3,
+        2e-3,
         (-1e12, 1e12),
         (-1e-2, 1e-2),
         "Largest transverse displacement of the right end.",

@@ -89,7 +89,7 @@ class PlaneSettings(Settings):
     )
     elements = count(
         48,
-        (1, 5000),
+        (2, 5000),
         (8, 192),
         "Number of bilinear elements along a body, equal in size.",
         group="Body",

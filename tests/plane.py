@@ -1,0 +1,45 @@
+"""Runs of the plane scenes, shared by tests: driven until the interface laws hold."""
+
+from itertools import islice
+
+import numpy as np
+
+from solver.discrete import discretise
+from solver.latin import iterations
+from solver.latin.indicators import behaviour_indicator
+from solver.scenes import CATALOGUE
+
+LOOK = 10
+
+
+def solved(scene, *, violation=1e-8, most=1500, **values):
+    """Iterate until the k-free indicator, looked at now and then, is low enough."""
+    settings = CATALOGUE[scene].settings.checked(values)
+    problem = discretise(settings)
+    for iterate in islice(iterations(problem, settings), LOOK - 1, most, LOOK):
+        found = behaviour_indicator(iterate).total
+        if found <= violation:
+            return iterate
+    raise AssertionError(f"the laws are violated by {found} after {iterate.number} iterations")
+
+
+def lengths(iterate, name="support"):
+    """Give the tributary length of every point of a contact, shape (n_points, 1), m."""
+    law = iterate.problem.rubbing[name]
+    return law.by_point(law.weights[:, None])
+
+
+def reaction(iterate, side):
+    """Give the resultant of the forces on a held side, along x and y, shape (2, n_instants), N."""
+    problem = iterate.problem
+    rows = problem.interfaces[side].rows
+    force = iterate.boundary_force[rows] * problem.scales.force
+    components = problem.inside.components[problem.row_dofs[rows]]
+    return np.stack([force[components == number].sum(axis=0) for number in (0, 1)])
+
+
+def stress(iterate, instant=-1):
+    """Give stresses (xx, yy, xy) of all elements at an instant, shape (n_elements, 3), Pa."""
+    inside = iterate.problem.inside
+    found = inside.displacement(iterate.displacement, [instant])
+    return inside.stress(found[:, :, 0])

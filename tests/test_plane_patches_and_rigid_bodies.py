@@ -1,0 +1,144 @@
+"""Uniform states, resultants, sliding everywhere, and any decomposition: exact on every mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from plane import lengths, reaction, solved, stress
+
+PRESSURE, SHEAR = 1e6, 4e5
+DECOMPOSITIONS = [(1, 1), (3, 2), (10, 7)]
+PATCH = {
+    "gap": "flat",
+    "length": 0.1,
+    "height": 0.07,
+    "elements": 10,
+    "elements_up": 7,
+    "instants": 5,
+    "top": "traction",
+    "top_normal_traction": -PRESSURE,
+    "violation": 1e-10,
+}
+SHEARED = {
+    f"{side}_tangential_{name}": value
+    for side, sign in (("left", -1.0), ("right", 1.0), ("top", 1.0))
+    for name, value in (("traction", sign * SHEAR), ("load", "hold"))
+} | {"left": "traction", "right": "traction"}
+
+
+def cut(decomposition):
+    return dict(zip(("substructures", "substructures_up"), decomposition, strict=True))
+
+
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+@pytest.mark.parametrize("decomposition", DECOMPOSITIONS)
+def test_pressing_without_friction_leaves_a_uniform_stress(decomposition, plane):
+    iterate = solved(
+        "block", friction=0.0, left="roller", plane=plane, **PATCH, **cut(decomposition)
+    )
+    pressure = iterate.contact("support").normal_force[:, -1:] / lengths(iterate)
+    np.testing.assert_allclose(pressure, PRESSURE, rtol=1e-8)
+    np.testing.assert_allclose(
+        stress(iterate), np.broadcast_to([0.0, -PRESSURE, 0.0], (70, 3)), atol=1e-8 * PRESSURE
+    )
+
+
+@pytest.mark.parametrize("decomposition", DECOMPOSITIONS)
+def test_a_stuck_block_without_lateral_strain_is_sheared_uniformly(decomposition):
+    iterate = solved("block", friction=1.0, poisson=0.0, **PATCH, **SHEARED, **cut(decomposition))
+    fields = iterate.contact("support")
+    friction = fields.tangential_force[:, -1:] / lengths(iterate)
+    np.testing.assert_allclose(friction, -SHEAR, rtol=1e-6)
+    np.testing.assert_allclose(
+        stress(iterate), np.broadcast_to([0.0, -PRESSURE, SHEAR], (70, 3)), atol=1e-6 * PRESSURE
+    )
+    assert not fields.status[:, -1].any()
+
+
+def test_a_block_dragged_far_enough_slides_everywhere_and_its_reaction_balances_friction():
+    iterate = solved(
+        "block",
+        gap="flat",
+        elements=16,
+        elements_up=8,
+        instants=9,
+        top_normal_displacement=-1e-5,
+        top_tangential_displacement=1e-3,
+        top_tangential_load="ramp",
+        violation=1e-10,
+    )
+    fields = iterate.contact("support")
+    pressing, friction = fields.normal_force[:, -1], fields.tangential_force[:, -1]
+    assert np.all(fields.status[:, -1] == 1)
+    np.testing.assert_allclose(friction, -0.3 * pressing, atol=1e-8 * pressing.max())
+    along, up = reaction(iterate, "top")
+    np.testing.assert_allclose(along[-1], 0.3 * pressing.sum(), rtol=1e-8)
+    np.testing.assert_allclose(up[-1], -pressing.sum(), rtol=1e-8)
+
+
+@pytest.mark.parametrize("elements", [8, 16, 32])
+def test_pressure_under_a_tilting_block_balances_force_and_moment(elements):
+    iterate = solved(
+        "block",
+        gap="flat",
+        length=0.1,
+        height=0.1,
+        elements=elements,
+        elements_up=elements,
+        substructures=2,
+        instants=3,
+        top="traction",
+        top_normal_traction=-PRESSURE,
+        top_normal_slope=2.0,
+        top_tangential_traction=0.1 * PRESSURE,
+        top_tangential_load="hold",
+        violation=1e-10,
+    )
+    fields = iterate.contact("support")
+    x = iterate.problem.rubbing["support"].positions
+    pressing = fields.normal_force[:, -1]
+    # 1e5 N at the middle plus slope * length / 6, and 1e4 N along x at a height of 0.1 m.
+    moment = 1e5 * (0.05 + 2.0 * 0.1 / 6.0) + 1e4 * 0.1
+    np.testing.assert_allclose(pressing.sum(), 1e5, rtol=1e-8)
+    np.testing.assert_allclose(pressing @ x, moment, rtol=1e-8)
+    np.testing.assert_allclose(fields.tangential_force[:, -1].sum(), -1e4, rtol=1e-8)
+    lifted = x[fields.status[:, -1] == 2].max()
+    assert 0.05 < lifted < 0.1
+    assert np.all(fields.opening[x <= lifted, -1] > 0.0)
+
+
+def test_a_wedge_of_gap_only_turns_the_block():
+    flat, wedge = (
+        solved(
+            "block",
+            gap=gap,
+            length=0.1,
+            height=0.1,
+            elements=12,
+            elements_up=12,
+            instants=1,
+            top="traction",
+            top_normal_traction=-PRESSURE,
+            violation=1e-10,
+        ).contact("support")
+        for gap in ("flat", [[0.0, 0.0], [0.1, 1e-4]])
+    )
+    scale = flat.normal_force.max()
+    np.testing.assert_allclose(wedge.normal_force, flat.normal_force, atol=1e-7 * scale)
+    np.testing.assert_allclose(wedge.tangential_force, flat.tangential_force, atol=1e-7 * scale)
+
+
+@pytest.mark.parametrize("scene", ["block", "layers"])
+def test_the_number_of_substructures_does_not_change_the_answer(scene):
+    found = []
+    for decomposition in ((2, 1), (5, 2)):
+        size = {"elements": 20, "elements_up": 4, "instants": 21}
+        iterate = solved(scene, violation=1e-7, **size, **cut(decomposition))
+        inside = iterate.problem.inside
+        found.append((inside.displacement(iterate.displacement, slice(None)), inside.nodes))
+        forces = [iterate.contact(name).normal_force for name in iterate.problem.rubbing]
+        found[-1] += (np.stack(forces),)
+    (one, nodes, pressing), (other, same_nodes, same_pressing) = found
+    np.testing.assert_array_equal(nodes, same_nodes)
+    np.testing.assert_allclose(one, other, atol=1e-5 * np.abs(one).max())
+    np.testing.assert_allclose(pressing, same_pressing, atol=1e-4 * pressing.max())

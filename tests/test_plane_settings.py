@@ -1,0 +1,210 @@
+"""Settings of the plane scenes say what is meant, refuse what cannot be, and reach the files."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from plane import solved
+
+from solver.cli import main
+from solver.discrete import discretise
+from solver.latin.direction import pressing_rows, search_direction, sliding_rows
+from solver.scenes import CATALOGUE
+from solver.scenes.block import BlockSettings, block
+from solver.scenes.equilibrium import wrench
+from solver.scenes.layers import LayersSettings, layers
+from solver.scenes.sides import PRESCRIBED
+from solver.settings import SettingError
+
+PRESSED = {"top": "traction", "top_normal_traction": -7e7}
+SMALL = {"elements": 8, "elements_up": 4, "instants": 11}
+
+
+def refusal(kind, **values):
+    with pytest.raises(SettingError) as caught:
+        kind.checked(values)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("kind", PRESCRIBED)
+@pytest.mark.parametrize("side", ["left", "right", "top"])
+def test_a_side_prescribes_the_components_that_its_kind_says(side, kind):
+    given = BlockSettings.checked({"left": "clamped", side: kind}).side(side)
+    normal, tangential = (given.y, given.x) if side == "top" else (given.x, given.y)
+    assert (normal.prescribed, tangential.prescribed) == PRESCRIBED[kind]
+
+
+@pytest.mark.parametrize(("side", "sign"), [("left", -1.0), ("right", 1.0), ("top", 1.0)])
+def test_normal_values_are_positive_outward_and_tangential_ones_along_the_axis(side, sign):
+    settings = BlockSettings.checked(
+        {
+            side: "displacement",
+            f"{side}_normal_displacement": 2e-5,
+            f"{side}_normal_load": "ramp",
+            f"{side}_tangential_displacement": 3e-5,
+            f"{side}_tangential_load": "ramp",
+            f"{side}_tangential_slope": 0.5,
+        }
+    )
+    given = settings.side(side)
+    normal, tangential = (given.y, given.x) if side == "top" else (given.x, given.y)
+    assert normal.mean[-1] == pytest.approx(sign * 2e-5)
+    assert tangential.mean[-1] == pytest.approx(3e-5)
+    assert tangential.slope[-1] == pytest.approx(0.5 * 3e-5)
+    assert not normal.slope.any()
+
+
+def test_only_what_a_side_uses_applies():
+    settings = BlockSettings.checked({"left": "pushed", "right": "free"})
+    applies = {name for name in settings.definitions() if settings.applies(name)}
+    assert {"left_normal_displacement", "left_tangential_traction"} <= applies
+    assert not {"left_normal_traction", "left_tangential_displacement"} & applies
+    assert not [name for name in applies if name.startswith("right_")]
+    assert not {"start", "local_stage", "nested_iterations"} & applies
+
+
+def test_a_table_has_its_own_size():
+    table = [[0.0, 0.0], [1.0, -3e-5]]
+    settings = BlockSettings.checked({"top_normal_load": table})
+    assert settings.side("top").y.mean[-1] == -3e-5
+    assert not settings.applies("top_normal_displacement")
+
+
+@pytest.mark.parametrize(
+    ("values", "word"),
+    [
+        ({**PRESSED, "top_normal_traction": 7e7}, "lift it off"),
+        ({**PRESSED, "top_tangential_traction": 3e7}, "friction cannot hold"),
+        ({**PRESSED, "top_normal_slope": 3.1}, "tips over"),
+        ({**PRESSED, "top_normal_slope": -3.1}, "tips over"),
+        ({"top": "pushed", "friction": 0.0, "top_tangential_traction": 1e6}, "no friction"),
+        ({"top": "free", "body_force_x": 1.0, "body_force_y": -2.0}, "friction cannot hold"),
+    ],
+)
+def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
+    assert word in refusal(BlockSettings, **values)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {**PRESSED, "top_tangential_traction": 1e7},
+        {**PRESSED, "top_tangential_traction": 3e7, "left": "clamped"},
+        {**PRESSED, "top_normal_slope": 2.9},
+        {"top": "free", "body_force_x": 1.0, "body_force_y": -2.0, "friction": 0.6},
+    ],
+)
+def test_loads_that_can_be_held_are_taken(values):
+    BlockSettings.checked(values)
+
+
+def test_the_wrench_is_that_of_forces_at_their_lever_arms():
+    settings = BlockSettings.checked(
+        {
+            **PRESSED,
+            "length": 0.2,
+            "top_normal_slope": 0.6,
+            "left": "traction",
+            "left_normal_traction": -1e6,
+            "left_normal_slope": 0.3,
+            "body_force_y": -1e8,
+        }
+    )
+    x, y, moment = wrench(block(settings))
+    force_top, force_left, weight = -7e7 * 0.2, 1e6 * 0.05, -1e8 * 0.2 * 0.05
+    assert x[-1] == pytest.approx(force_left)
+    assert y[-1] == pytest.approx(force_top + weight)
+    arm_top, arm_left = 0.1 + 0.6 * 0.2 / 6.0, 0.025 + 0.3 * 0.05 / 6.0
+    assert moment[-1] == pytest.approx(force_top * arm_top + weight * 0.1 - force_left * arm_left)
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "name"),
+    [
+        (BlockSettings, {"substructures": 49}, "substructures"),
+        (LayersSettings, {"substructures_up": 3}, "substructures_up"),
+        (BlockSettings, {"elements": 2000, "elements_up": 1000, "substructures": 99}, "instants"),
+        (BlockSettings, {"elements": 400, "elements_up": 400, "instants": 2}, "parts smaller"),
+        (BlockSettings, {"start": "nested"}, "start"),
+        (LayersSettings, {"local_stage": "reduced"}, "local_stage"),
+        (BlockSettings, {"gap": [[0.1, 0.0], [0.0, 0.0]]}, "must increase"),
+        (BlockSettings, {"radius": 0.0}, "radius"),
+        (LayersSettings, {"layers": 1}, "layers"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused_by_name(kind, values, name):
+    assert name in refusal(kind, **values)
+
+
+def test_fewer_elements_take_substructures_down_with_them():
+    settings = BlockSettings().with_change("elements", 3)
+    assert (settings.elements, settings.substructures) == (3, 3)
+    settings = settings.with_change("elements_up", 1)
+    assert (settings.elements_up, settings.substructures_up) == (1, 1)
+
+
+def test_normal_and_tangential_search_directions_are_scaled_apart():
+    problem = discretise(LayersSettings.checked(SMALL))
+    plain = search_direction(problem, LayersSettings.checked(SMALL))
+    scaled = search_direction(
+        problem, LayersSettings.checked({**SMALL, "k_normal_scale": 3.0, "k_friction_scale": 5.0})
+    )
+    factor = np.ones(problem.n_rows)
+    for law in problem.rubbing.values():
+        factor[np.concatenate(pressing_rows(law))] = 3.0
+        factor[np.concatenate(sliding_rows(law))] = 5.0
+    np.testing.assert_allclose(scaled, factor * plain)
+
+
+def test_the_moment_on_the_layers_has_the_size_that_was_asked_for():
+    settings = LayersSettings.checked({"bending": "moment", "moment": 70.0, "bend_load": "ramp"})
+    scene = layers(settings)
+    right = scene.sides["right"].x
+    extreme = right.slope[-1]
+    assert right.each_body
+    assert -extreme * scene.height**2 / 6.0 * scene.bodies == pytest.approx(70.0)
+
+
+def test_every_degree_of_freedom_carries_a_row_and_free_sides_move():
+    iterate = solved("block", **SMALL, **PRESSED, substructures=2, substructures_up=2)
+    problem = iterate.problem
+    assert set(problem.row_dofs) == set(range(problem.n_dofs))
+    inside = problem.inside
+    moved = inside.displacement(iterate.displacement, [-1])[:, 1, 0]
+    top, bottom = inside.nodes[:, 1] > 0.049, inside.nodes[:, 1] < 0.001
+    assert np.all(moved[top] < moved[bottom])
+
+
+@pytest.mark.parametrize("scene", ["block", "layers"])
+def test_the_default_opens_sticks_and_slips_both_ways(scene):
+    iterate = solved(scene, violation=1e-4)
+    found = {
+        int(status)
+        for name in iterate.problem.rubbing
+        for status in np.unique(iterate.contact(name).status)
+    }
+    assert found == {-1, 0, 1, 2}
+
+
+@pytest.mark.parametrize("scene", ["block", "layers"])
+def test_a_run_from_the_command_line_writes_every_contact(scene, tmp_path, capsys):
+    file = tmp_path / "result.npz"
+    changes = [f"{name}={value}" for name, value in SMALL.items()]
+    command = ["run", scene, "--json", "--out", str(file)]
+    for change in changes:
+        command += ["--set", change]
+    assert main(command) == 0
+    assert json.loads(capsys.readouterr().out)["error_force"] is None
+    kept = np.load(file)
+    nodes, instants = len(kept["x"]), len(kept["t"])
+    assert kept["displacement"].shape == (nodes, 2, instants)
+    names = {name.split("/")[1] for name in kept if name.startswith("interface/")}
+    assert names == set(discretise(CATALOGUE[scene].settings.checked(SMALL)).rubbing)
+    for name in names:
+        points = len(kept[f"interface/{name}/points"])
+        for field in ("normal_force", "tangential_force", "gap", "slip", "status"):
+            assert kept[f"interface/{name}/{field}"].shape == (points, instants)
+        pressing = kept[f"interface/{name}/normal_force"]
+        assert pressing.min() > -1e-3 * pressing.max()
