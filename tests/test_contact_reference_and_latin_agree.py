@@ -77,11 +77,8 @@ def test_a_solve_records_its_errors_and_ends_by_its_rules():
 
 def test_only_forces_that_a_support_does_not_share_are_compared():
     wall = Side(Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE))
-    for side, normal, tangential in ((LEANING, True, True), (wall, False, False)):
+    for side, points in ((LEANING, 13), (wall, 12)):
         problem = discretise_stack(block(left=side))
+        assert len(problem.rubbing["support"].positions) == points
         places = problem.contact_places["support"]
-        first, second = (determinate_forces(problem)[place] for place in places)
-        assert np.all(first[0, 1:] == normal)
-        assert np.all(second[0, 1:] == tangential)
-        assert first[1:].all()
-        assert second[1:].all()
+        assert all(determinate_forces(problem)[place][:, 1:].all() for place in places)

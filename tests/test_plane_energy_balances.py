@@ -78,3 +78,25 @@ def test_work_on_a_closed_cycle_is_stored_or_dissipated(scene):
     kept = (energy[-1] - energy[first]) * scale
     assert dissipated > 0.0
     assert external * scale == pytest.approx(kept + dissipated, rel=1e-6)
+
+
+def test_with_lift_off_the_normal_force_works_only_within_steps_and_less_in_shorter_ones():
+    found = []
+    for steps in (8, 16, 32):
+        iterate = solved(
+            "block",
+            instants=10 * steps + 1,
+            elements=48,
+            elements_up=24,
+            top_normal_load=at_once(-4e-5),
+            top_tangential_load=cycles(2e-5),
+        )
+        problem, fields, first = iterate.problem, iterate.contact("support"), 6 * steps
+        law = problem.interfaces["top"]
+        scale = problem.scales.force * problem.scales.displacement
+        external = work(iterate.boundary_force[law.rows], law.displacement, first) * scale
+        dissipated = -work(fields.tangential_force, fields.slip, first)
+        normal = -work(fields.normal_force, fields.opening, first)
+        assert external == pytest.approx(dissipated + normal, rel=1e-6)
+        found.append(abs(normal) / dissipated)
+    assert found[0] > 1.5 * found[1] > 2.25 * found[2]

@@ -196,7 +196,7 @@ def test_a_run_from_the_command_line_writes_every_contact(scene, tmp_path, capsy
     for change in changes:
         command += ["--set", change]
     assert main(command) == 0
-    assert json.loads(capsys.readouterr().out)["error_force"] is None
+    assert json.loads(capsys.readouterr().out)["error_force"] < 1e-2
     kept = np.load(file)
     nodes, instants = len(kept["x"]), len(kept["t"])
     assert kept["displacement"].shape == (nodes, 2, instants)

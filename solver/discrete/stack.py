@@ -320,13 +320,27 @@ def _prescribed(
     for place, part in parts.items():
         if _neighbour(scene, place, side) != side or side not in part.held:
             continue
-        held = [one for one in (given.x, given.y) if one.prescribed]
-        for number, one in enumerate(held):
+        for number, component in enumerate(part.held[side].components):
+            one = (given.x, given.y)[component]
             rows.append(part.rows[side][:, number])
             along = _along(scene, part.rectangle, place, part.corner, side, one)
-            values.append((one.mean + along * one.slope) / scene.length)
+            found = one.mean + along * one.slope
+            if side in ("left", "right"):
+                _settle_corners(scene, place, side, component, found)
+            values.append(found / scene.length)
     if rows:
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
+
+
+def _settle_corners(scene: Stack, place: Place, side: str, component: int, found: Array) -> None:
+    """Let a corner have one displacement, that of the top or bottom, if both sides prescribe it."""
+    for level, node in (("bottom", 0), ("top", -1)):
+        if _neighbour(scene, place, level) != level:
+            continue
+        other = (scene.sides[level].x, scene.sides[level].y)[component]
+        if other.prescribed:
+            sign = 1.0 if side == "right" else -1.0
+            found[node] = other.mean + sign * other.slope
 
 
 def _along(

@@ -123,10 +123,11 @@ class _Behaviour:
         *normal, tangential = jumps_of(law, displacement)
         self._slip = _beyond(np.diff(tangential, axis=1, prepend=0.0), 2.0 * noise)
         self._friction = force[components(law)[-1]]
-        self._pressing = force[law.normal] if isinstance(law, Contact) else None
+        self._pressing: Array | None = None
         if isinstance(law, Contact):
+            self._pressing = _beyond(force[law.normal], noise)
             self._opening = _beyond(normal[0] + law.gap[:, None], 2.0 * noise)
-            self.bound = law.friction[:, None] * np.maximum(force[law.normal], 0.0)
+            self.bound = law.friction[:, None] * np.maximum(self._pressing, 0.0)
         else:
             self.bound = np.broadcast_to(law.bound[:, None], self._slip.shape)
         self.dissipated = self.bound * np.abs(self._slip)

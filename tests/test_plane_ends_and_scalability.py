@@ -1,0 +1,56 @@
+"""Ends of contacts and corners of sides have one answer, and iterations do not grow with cuts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from plane import LOOK, solved
+
+SMALL = {"elements": 16, "elements_up": 8, "instants": 11}
+
+
+def test_a_contact_ends_before_a_side_that_holds_its_normal_displacement():
+    for left, right, first, last in (("free", "roller", 0, 16), ("clamped", "dragged", 1, 15)):
+        iterate = solved("block", left=left, right=right, violation=1e-4, **SMALL)
+        x = iterate.problem.rubbing["support"].positions / 0.1 * 16
+        np.testing.assert_allclose(x, np.arange(first, last + 1), atol=1e-9)
+
+
+@pytest.mark.parametrize("left", ["roller", "clamped", "displacement"])
+def test_a_corner_that_two_sides_prescribe_follows_the_top(left):
+    iterate = solved("block", left=left, **SMALL)
+    inside = iterate.problem.inside
+    moved = inside.displacement(iterate.displacement, [4])[:, :, 0]
+    top = inside.nodes[:, 1] > 0.0499
+    corner = top & (inside.nodes[:, 0] < 1e-9)
+    assert corner.sum() == 1
+    np.testing.assert_allclose(moved[corner][0], moved[top][-1], atol=1e-12)
+
+
+@pytest.mark.parametrize("top", ["displacement", "traction"])
+def test_iterations_hardly_grow_from_4_to_64_substructures(top):
+    loads = (
+        {"top_normal_traction": -7e7, "top_tangential_traction": 1e7} if top == "traction" else {}
+    )
+    few, many = (
+        solved("block", instants=21, top=top, violation=1e-5, **loads, **cuts).number
+        for cuts in (
+            {"substructures": 2, "substructures_up": 2},
+            {"substructures": 8, "substructures_up": 8},
+        )
+    )
+    assert many <= 1.5 * few + LOOK
+
+
+def test_iterations_on_layers_hardly_grow_from_4_to_16_substructures_along():
+    few, many = (
+        solved("layers", instants=21, violation=1e-5, substructures=cuts).number for cuts in (4, 16)
+    )
+    assert many <= 1.5 * few + LOOK
+
+
+def test_near_incompressible_and_rough_blocks_are_solved():
+    for values in ({"poisson": 0.4999}, {"friction": 10.0}, {"young": 1e18}, {"friction": 0.0}):
+        iterate = solved("block", violation=1e-5, **SMALL, **values)
+        fields = iterate.contact("support")
+        assert fields.normal_force.min() > -1e-3 * fields.normal_force.max()
