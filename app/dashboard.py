@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import panel as pn
 import panel_material_ui as pmui
@@ -24,10 +24,12 @@ from app.views.loop import Loop
 from app.views.modes import SpaceModes, TimeFunctions
 from app.views.paper_figures import PaperFigures
 from app.views.spectra import Spectra
+from app.views.stability import StabilityReport
 from app.views.status_map import StatusMap
+from app.views.study import StudyReport
 from app.words import card_title, key_figures, status_line
 
-LIVE, PAPER = "Live", "Figures"
+LIVE = "Live"
 TABS = {
     "& button": {
         "color": "#fff",
@@ -43,6 +45,8 @@ TABS = {
     },
 }
 """White on the blue of the header, in both themes."""
+PLAIN = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 0"}}
+"""On a phone, where they stand below the header."""
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 IN_FLIGHT = 1
@@ -52,6 +56,21 @@ VIEWS_AT_ONCE = 3
 VIEWS_AT_FIRST = 1
 FIRST_ROW = 3
 LOST_AFTER = 2.0
+
+
+class Tab(Protocol):
+    """What can be looked at in place of the live run.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    """
+
+    view: Any
+
+    def open(self) -> None:
+        """Show it; whatever is in it may be made only now."""
 
 
 class Dashboard:
@@ -65,10 +84,6 @@ class Dashboard:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self._pulse = Pulse()
-        self._pulse.param.watch(self._on_painted, "painted")
-        self._pulse.param.watch(self._on_key, "key")
-        self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         self._sent_at = 0.0
         self._dirty = False
         self._alone = True
@@ -77,18 +92,9 @@ class Dashboard:
         self._owed: list[View] = []
         self._drawn_ticket = -1
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
+        self._pulse = self._make_pulse()
         self.transport = Transport(session, self._mark)
-        self._views: list[View] = [
-            FrictionForce(),
-            StatusMap(self.transport.choose_time),
-            Loop(),
-            Convergence(),
-            Spectra(),
-            ErrorTime(),
-            SpaceModes(),
-            TimeFunctions(),
-            BasisSize(self.transport.choose_substructure),
-        ]
+        self._views = self._make_views()
         self._titles: dict[str, Any] = {}
         self._cards: dict[str, Any] = {}
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
@@ -97,20 +103,25 @@ class Dashboard:
         self._plots = pn.Column(
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
-        self._paper = PaperFigures(self._style)
-        self._live = pn.Column(
-            self.transport.view,
-            self._status,
-            self._figures,
-            self._plots,
-            self._pulse,
-            sizing_mode="stretch_width",
-            margin=(4, 10),
+        self._live = self._make_live()
+        self._study = StudyReport(
+            session.study, self._style, lambda: session.wanted, lambda: session.crowd
         )
+        self._stability = StabilityReport(session.stability, self._style)
+        self._beside: dict[str, Tab] = {
+            "Figures": PaperFigures(self._style),
+            "Study": self._study,
+            "Stability": self._stability,
+        }
         self._tabs = pmui.RadioButtonGroup(
-            options=[LIVE, PAPER], value=LIVE, size="small", margin=(0, 12), sx=TABS
+            options=[LIVE, *self._beside], value=LIVE, size="small", margin=(0, 12), sx=TABS
         )
         self._tabs.param.watch(self._on_tab, "value")
+        self._main = pn.Column(
+            self._live,
+            *(tab.view for tab in self._beside.values()),
+            sizing_mode="stretch_width",
+        )
         self.page = self._make_page()
         self._sidebar.show(session.wanted)
         self._arrange()
@@ -145,6 +156,10 @@ class Dashboard:
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
+        if self.session.attend():
+            self._study.refresh()
+            self._stability.refresh()
+            self._mark()
         self._collect()
 
     def end(self, context: Any) -> None:
@@ -156,6 +171,37 @@ class Dashboard:
         if pn.state.notifications is not None:
             pn.state.notifications.error(text, duration=8000)
 
+    def _make_pulse(self) -> Pulse:
+        pulse = Pulse()
+        pulse.param.watch(self._on_painted, "painted")
+        pulse.param.watch(self._on_key, "key")
+        pulse.param.watch(lambda event: self._on_narrow(), "narrow")
+        return pulse
+
+    def _make_views(self) -> list[View]:
+        return [
+            FrictionForce(),
+            StatusMap(self.transport.choose_time),
+            Loop(),
+            Convergence(),
+            Spectra(),
+            ErrorTime(),
+            SpaceModes(),
+            TimeFunctions(),
+            BasisSize(self.transport.choose_substructure),
+        ]
+
+    def _make_live(self) -> pn.Column:
+        return pn.Column(
+            self.transport.view,
+            self._status,
+            self._figures,
+            self._plots,
+            self._pulse,
+            sizing_mode="stretch_width",
+            margin=(4, 10),
+        )
+
     def _make_page(self) -> pmui.Page:
         page = pmui.Page(
             title="Slipfront",
@@ -164,7 +210,7 @@ class Dashboard:
             sidebar=[self._sidebar.view],
             sidebar_width=310,
             header=[self._tabs],
-            main=[pn.Column(self._live, self._paper.view, sizing_mode="stretch_width")],
+            main=[self._main],
             busy_indicator=None,
             meta_description="A laboratory for frictional contact: LATIN iterations, live.",
         )
@@ -259,7 +305,9 @@ class Dashboard:
             view.draw(picture)
             self._titles[view.name].object = card_title(view.name, view.keys)
         sought = frame.iteration if frame is not None and not session.follows else None
-        self._status.object = status_line(session.run, session.running, sought)
+        self._status.object = status_line(
+            session.run, session.running, sought, held=session.is_held
+        )
         if at_once:
             return
         self.transport.show()
@@ -291,16 +339,21 @@ class Dashboard:
             self._rest_until = now + REST * (now - self._sent_at)
 
     def _on_tab(self, event: Any) -> None:
-        """Show the live run, which goes on in any case, or the paper's figures."""
+        """Show the live run, which goes on in any case, or a report."""
         self._live.visible = event.new == LIVE
-        self._paper.view.visible = event.new == PAPER
-        if event.new == PAPER:
-            self._paper.open()
+        for name, tab in self._beside.items():
+            tab.view.visible = event.new == name
+            if event.new == name:
+                tab.open()
         self._mark()
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:
             self.page.sidebar_open = False
+        if self._loaded and self._pulse.phone and self._tabs not in self._main:
+            self.page.header = []
+            self._tabs.param.update(sx=PLAIN, sizing_mode="stretch_width", margin=(6, 10))
+            self._main.insert(0, self._tabs)
 
     def _on_key(self, event: Any) -> None:
         action = {

@@ -17,11 +17,13 @@ class Pulse(JSComponent):
     painted = param.Integer(default=0, doc="Number of the newest frame painted.")
     key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
+    phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
     copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
 
     _esm = """
     export function render({model}) {
       let count = 0
+      if (window.innerWidth < 640) { model.phone = true }
       if (window.innerWidth < 900) { model.narrow = true }
       model.on("frame", () => {
         const frame = model.frame

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from app.worker.protocol import Begun, Died, End, Frame, Progress, Reference, Refused, Report
 from solver.latin import Record, Status
+from solver.latin.warm import StartChoice
 from solver.settings import Settings
 
 HISTORY = (
@@ -37,6 +38,8 @@ class Recording:
         Records of the full linear stage beside a run on separated bases.
     newest, sought
         The newest frame, and the one last sought.
+    is_warm
+        Whether it was to start from the run before, where that is better.
     """
 
     ticket: int
@@ -51,6 +54,7 @@ class Recording:
     sought: Frame | None = None
     status: Status | None = None
     notice: str = ""
+    is_warm: bool = False
 
     def take(self, report: Report) -> None:
         """Add what a worker reports."""
@@ -79,6 +83,17 @@ class Recording:
                 self.notice = report.reason
             case _:
                 raise TypeError(f"no place for a report of type {type(report).__name__}")
+
+    @property
+    def choice(self) -> StartChoice | None:
+        """Which start was chosen, where there was a choice."""
+        return self.begun.start if self.begun else None
+
+    @property
+    def title(self) -> str:
+        """What is new in it, and whether it started from the run before it."""
+        warm = self.choice is not None and self.choice.is_previous
+        return f"{self.label or 'before'}{', from the run before it' if warm else ''}"
 
     @property
     def iteration(self) -> int:

@@ -10,6 +10,7 @@ from panel.io.state import set_curdoc
 from app.address import settings_from_query
 from app.dashboard import TICK_MS, Dashboard
 from app.session import Session
+from app.worker.bench import shared_bench
 from app.worker.pool import shared_pool
 
 
@@ -17,7 +18,7 @@ def open_page() -> pmui.Page:
     """Make the page of one session; its run starts when the browser is there."""
     _configure()
     settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
-    dashboard = Dashboard(Session(shared_pool(), settings))
+    dashboard = Dashboard(Session(shared_pool(), shared_bench(), settings))
     if complaint:
         pn.state.onload(lambda: dashboard.complain(complaint))
     dashboard.prepare()
@@ -34,7 +35,7 @@ def rehearse() -> None:
     document = Document()
     with set_curdoc(document):
         _configure()
-        session = Session(shared_pool(), settings_from_query("")[0])
+        session = Session(shared_pool(), shared_bench(), settings_from_query("")[0])
         dashboard = Dashboard(session)
         dashboard.prepare()
         dashboard.page.server_doc(document)

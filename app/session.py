@@ -11,7 +11,9 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
+from app.errand import Errand
 from app.recording import Recording
+from app.worker.bench import Bench
 from app.worker.pool import Pool
 from app.worker.protocol import Frame, Pace, Report, Run, Seek, Step, Watch
 from solver.settings import Settings, about
@@ -37,13 +39,20 @@ class Session:
         The one whose modes are looked at, from 0 at the clamp; None is the last one.
     running, pace
         Whether iterations go on by themselves, and how many a second (None: all it can).
+    warm_start
+        Whether a changed setting starts from the run before, where that is better; a run that is
+        reset never does. It is no setting of the method: a run alone has none before it.
     follows
         Whether the newest iterate is looked at, not one that was sought.
+    study, stability
+        The reports that this page has asked for.
+    crowd
+        Most runs of other pages that were at work at a time during the last study.
     wake
         Called on another thread when the first frame of a run has come.
     """
 
-    def __init__(self, pool: Pool, settings: Settings) -> None:
+    def __init__(self, pool: Pool, bench: Bench, settings: Settings) -> None:
         self.settings = settings
         self.wake: Callable[[], None] = lambda: None
         self.before: Recording | None = None
@@ -53,18 +62,27 @@ class Session:
         self.substructure: int | None = None
         self.running = True
         self.pace: float | None = DEFAULT_PACE
+        self.warm_start = False
         self.watch: frozenset[str] = frozenset()
         self.follows = True
+        self.study = Errand(bench)
+        self.stability = Errand(bench)
+        self.crowd = 0
+        self._alone = False
+        self._held = False
         self._mailbox: deque[Report] = deque()
         self._lock = threading.Lock()
         self._seat = pool.seat(self._receive)
         self._pending: Settings | None = None
         self.run = Recording(0, settings, "")
 
-    def start(self, settings: Settings | None = None, *, waits: bool = False) -> None:
+    def start(
+        self, settings: Settings | None = None, *, waits: bool = False, warm: bool = False
+    ) -> None:
         """Start a run, with new settings or the same, in place of the one at work.
 
-        A run that `waits` does one iteration until the page is connected.
+        A run that `waits` does one iteration until the page is connected; a `warm` one starts
+        from the last iterate of the run at work, where that is better.
         """
         self._retire()
         changed = {
@@ -74,7 +92,7 @@ class Session:
         }
         self.settings = settings or self.settings
         label = _label(self.settings, changed) if changed else self.run.label
-        self.run = Recording(self.run.ticket + 1, self.settings, label)
+        self.run = Recording(self.run.ticket + 1, self.settings, label, is_warm=warm)
         self.follows = True
         self._pending = None
         self._seat.run(
@@ -83,9 +101,10 @@ class Session:
                 self.settings.scene,
                 self.settings.values(),
                 pace=self.pace,
-                pause_after=None if self.running and not waits else 1,
+                pause_after=None if self._is_free and not waits else 1,
                 watch=self.watch,
                 substructure=self.substructure,
+                warm=warm,
             )
         )
 
@@ -105,7 +124,7 @@ class Session:
             return
         self._pending = settings
         if self.run.newest is not None or self.run.notice or self.run.ticket == 0:
-            self.start(settings)
+            self.start(settings, warm=self.warm_start)
 
     def collect(self) -> bool:
         """Take the waiting reports; tell whether anything is new."""
@@ -118,7 +137,7 @@ class Session:
         if reports and self.run.begun is not None:
             self.instant = round(self.phase * (len(self.run.begun.instants) - 1))
         if self._pending is not None and (self.run.newest is not None or self.run.notice):
-            self.start(self._pending)
+            self.start(self._pending, warm=self.warm_start)
         return bool(reports)
 
     def go(self) -> None:
@@ -128,7 +147,7 @@ class Session:
         if self.run.status is not None:
             self.start()
         else:
-            self._seat.send(Pace(self.run.ticket, self.pace))
+            self._keep_pace()
 
     def pause(self) -> None:
         """Wait after the present iteration."""
@@ -144,8 +163,7 @@ class Session:
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""
         self.pace = pace
-        if self.running and self.run.status is None:
-            self._seat.send(Pace(self.run.ticket, pace))
+        self._keep_pace()
 
     def seek(self, iteration: int) -> None:
         """Look at an iteration that was done already."""
@@ -175,13 +193,31 @@ class Session:
             self._look_again()
 
     def close(self) -> None:
-        """Leave: the run stops and its process is free."""
+        """Leave: the run stops and its process is free, and so do the reports."""
         self._seat.close()
+        for errand in (self.study, self.stability):
+            errand.cancel()
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody is connected, and let it go on afterwards."""
-        if self.running and self.run.status is None:
-            self._seat.send(Pace(self.run.ticket, 0.0 if alone else self.pace))
+        self._alone = alone
+        self._keep_pace()
+
+    def attend(self) -> bool:
+        """Take what the reports say, and hold the run while one is timed; tell if it is new."""
+        heard = [errand.collect() for errand in (self.study, self.stability)]
+        if self.study.is_begun != self._held:
+            self._held = self.study.is_begun
+            self.crowd = self.crowd if not self._held else 0
+            self._keep_pace()
+        if self._held:
+            self.crowd = max(self.crowd, self._seat.others_at_work)
+        return any(heard)
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the run stands still for a study that is timed."""
+        return self._held
 
     @property
     def wanted(self) -> Settings:
@@ -194,6 +230,15 @@ class Session:
         if self.follows or self.run.sought is None:
             return self.run.newest
         return self.run.sought
+
+    @property
+    def _is_free(self) -> bool:
+        """Whether iterations go on by themselves at present."""
+        return self.running and not self._alone and not self._held
+
+    def _keep_pace(self) -> None:
+        if self.running and self.run.status is None:
+            self._seat.send(Pace(self.run.ticket, self.pace if self._is_free else 0.0))
 
     def _look_again(self) -> None:
         """Have frames carry what is watched, and the one that is looked at sent again."""

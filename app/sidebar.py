@@ -20,6 +20,13 @@ from solver.settings import Curve, SettingError, Settings, about, dump, read_tab
 ORDER = ("Load", "Contact", "Bar", "Decomposition", "Method", "Stop")
 
 
+WARM_NOTE = """\
+# The run on the page started from the solution of the run before it, so its iterations and times
+# are not those of these settings alone, which start as `start` says.
+"""
+"""Stands in a file that is saved while such a run is looked at."""
+
+
 class Sidebar:
     """The controls of a session.
 
@@ -56,6 +63,17 @@ class Sidebar:
         self._views.param.watch(self._on_views, "value")
         self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
         self._controls = self._make_controls(essential=True)
+        self._warm = pmui.Switch(
+            label="Start from the run before",
+            description="When a setting changes, start from the last iterate of the run before, "
+            "if one iteration from there leaves less than a fourth of the k-free indicator that "
+            "one from the start above leaves. Reset never does. The time of both is billed.",
+            value=session.warm_start,
+            size="small",
+            sizing_mode="stretch_width",
+        )
+        self._warm._debounce = 0  # as for the settings, or a slider moved next would overtake it
+        self._warm.param.watch(self._on_warm, "value")
         self.view = pmui.Column(sizing_mode="stretch_width", margin=0)
 
     def fill(self) -> None:
@@ -74,6 +92,9 @@ class Sidebar:
             self._views.param.update(options=list(views), value=wanted)
         return wanted
 
+    def _on_warm(self, event: Any) -> None:
+        self._session.warm_start = event.new
+
     def _on_views(self, event: Any) -> None:
         offered = set(self._views.options)
         unwanted = (self._unwanted - offered) | (offered - set(event.new))
@@ -90,6 +111,8 @@ class Sidebar:
         for group in ORDER:
             if group in groups:
                 items += [_heading(group), *groups[group]]
+            if group == "Method":
+                items.append(self._warm)
         more = pmui.Accordion(("More settings", self._more), sizing_mode="stretch_width")
         more.param.watch(self._open_more, "active")
         return [
@@ -195,7 +218,9 @@ class Sidebar:
             self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
 
     def _saved(self) -> StringIO:
-        return StringIO(dump(self._session.settings))
+        run = self._session.run
+        warm = run.choice is not None and run.choice.is_previous
+        return StringIO((WARM_NOTE if warm else "") + dump(run.settings))
 
 
 def _heading(text: str) -> Any:

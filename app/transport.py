@@ -32,59 +32,9 @@ class Transport:
     def __init__(self, session: Session, refresh: Any) -> None:
         self._session = session
         self._refresh = refresh
-        self._run = pmui.Button(
-            label="Pause",
-            icon="pause",
-            width=104,
-            color="primary",
-            size="small",
-            description="Run or pause the iteration (space).",
-        )
-        self._step = pmui.Button(
-            label="Step",
-            icon="skip_next",
-            variant="outlined",
-            size="small",
-            description="Do one iteration and wait (s).",
-        )
-        self._reset = pmui.Button(
-            label="Reset",
-            icon="restart_alt",
-            variant="outlined",
-            size="small",
-            description="Start the run again from zero (r).",
-        )
-        self._pace = pmui.Select(
-            label="Pace",
-            options=list(PACES),
-            value="20 iterations/s",
-            width=160,
-            size="small",
-            description="Iterations per second that are shown; the method itself is not slowed.",
-        )
-        self._iteration = _slider(
-            155,
-            label="Iteration",
-            help="Go back to any iteration done; at the right end it follows the run.",
-        )
-        self._instant = _slider(
-            125,
-            label="Instant",
-            help="The instant at which forces are drawn; a tap on the map chooses it too.",
-        )
-        self._substructure = _slider(
-            118,
-            label="Substructure",
-            help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
-            start=1,
-        )
-        self._run.on_click(lambda event: self.toggle())
-        self._step.on_click(lambda event: self.step())
-        self._reset.on_click(lambda event: self.reset())
-        self._pace.param.watch(lambda event: session.set_pace(PACES[event.new]), "value")
-        self._iteration.param.watch(self._on_iteration, "wanted")
-        self._instant.param.watch(self._on_instant, "wanted")
-        self._substructure.param.watch(self._on_substructure, "wanted")
+        self._make_buttons()
+        self._make_sliders()
+        self._listen()
         self._sliders = pn.FlexBox(
             self._iteration,
             self._instant,
@@ -118,7 +68,7 @@ class Transport:
         self._refresh()
 
     def reset(self) -> None:
-        """Start again from zero."""
+        """Start again from the settings' own start."""
         self._session.start()
         self._refresh()
 
@@ -137,7 +87,7 @@ class Transport:
     def arrange(self, settings: Settings) -> None:
         """Show the sliders that apply."""
         sliders = [self._iteration, self._instant]
-        if settings.values()["linear_stage"] == "pgd" and settings.values()["substructures"] > 1:
+        if settings.is_reduced and settings.values()["substructures"] > 1:
             sliders.append(self._substructure)
         if list(self._sliders) != sliders:
             self._show_substructure(settings)
@@ -163,6 +113,65 @@ class Transport:
 
         if self._substructure in self._sliders:
             self._show_substructure(session.run.settings)
+
+    def _make_buttons(self) -> None:
+        self._run = pmui.Button(
+            label="Pause",
+            icon="pause",
+            width=104,
+            color="primary",
+            size="small",
+            description="Run or pause the iteration (space).",
+        )
+        self._step = pmui.Button(
+            label="Step",
+            icon="skip_next",
+            variant="outlined",
+            size="small",
+            description="Do one iteration and wait (s).",
+        )
+        self._reset = pmui.Button(
+            label="Reset",
+            icon="restart_alt",
+            variant="outlined",
+            size="small",
+            description="Start the run again, as its settings say and not from the run before (r).",
+        )
+        self._pace = pmui.Select(
+            label="Pace",
+            options=list(PACES),
+            value="20 iterations/s",
+            width=160,
+            size="small",
+            description="Iterations per second that are shown; the method itself is not slowed.",
+        )
+
+    def _make_sliders(self) -> None:
+        self._iteration = _slider(
+            155,
+            label="Iteration",
+            help="Go back to any iteration done; at the right end it follows the run.",
+        )
+        self._instant = _slider(
+            125,
+            label="Instant",
+            help="The instant at which forces are drawn; a tap on the map chooses it too.",
+        )
+        self._substructure = _slider(
+            118,
+            label="Substructure",
+            help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
+            start=1,
+        )
+
+    def _listen(self) -> None:
+        self._run.on_click(lambda event: self.toggle())
+        self._step.on_click(lambda event: self.step())
+        self._reset.on_click(lambda event: self.reset())
+        self._pace.param.watch(lambda event: self._session.set_pace(PACES[event.new]), "value")
+        self._iteration.param.watch(self._on_iteration, "wanted")
+        self._instant.param.watch(self._on_instant, "wanted")
+        self._substructure.param.watch(self._on_substructure, "wanted")
 
     def _show_substructure(self, settings: Settings) -> None:
         last, chosen = int(settings.values()["substructures"]), self._session.substructure

@@ -19,8 +19,11 @@ ENDINGS = {
 }
 
 
-def status_line(run: Recording, running: bool, sought: int | None) -> str:
-    """Say what runs, how far it is, and how it ended with what to try (HTML)."""
+def status_line(run: Recording, running: bool, sought: int | None, *, held: bool = False) -> str:
+    """Say what runs, how far it is, and how it ended with what to try (HTML).
+
+    A run that is `held` waits for a study that is timed.
+    """
     if run.notice and not run.records:
         return f"<b>{escape(run.notice)}</b>"
     settings = run.settings.values()
@@ -33,6 +36,8 @@ def status_line(run: Recording, running: bool, sought: int | None) -> str:
     if run.status is not None:
         counted = "iteration" if run.iteration == 1 else "iterations"
         state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
+    elif held:
+        state = f"<b>waits</b> for the study that is timed, at iteration {run.iteration}"
     elif not running:
         state = f"<b>paused</b> at iteration {run.iteration}"
     else:
@@ -49,11 +54,26 @@ def status_line(run: Recording, running: bool, sought: int | None) -> str:
         line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
+    more = [start_line(run)] if run.is_warm else []
     if run.status is not None:
-        line += f"<br>{escape(run.status.advice)}"
+        more.append(escape(run.status.advice))
     elif run.notice:
-        line += f"<br>{escape(run.notice)}"
-    return line
+        more.append(escape(run.notice))
+    return f"{line}<br>{' '.join(more)}" if more else line
+
+
+def start_line(run: Recording) -> str:
+    """Say from where a run started that could have started from the one before it (HTML)."""
+    own = "coarser meshes" if run.settings.values()["start"] == "nested" else "zero"
+    if run.begun is None:
+        return ""
+    if run.choice is None:
+        return f"Started from {own}: the run before it was not at hand."
+    previous, other = number(run.choice.previous), number(run.choice.own)
+    figures = f"k-free indicator after one iteration {previous}, from {own} {other}"
+    if run.choice.is_previous:
+        return f"Started from the run before it: {figures}."
+    return f"Started from {own}, since the run before it is not clearly nearer: {figures}."
 
 
 def key_figures(run: Recording, before: Recording | None, shown: Record | None) -> str:
@@ -71,7 +91,7 @@ def key_figures(run: Recording, before: Recording | None, shown: Record | None) 
     if before is not None:
         rows.append(
             (
-                f"before ({escape(before.label)})" if before.label else "before",
+                f"before ({escape(before.title)})" if before.label else "before",
                 before,
                 before.records[-1] if before.records else None,
             )

@@ -7,7 +7,7 @@ import json
 import math
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from solver.discrete import Problem, discretise
@@ -18,8 +18,8 @@ from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, about, allowed
-from solver.study.error_against_time import Study, error_against_time
-from solver.study.growth import Growth, growth
+from solver.study.error_against_time import error_against_time
+from solver.study.growth import growth
 from solver.study.iteration_cost import print_iteration_cost
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
@@ -27,14 +27,8 @@ from solver.study.stability import invariance, stability
 from solver.study.stability_cases import cases
 from solver.study.stability_report import HEAD, line, notes, passes, prepare, write_report
 from solver.study.stability_report import summary as summary_of
-from solver.study.study_report import (
-    aligned,
-    conditions,
-    growth_table,
-    table,
-    verdicts,
-    write_tables,
-)
+from solver.study.study_files import NO_PAGE, write_study
+from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
 
 REFUSED = 2
 
@@ -175,9 +169,7 @@ def _study(chosen: argparse.Namespace) -> int:
         chosen.out.mkdir(parents=True, exist_ok=True)
         found = error_against_time(settings, chosen.repeats)
         sizes = growth(settings) if chosen.growth else []
-        files = write_tables(found, sizes, chosen.out)
-        page = _study_page()
-        files += [page(found, sizes, chosen.out)] if page else []
+        files, drawn = write_study(found, sizes, chosen.out)
     except OSError as problem:
         allowed_folder = "a folder that can be made and written to"
         raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
@@ -186,8 +178,8 @@ def _study(chosen: argparse.Namespace) -> int:
     print("\n".join(verdicts(found)))
     if sizes:
         print(f"\n{aligned(growth_table(sizes))}")
-    if page is None:
-        print("The page needs matplotlib: pip install 'slipfront[figures]'")
+    if not drawn:
+        print(NO_PAGE)
     print(f"{len(files)} files in {chosen.out}")
     return 0
 
@@ -207,14 +199,3 @@ def _stability(chosen: argparse.Namespace) -> int:
         raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
     print("\n".join(["", summary_of(rows), *notes(apart), f"{len(files)} files in {chosen.out}"]))
     return 0 if passes(rows, apart) else 1
-
-
-def _study_page() -> Callable[[Study, Sequence[Growth], Path], Path] | None:
-    """Give what writes the page, or None without matplotlib."""
-    try:
-        from solver.study.study_page import write_page
-    except ModuleNotFoundError as missing:
-        if (missing.name or "").split(".")[0] not in ("matplotlib", "PIL"):
-            raise
-        return None
-    return write_page

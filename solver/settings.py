@@ -155,7 +155,7 @@ def redefined(definition: Any, default: object, **record: Any) -> Any:
 
 
 def _is_reduced(settings: Settings) -> bool:
-    return bool(settings.linear_stage == "pgd")
+    return settings.is_reduced
 
 
 def _is_sampled(settings: Settings) -> bool:
@@ -473,6 +473,11 @@ class Settings(param.Parameterized):
     def coarser(self) -> Self | None:
         """Give the same scene on the next coarser mesh, or None where that makes no sense."""
         return None
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether the linear stage works on separated bases."""
+        return bool(self.linear_stage == "pgd")
 
     def applies(self, name: str) -> bool:
         """Tell whether a setting does anything under the present values."""

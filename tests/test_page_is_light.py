@@ -13,6 +13,7 @@ from panel.util import edit_readonly
 
 from app.dashboard import Dashboard
 from app.session import Session
+from app.worker.bench import Bench
 from app.worker.pool import Pool
 from solver.files import scene_settings
 
@@ -21,7 +22,7 @@ from solver.files import scene_settings
 def dashboard() -> Iterator[Dashboard]:
     pn.extension(notifications=True)
     pool = Pool(1)
-    made = Dashboard(Session(pool, scene_settings("bar").checked({})))
+    made = Dashboard(Session(pool, Bench(), scene_settings("bar").checked({})))
     yield made
     made.session.close()
     pool.close()

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 from browser import Server, browser
 from playwright.sync_api import expect
 
 from app.views import paper_figures
-from app.views.paper_figures import PaperFigures, compute, overlay
+from app.views.panels import overlay
+from app.views.paper_figures import PaperFigures, compute
 
 WAIT = 60_000
 
@@ -49,7 +52,7 @@ def test_claims_and_findings_stand_beside_them(figures):
 
 
 def test_a_failure_is_told_and_not_kept(monkeypatch, figures):
-    monkeypatch.setattr(paper_figures, "PROGRAM", "raise SystemExit(3)")
+    monkeypatch.setattr(paper_figures, "WORK", sys.exit)
     monkeypatch.setattr(paper_figures, "_computed", None)
     failed = compute()
     assert failed.exception(60) is not None

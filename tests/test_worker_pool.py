@@ -144,6 +144,52 @@ def test_run_gives_the_numbers_of_a_direct_solution(session: Session) -> None:
     assert session.records() == direct(SHORT)
 
 
+WARM = {**SHORT, "friction": 0.3001}
+
+
+def test_warm_run_starts_from_the_run_of_its_seat_before(session: Session) -> None:
+    session.seat.run(Run(1, "bar", SHORT))
+    session.until(End)
+    session.seat.run(Run(2, "bar", WARM, warm=True))
+    assert session.until(Begun, ticket=2).start.is_previous
+
+
+def test_warm_run_starts_from_a_run_that_had_to_make_room() -> None:
+    with contextlib.closing(Pool(1)) as narrow:
+        session, other = Session(narrow), Session(narrow)
+        session.seat.run(Run(1, "bar", SHORT))
+        session.until(End)
+        other.seat.run(Run(1, "bar", SHORT))
+        other.until(End)
+        wait_for(lambda: session.seat.post is None)
+        session.seat.run(Run(2, "bar", WARM, warm=True))
+        assert session.until(Begun, ticket=2).start.is_previous
+
+
+def test_warm_run_without_a_run_before_starts_as_its_settings_say(
+    pool: Pool, session: Session
+) -> None:
+    other = Session(pool)
+    other.seat.run(Run(1, "bar", SHORT))
+    other.until(End)
+    session.seat.run(Run(1, "bar", SHORT, warm=True))
+    session.until(End)
+    assert session.records() == direct(SHORT)
+    assert session.reports[0].start is None
+
+
+def test_those_at_work_beside_a_seat_are_counted(pool: Pool, session: Session) -> None:
+    other = Session(pool)
+    assert session.seat.others_at_work == 0
+    other.seat.run(Run(1, "bar", ENDLESS, pace=1.0))
+    session.seat.run(Run(1, "bar", ENDLESS, pace=1.0))
+    other.until(Progress)
+    session.until(Progress)
+    assert session.seat.others_at_work == 1
+    other.seat.send(Pace(1, 0.0))
+    wait_for(lambda: session.seat.others_at_work == 0)
+
+
 def test_session_hears_nothing_of_the_pools_own_business(pool: Pool, session: Session) -> None:
     others = [Session(pool) for _ in range(3)]
     for each in (session, *others):

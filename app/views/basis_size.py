@@ -6,13 +6,14 @@ from collections.abc import Callable
 
 import numpy as np
 from bokeh.events import Pan, Tap
-from bokeh.models import ColorBar, FixedTicker, LinearColorMapper, Range1d, Span
+from bokeh.models import FixedTicker, LinearColorMapper, Range1d, Span
 from bokeh.palettes import Viridis256
 
 from app.views.drawing import (
     VERMILION,
     Key,
     Picture,
+    color_bar,
     empty,
     make_figure,
     round_up,
@@ -60,22 +61,13 @@ class BasisSize:
         self._shown = Span(location=0, dimension="height", line_color=VERMILION, line_width=1)
         made.add_layout(self._chosen)
         made.add_layout(self._shown)
-        bar = ColorBar(
-            ticker=self._marks,
-            color_mapper=self._mapper,
-            title="modes",
-            width=10,
-            padding=4,
-            title_text_font_size="12px",
-            major_label_text_font_size="12px",
-        )
-        made.add_layout(bar, "right")
+        color_bar(made, self._mapper, self._marks, "modes")
         made.on_event(Tap, lambda event: choose(round(event.y) - 1))
         made.on_event(Pan, lambda event: choose(round(event.y) - 1))
 
     def applies(self, settings: Settings) -> bool:
         """Only separated bases have modes."""
-        return bool(settings.values()["linear_stage"] == "pgd")
+        return settings.is_reduced
 
     def draw(self, picture: Picture) -> None:
         """Draw the map of all iterations done."""

@@ -133,4 +133,4 @@ class Convergence:
 
 
 def _is_reduced(picture: Picture) -> bool:
-    return bool(picture.run.settings.values()["linear_stage"] == "pgd")
+    return picture.run.settings.is_reduced

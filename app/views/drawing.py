@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-from bokeh.models import BasicTicker, ColumnDataSource, FixedTicker, Range1d
+from bokeh.models import (
+    BasicTicker,
+    ColorBar,
+    ColumnDataSource,
+    FixedTicker,
+    LinearColorMapper,
+    Range1d,
+)
 from bokeh.plotting import figure
 
 from app.recording import Recording
@@ -114,6 +121,20 @@ def make_figure(x_label: str, y_label: str, **options: Any) -> Any:
     made.xgrid.visible = False
     made.outline_line_color = None
     return made
+
+
+def color_bar(made: Any, mapper: LinearColorMapper, ticker: FixedTicker, title: str) -> None:
+    """Put the scale of a colour map at the right of a figure."""
+    bar = ColorBar(
+        ticker=ticker,
+        color_mapper=mapper,
+        title=title,
+        width=10,
+        padding=4,
+        title_text_font_size="12px",
+        major_label_text_font_size="12px",
+    )
+    made.add_layout(bar, "right")
 
 
 def empty(*columns: str) -> ColumnDataSource:

@@ -94,11 +94,10 @@ class ErrorTime:
             "ys": [ys for _, ys in thin],
             "color": [_color(run) for run in runs],
         }
-        is_reduced = picture.run.settings.values()["linear_stage"] == "pgd"
         self.keys = (
             Key(BLUE, "line", "now"),
-            *((Key(BLUE, "dashed", "full stage"),) if is_reduced else ()),
-            *(Key(_color(run), "line", run.label or "before") for run in reversed(runs)),
+            *((Key(BLUE, "dashed", "full stage"),) if picture.run.settings.is_reduced else ()),
+            *(Key(_color(run), "line", run.title) for run in reversed(runs)),
             Key(GREY, "dotted", "incremental"),
         )
 

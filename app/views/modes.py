@@ -47,7 +47,7 @@ class SpaceModes:
 
     def applies(self, settings: Settings) -> bool:
         """Only separated bases have modes."""
-        return bool(settings.values()["linear_stage"] == "pgd")
+        return settings.is_reduced
 
     def draw(self, picture: Picture) -> None:
         """Draw the modes of the shown iterate."""
@@ -84,8 +84,7 @@ class TimeFunctions:
 
     def applies(self, settings: Settings) -> bool:
         """Only separated bases have time functions, and one instant makes no function."""
-        values = settings.values()
-        return bool(values["linear_stage"] == "pgd" and values["instants"] > 1)
+        return settings.is_reduced and bool(settings.values()["instants"] > 1)
 
     def draw(self, picture: Picture) -> None:
         """Draw the time functions of the shown iterate."""

@@ -1,42 +1,21 @@
-"""The paper's figures, computed by the engine and drawn once: the page's second tab."""
+"""The paper's figures, computed by the engine and drawn once: a tab of the page."""
 
 from __future__ import annotations
 
-import os
-import pickle
-import subprocess
-import sys
 import threading
 from concurrent.futures import Future
 from functools import partial
 from html import escape
-from pathlib import Path
 from typing import Any
 
-import holoviews as hv
-import numpy as np
 import panel as pn
 
-from app.views.drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
-from app.worker.member import ONE_THREAD
-from solver.study.figure_data import Curve, Panel, PaperFigure
+from app.views.panels import plot
+from app.worker.job import Broke, Done, Job, Said, Work
+from app.worker.studies import figures_of_the_paper
+from solver.study.figure_data import PaperFigure
 
-HUES = (GREY, BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY)
-DASHES = {"solid": "solid", "dashed": "dashed", "dotted": "dotted", "points": "solid"}
-MOST_LABELS = 7
-
-ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 120.0
-PROGRAM = """
-import pickle, sys
-from solver.study.paper_figures import paper_figures
-pickle.dump(paper_figures(), sys.stdout.buffer)
-"""
-
-hv.extension("bokeh")
-# Where there is no graphics card, canvas is faster, and its lines are clean.
-hv.renderer("bokeh").webgl = False
-
+WORK: Work = figures_of_the_paper
 _lock = threading.Lock()
 _computed: Future[list[PaperFigure]] | None = None
 
@@ -93,9 +72,7 @@ class PaperFigures:
             f"<b>Here it {escape(figure.verdict)}.</b></p><ul>{findings}</ul>"
             f"<p class='caption'>{escape(figure.caption)}</p>"
         )
-        panels = pn.FlexBox(
-            *(self._plot(panel) for panel in figure.panels), sizing_mode="stretch_width"
-        )
+        panels = pn.FlexBox(*(plot(panel) for panel in figure.panels), sizing_mode="stretch_width")
         return pn.Column(
             self._text(words),
             panels,
@@ -103,15 +80,6 @@ class PaperFigures:
             stylesheets=[self._style],
             sizing_mode="stretch_width",
             margin=(0, 0, 12, 0),
-        )
-
-    def _plot(self, panel: Panel) -> pn.pane.HoloViews:
-        return pn.pane.HoloViews(
-            overlay(panel),
-            margin=6,
-            linked_axes=False,
-            sizing_mode="stretch_width",
-            styles={"flex": "1 1 340px"},
         )
 
     def _text(self, html: str) -> pn.pane.HTML:
@@ -127,71 +95,19 @@ class PaperFigures:
 def compute() -> Future[list[PaperFigure]]:
     """Start to compute the figures, unless that was done already.
 
-    A failure is not kept: the next page that asks tries again.
+    In a process of its own, so that no page stands still meanwhile. A failure is not kept: the
+    next page that asks tries again.
     """
     global _computed
     with _lock:
         if _computed is None or (_computed.done() and _computed.exception() is not None):
             _computed = Future()
-            threading.Thread(target=_fill, args=(_computed,), daemon=True).start()
+            Job(WORK, partial(_fill, _computed)).begin()
         return _computed
 
 
-def _fill(future: Future[list[PaperFigure]]) -> None:
-    """Compute in a process of its own, which ends by itself: no page stands still meanwhile."""
-    try:
-        answer = subprocess.run(
-            [sys.executable, "-c", PROGRAM],
-            cwd=ROOT,
-            env={**os.environ, **ONE_THREAD},
-            capture_output=True,
-            timeout=PATIENCE,
-            check=True,
-        )
-        future.set_result(pickle.loads(answer.stdout))
-    except Exception as failure:
-        future.set_exception(failure)
-
-
-def overlay(panel: Panel) -> hv.Overlay:
-    """Draw one pair of axes."""
-    parts: list[Any] = []
-    for curve in panel.curves:
-        parts += _drawn(panel, curve)
-    made = hv.Overlay(parts).opts(
-        responsive=True,
-        height=360,
-        min_width=280,
-        title=panel.title,
-        logx=panel.x.logarithmic,
-        logy=panel.y.logarithmic,
-        xlim=panel.x.limits or (None, None),
-        ylim=panel.y.limits or (None, None),
-        xlabel=panel.x.label,
-        ylabel=panel.y.label,
-        legend_position="bottom",
-        legend_cols=2,
-        toolbar=None,
-        show_grid=True,
-        fontsize={"title": 11, "labels": 10, "legend": 9, "xticks": 9, "yticks": 9},
-    )
-    if panel.x.whole:
-        last = max(float(curve.x.max()) for curve in panel.curves)
-        if last <= MOST_LABELS:
-            made = made.opts(xticks=list(range(1, int(last) + 1)))
-    return made
-
-
-def _drawn(panel: Panel, curve: Curve) -> list[Any]:
-    dimensions = {"kdims": [panel.x.quantity], "vdims": [panel.y.quantity]}
-    color = HUES[curve.hue % len(HUES)]
-    values = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
-    line = hv.Curve((curve.x, values), label=curve.label, **dimensions).opts(
-        color=color,
-        line_dash=DASHES[curve.line],
-        line_width=1.0 if curve.line == "points" else 2.2,
-    )
-    if curve.line != "points":
-        return [line]
-    points = hv.Scatter((curve.x, values), label=curve.label, **dimensions)
-    return [line, points.opts(color=color, size=6)]
+def _fill(future: Future[list[PaperFigure]], said: Said) -> None:
+    if isinstance(said, Done):
+        future.set_result(said.result)
+    elif isinstance(said, Broke):
+        future.set_exception(RuntimeError(said.reason))

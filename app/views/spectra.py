@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColorBar, FixedTicker, LinearColorMapper, Range1d
+from bokeh.models import FixedTicker, LinearColorMapper, Range1d
 from bokeh.palettes import Viridis256
 
 from app.views.drawing import (
@@ -13,6 +13,7 @@ from app.views.drawing import (
     VERMILION,
     Key,
     Picture,
+    color_bar,
     decades,
     empty,
     make_figure,
@@ -72,16 +73,7 @@ class Spectra:
             line_width=2,
         )
         self._marks = FixedTicker(ticks=[1, 2])
-        bar = ColorBar(
-            ticker=self._marks,
-            color_mapper=self._mapper,
-            title="sub.",
-            width=10,
-            padding=4,
-            title_text_font_size="12px",
-            major_label_text_font_size="12px",
-        )
-        self.figure.add_layout(bar, "right")
+        color_bar(self.figure, self._mapper, self._marks, "sub.")
 
     def applies(self, settings: Settings) -> bool:
         """One instant has one singular value."""

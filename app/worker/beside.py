@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from app.worker.resume import ResumeBeside
 from solver.discrete import Problem
-from solver.latin import Ending, Record, StopRules, iterations, record
+from solver.latin import Ending, Record, StopRules, record
+from solver.latin.warm import Start, iterations_from
 from solver.reference.distance import Distance
 from solver.settings import Settings
 
@@ -18,14 +19,22 @@ class Beside:
         Of the run on separated bases.
     resume
         Where to go on.
+    start
+        Where the run on separated bases started, if that was chosen: this one starts there too.
     """
 
-    def __init__(self, problem: Problem, settings: Settings, resume: ResumeBeside | None) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        settings: Settings,
+        resume: ResumeBeside | None,
+        start: Start | None,
+    ) -> None:
         full = settings.replace(linear_stage="full")
         self._checkpoint = resume.checkpoint if resume else None
         self._rules = resume.rules if resume else StopRules(full)
         self._ended = resume.ended if resume else False
-        self._generator = iterations(problem, full, self._checkpoint)
+        self._generator = iterations_from(problem, full, start, self._checkpoint)
 
     def follow(self, number: int, distance: Distance) -> list[Record]:
         """Catch up with an iteration, unless it has ended before; give the new records."""
@@ -50,6 +59,8 @@ class Beside:
         return self._checkpoint.number if self._checkpoint else 0
 
 
-def beside(problem: Problem, settings: Settings, resume: ResumeBeside | None) -> Beside | None:
+def beside(
+    problem: Problem, settings: Settings, resume: ResumeBeside | None, start: Start | None
+) -> Beside | None:
     """Give what is iterated beside a run, if anything is."""
-    return Beside(problem, settings, resume) if settings.linear_stage == "pgd" else None
+    return Beside(problem, settings, resume, start) if settings.is_reduced else None

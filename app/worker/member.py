@@ -93,12 +93,20 @@ class Member:
                 connection.send(order)
 
 
-def start() -> tuple[BaseProcess, Connection]:
-    """Start a worker process, and give the server's end of its pipe."""
+def start(
+    main: Callable[..., None] = process.main, *arguments: object
+) -> tuple[BaseProcess, Connection]:
+    """Start a process, and give the server's end of its pipe.
+
+    Parameters
+    ----------
+    main, arguments
+        What it does, from an importable module: called with its end of the pipe, and these.
+    """
     context = _context()
     ours, theirs = context.Pipe()
     worker = context.Process(  # type: ignore[attr-defined]  # every concrete context has it
-        target=process.main, args=(theirs,), name="slipfront-worker", daemon=True
+        target=main, args=(theirs, *arguments), name="slipfront-worker", daemon=True
     )
     with _starting, _children_surroundings():
         worker.start()

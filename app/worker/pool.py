@@ -73,6 +73,11 @@ class Pool:
                 roster.leave(seat)
             seat.closed = True
 
+    def at_work_beside(self, seat: Seat) -> int:
+        """See `Seat.others_at_work`."""
+        with self._changed:
+            return 0 if self._closed else self._roster.at_work_beside(seat)
+
     @property
     def pids(self) -> list[int]:
         """Numbers of the processes that have started."""

@@ -32,7 +32,7 @@ from app.worker.protocol import (
     Watch,
 )
 from app.worker.recording import References
-from app.worker.run import WorkerRun
+from app.worker.run import WorkerRun, last_iterate
 from solver.settings import SettingError
 
 NICENESS = 2
@@ -84,15 +84,20 @@ class Worker:
             case Run():
                 self._send(Taken(order.ticket))
                 self._run = None
-                self._attempt(order.ticket, partial(self._begin, order))
+                self._attempt(order.ticket, partial(self._begin, order, run))
             case Park():
                 self._attempt(order.ticket, partial(self._park, order))
             case Pace() | Step() | Seek() | Watch():
                 if run is not None and run.ticket == order.ticket:
                     self._attempt(run.ticket, partial(run.obey, order))
 
-    def _begin(self, order: Run) -> None:
-        self._run = WorkerRun(order, self._send, self._inbox.urgent, self._references)
+    def _begin(self, order: Run, before: WorkerRun | None) -> None:
+        previous = None
+        if order.warm and before is not None and before.ticket == order.after:
+            previous = before.last
+        elif order.warm and order.previous is not None:
+            previous = last_iterate(order.previous)
+        self._run = WorkerRun(order, self._send, self._inbox.urgent, self._references, previous)
 
     def _park(self, order: Park) -> None:
         run = self._run

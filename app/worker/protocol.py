@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from app.worker.resume import Resume
 from solver.latin import Record, Status
+from solver.latin.warm import StartChoice
 from solver.reduction.basis import ReductionRecord
 
 Floats = NDArray[np.float32]
@@ -73,6 +74,12 @@ class Run:
         Iteration whose frame is sought first.
     substructure
         As in Watch.
+    warm
+        Whether the run may start from the last iterate of the seat's run before, where that is
+        better.
+    after, previous
+        How that one is found, for the pool to fill in: the ticket of a run that this process has
+        at work, or the order that would have gone on with it.
     """
 
     ticket: int
@@ -84,6 +91,9 @@ class Run:
     watch: frozenset[str] = frozenset()
     seek: int | None = None
     substructure: int | None = None
+    warm: bool = False
+    after: int | None = None
+    previous: Run | None = None
 
     @property
     def waits(self) -> bool:
@@ -193,6 +203,8 @@ class Begun:
     closed_form, closed_form_end
         Friction force, N/m, and end displacement, m, of the closed form; None where there is
         none, or as long as it is not computed.
+    start
+        Which start was chosen, where there was a choice.
     """
 
     ticket: int
@@ -204,6 +216,7 @@ class Begun:
     all_instants: Floats
     closed_form: Floats | None
     closed_form_end: Floats | None
+    start: StartChoice | None = None
 
 
 @dataclass(frozen=True)

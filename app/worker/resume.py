@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.latin import Checkpoint, Status, StopRules
+from solver.latin.warm import Start
 from solver.reference.incremental import Reference
 
 
@@ -49,6 +50,8 @@ class Resume:
         kept across short turns.
     beside
         The full stage beside the run, if there is one.
+    start
+        Where the run started, if that was chosen.
     """
 
     before: Checkpoint | None
@@ -58,3 +61,4 @@ class Resume:
     status: Status | None
     due: float
     beside: ResumeBeside | None = None
+    start: Start | None = None

@@ -101,9 +101,16 @@ class Roster:
         """All processes that are in use, or kept ready."""
         return list(self._posts)
 
+    def at_work_beside(self, seat: Seat) -> int:
+        """Count the posts at work at runs of other seats, and not only waiting."""
+        return sum(
+            post.seat is not None and post.seat is not seat and not post.idle
+            for post in self._posts.values()
+        )
+
     def run(self, seat: Seat, order: Run) -> None:
         """Take up a new run for a seat."""
-        seat.begin(order)
+        seat.begin(replace(order, previous=seat.parked) if order.warm else order)
         post = seat.post
         if post is not None and post.awaited is not Parked:
             self._put_to_work(seat, post, ANSWER_BUSY)
@@ -200,12 +207,14 @@ class Roster:
     def _put_to_work(self, seat: Seat, post: Post, patience: float) -> None:
         assert seat.next is not None
         late = post.deadline if post.awaited is Taken else math.inf
+        # A process that has the seat's run before at work has its last iterate too.
+        after = post.turn if seat.post is post else None
         post.seat, seat.post = seat, post
         post.turn = next(self._turns)
         post.stir(self._clock())
         # A session that orders faster than the process answers must not put off the deadline.
         post.expect(Taken, min(late, self._clock() + patience * 2.0**seat.unanswered))
-        post.member.send(replace(seat.next, ticket=post.turn))
+        post.member.send(replace(seat.next, ticket=post.turn, after=after))
 
     def _let_go(self, seat: Seat, post: Post) -> None:
         """Part a seat from its post, which has to give up the run at once."""

@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from app.worker.bases import sizes
-from app.worker.beside import beside
+from app.worker.beside import Beside, beside
 from app.worker.protocol import (
+    Begun,
     End,
     Frame,
     Pace,
@@ -26,8 +27,9 @@ from app.worker.resume import Resume
 from app.worker.sampler import Sampler
 from app.worker.tempo import Tempo
 from solver.discrete import discretise
-from solver.latin import Checkpoint, Ending, Iterate, Record, StopRules, iterations, record
+from solver.latin import Checkpoint, Ending, Iterate, Record, StopRules, record
 from solver.latin.indicators import latin_indicator
+from solver.latin.warm import choose_start, iterations_from
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted, Reference
 from solver.scenes import CATALOGUE
@@ -53,6 +55,8 @@ class WorkerRun:
         Tells whether an order waits that ends this run.
     references
         Shared by the runs of a process.
+    previous
+        The last iterate of the run before, if this one may start from it.
 
     Raises
     ------
@@ -66,6 +70,7 @@ class WorkerRun:
         send: Callable[[Report], None],
         urgent: Callable[[], bool],
         references: References,
+        previous: Iterate | None = None,
     ) -> None:
         resume = order.resume
         self.ticket = order.ticket
@@ -81,6 +86,8 @@ class WorkerRun:
         self._reference: Reference | None = None
         self._distance: Distance | None = None
         self._before = resume.before if resume else None
+        self._start = resume.start if resume else None
+        self._previous = None if resume else previous
         self._newest: Iterate | None = None
         self._search: tuple[Iterator[Iterate], int] | None = None
         self._passed: Checkpoint | None = None
@@ -88,11 +95,16 @@ class WorkerRun:
         self._tempo = Tempo(order.pace, order.pause_after, resume.due if resume else None)
         self._watch = order.watch
         self._substructure = order.substructure
-        self._beside = beside(self._problem, self._settings, resume.beside if resume else None)
+        self._beside: Beside | None = None
         self._unsent: list[Record] = []
         self._unsent_beside: list[Record] = []
         self._stale = False
         self._publish_at = 0.0
+
+    @property
+    def last(self) -> Iterate | None:
+        """The last iterate, or before there is any, the one that this run may start from."""
+        return self._newest or self._previous
 
     def rest(self) -> float | None:
         """Give the seconds until `advance` has something to do; None waits for an order."""
@@ -150,6 +162,7 @@ class WorkerRun:
                 self._status,
                 self._tempo.due,
                 self._beside.resume if self._beside else None,
+                self._start,
             )
         pace, pause_after = self._tempo.carried(done)
         seek = self._search[1] if self._search else self._order.seek
@@ -161,23 +174,24 @@ class WorkerRun:
             watch=self._watch,
             seek=seek,
             substructure=self._substructure,
+            after=None,
+            previous=None if resume else self._order.previous,
         )
         return Parked(self.ticket, order)
 
     def _open(self) -> None:
         """Do the first iteration, or the last one again, and show it: the picture comes first."""
         resume = self._order.resume
-        begun = self._sampler.begun(self.ticket)
-        # Whoever watches a run that goes on has the closed form already, and must not lose it.
-        self._send(self._sampler.completed(begun, self._settings) if resume else begun)
-        self._generator = iterations(self._problem, self._settings, self._before)
-        newest = next(self._generator)
+        newest = self._first()
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(
                 "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
                 "nearer to 1."
             )
         self._newest = newest
+        # Whoever watches a run that goes on has the closed form already, and must not lose it.
+        begun = self._begun()
+        self._send(self._sampler.completed(begun, self._settings) if resume else begun)
         self._send(self._frame(newest, self._before))
         if resume is not None:
             self._refer(resume.reference)
@@ -187,14 +201,31 @@ class WorkerRun:
         if self._order.seek is not None:
             self._seek(self._order.seek)
 
+    def _first(self) -> Iterate:
+        """Give the first iterate, from the start that is better, or the last one again."""
+        resume, problem, settings = self._order.resume, self._problem, self._settings
+        if self._previous is None:
+            self._generator = self._iterations(self._before)
+        else:
+            self._start, self._generator = choose_start(problem, settings, self._previous)
+            self._previous = None
+        self._beside = beside(problem, settings, resume.beside if resume else None, self._start)
+        return next(self._generator)
+
+    def _iterations(self, checkpoint: Checkpoint | None) -> Iterator[Iterate]:
+        return iterations_from(self._problem, self._settings, self._start, checkpoint)
+
+    def _begun(self) -> Begun:
+        choice = self._start.choice if self._start else None
+        return replace(self._sampler.begun(self.ticket), start=choice)
+
     def _compare(self, newest: Iterate) -> None:
         try:
             found = self._references.of(self._settings, self._problem, self._urgent)
         except Interrupted:
             return
         # The closed form takes longer than the first iteration, so it comes after the picture.
-        begun = self._sampler.begun(self.ticket)
-        self._send(self._sampler.completed(begun, self._settings))
+        self._send(self._sampler.completed(self._begun(), self._settings))
         self._account(newest, newest, self._refer(found))
         self._publish()
 
@@ -238,7 +269,7 @@ class WorkerRun:
             self._send(self._frame(newest, self._before, sought=True))
         else:
             start = self._recording.before(wanted)
-            self._search = (iterations(self._problem, self._settings, start), wanted)
+            self._search = (self._iterations(start), wanted)
             self._passed = start
 
     def _search_on(self, generator: Iterator[Iterate], wanted: int) -> None:
@@ -285,6 +316,15 @@ class WorkerRun:
 
     def _rest_of_iterations(self, done: int) -> float | None:
         return None if self._status is not None else self._tempo.rest(done)
+
+
+def last_iterate(order: Run) -> Iterate | None:
+    """Give the last iterate of a run that was parked, if it had any."""
+    if order.resume is None:
+        return None
+    settings = _checked(order)
+    resume = order.resume
+    return next(iterations_from(discretise(settings), settings, resume.start, resume.before))
 
 
 def _checked(order: Run) -> Settings:

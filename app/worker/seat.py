@@ -69,6 +69,18 @@ class Seat:
         """Stop the run and free its process; afterwards all orders are ignored."""
         self._pool.leave(self)
 
+    @property
+    def parked(self) -> Run | None:
+        """The order that would go on with a run that is not at work, or that it started from."""
+        if self.next is None or self.post is not None:
+            return None
+        return replace(self.next, previous=None) if self.next.resume else self.next.previous
+
+    @property
+    def others_at_work(self) -> int:
+        """Runs of other seats that are at work, and not only waiting."""
+        return self._pool.at_work_beside(self)
+
     def begin(self, order: Run) -> None:
         """Take up a new run."""
         self.ticket = order.ticket

@@ -80,7 +80,7 @@ class _Engine:
         self._sampled: ReducedLocalStage | None = None
         self._anderson: Anderson | None = None
         self._linear_stage: LinearStage[Any]
-        if settings.linear_stage == "pgd":
+        if settings.is_reduced:
             reduced = ReducedLinearStage(problem, self.k, settings)
             if settings.local_stage == "reduced":
                 self._sampled = ReducedLocalStage(problem, self.k, settings, reduced)

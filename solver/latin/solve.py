@@ -162,7 +162,7 @@ class StopRules:
         return f"The indicator does not fall any more. {self._remedy()}"
 
     def _remedy(self) -> str:
-        if self._settings.linear_stage == "pgd":
+        if self._settings.is_reduced:
             return "The separated bases may be too small: raise pgd_modes, lower pgd_tolerance."
         return "Raise max_iterations, loosen the tolerance, or try another k_scale."
 

@@ -24,6 +24,7 @@ from solver.reference.incremental import incremental
 from solver.settings import Settings
 from solver.study.machine import machine
 from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
+from solver.study.progress import Tell, silent
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
 """Errors of the friction force whose times make the table."""
@@ -131,7 +132,7 @@ class _Entry:
     timed: Callable[[], list[float]]
 
 
-def error_against_time(settings: Settings, repeats: int) -> Study:
+def error_against_time(settings: Settings, repeats: int, tell: Tell = silent) -> Study:
     """Run every method `repeats` times, in turns.
 
     Parameters
@@ -140,28 +141,39 @@ def error_against_time(settings: Settings, repeats: int) -> Study:
         Checked settings of a scene.
     repeats
         Timed passes, at least 1.
+    tell
+        Is told how far it is, while no clock runs.
     """
-    problem = discretise(settings)
-    reference = incremental(problem)
-    distance = distance_to(reference, problem)
-    entries = [
-        _latin_entry(method, settings.replace(**form), distance) for method, form in FORMS.items()
-    ]
-    steps = [float(reference.steps)]
-    entries.append(
-        _Entry(INCREMENTAL, "incremental", steps, [(0.0, 0.0)], lambda: [by_increments(settings)])
-    )
     troubles: list[str] = []
-    for peer in PEERS:
-        if peer.installed:
-            entries += _peer_entry(peer, settings, distance, troubles)
+    entries = _entries(settings, troubles, lambda doing, share: tell(doing, share / (repeats + 1)))
     samples: list[list[list[float]]] = [[] for _ in entries]
-    for _ in range(repeats):
+    for turn in range(1, repeats + 1):
+        tell(f"Timed pass {turn} of {repeats}", turn / (repeats + 1))
         for entry, times in zip(entries, samples, strict=True):
             times.append(entry.timed())
     courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
     absent = tuple(peer.name for peer in PEERS if not peer.installed)
     return Study(settings, repeats, machine(), tuple(courses), absent, tuple(troubles))
+
+
+def _entries(settings: Settings, troubles: list[str], tell: Tell) -> list[_Entry]:
+    """Find the errors of all methods, without the clock."""
+    problem = discretise(settings)
+    reference = incremental(problem)
+    distance = distance_to(reference, problem)
+    peers = [peer for peer in PEERS if peer.installed]
+    entries = []
+    for number, (method, form) in enumerate(FORMS.items()):
+        tell(f"Errors of {method}", number / (len(FORMS) + len(peers)))
+        entries.append(_latin_entry(method, settings.replace(**form), distance))
+    steps = [float(reference.steps)]
+    entries.append(
+        _Entry(INCREMENTAL, "incremental", steps, [(0.0, 0.0)], lambda: [by_increments(settings)])
+    )
+    for number, peer in enumerate(peers, start=len(FORMS)):
+        tell(f"Errors of {peer.name}", number / (len(FORMS) + len(peers)))
+        entries += _peer_entry(peer, settings, distance, troubles)
+    return entries
 
 
 def _latin_entry(

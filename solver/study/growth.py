@@ -12,6 +12,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.settings import SettingError, Settings
 from solver.study.error_against_time import FORMS, INCREMENTAL, by_increments, course_of
+from solver.study.progress import Tell, silent
 
 SIZES = {
     "elements": (50, 100, 200, 400, 800),
@@ -60,17 +61,18 @@ class Growth:
         return float(np.polyfit(points[:, 0], points[:, 1], 1)[0])
 
 
-def growth(settings: Settings) -> list[Growth]:
+def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
     """Measure all sizes; those that the scene cannot have, or has no setting for, are left out."""
     found: dict[tuple[str, str], list[Size]] = {}
-    for setting, sizes in SIZES.items():
-        for size in sizes:
-            try:
-                changed = settings.replace(**{setting: size})
-            except SettingError:
-                continue
-            for method, measured in _one_size(changed, size).items():
-                found.setdefault((setting, method), []).append(measured)
+    every = [(setting, size) for setting, sizes in SIZES.items() for size in sizes]
+    for number, (setting, size) in enumerate(every):
+        tell(f"Growth: {size} {setting}", number / len(every))
+        try:
+            changed = settings.replace(**{setting: size})
+        except SettingError:
+            continue
+        for method, measured in _one_size(changed, size).items():
+            found.setdefault((setting, method), []).append(measured)
     return [Growth(setting, method, tuple(sizes)) for (setting, method), sizes in found.items()]
 
 

@@ -11,6 +11,12 @@ from solver.study.error_against_time import GOAL, INCREMENTAL, LEVELS, MOST_ITER
 from solver.study.growth import Growth
 
 Row = list[str]
+TIMES = "Time to an error of the friction force"
+TIMES_NOTE = "Iterations of LATIN are in brackets."
+GROWTH_NOTE = (
+    "Time of one iteration of LATIN, of the whole solution by increments; the exponent is the "
+    "slope of its logarithm over that of the size, by least squares."
+)
 BILLED = (
     "Everything from settings to result is billed: discretisation, factorisation, coarser meshes, "
     "iterations; imports and the computation of errors are not. The forms of LATIN end at a "

@@ -1,0 +1,79 @@
+"""The curves of a study as plain data: errors over time, and growth with the size."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solver.discrete.problem import Array
+from solver.study.error_against_time import INCREMENTAL, Course, Study
+from solver.study.figure_data import Axis, Curve, Line, Panel
+from solver.study.growth import MEASURED, Growth
+
+SPAN = (1e-9, 2.0)
+"""Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower edge."""
+SMALLEST = 2e-9
+CURVES = "Error against run time, set-up included"
+CAPTION = (
+    "Points are runs of a public solver at several tolerances; those below the lower edge stand "
+    "on it. The dashed line is when the incremental solver is done."
+)
+GROWTH = "Growth with the size of the problem"
+
+
+def error_panels(study: Study) -> list[Panel]:
+    """Draw errors of displacement and of friction force over time, a curve for each method."""
+    panels = []
+    for name, title in (
+        ("error_displacement", "Displacement"),
+        ("error_force", "Friction force"),
+    ):
+        numbers = {"latin": 0, "peer": 0}
+        curves = []
+        for course in study.courses:
+            if course.kind != "incremental":
+                numbers[course.kind] += 1
+            curves.append(_curve(course, getattr(course, name), numbers.get(course.kind, 0)))
+        panels.append(
+            Panel(
+                title,
+                Axis("Time", "s", logarithmic=True),
+                Axis("Relative error", logarithmic=True, limits=SPAN),
+                tuple(curves),
+            )
+        )
+    return panels
+
+
+def _curve(course: Course, errors: Array, hue: int) -> Curve:
+    """Give a method's line: a vertical one where the solver itself is the reference."""
+    if course.kind == "incremental":
+        seconds = np.repeat(course.seconds, 2)
+        return Curve(course.method, seconds, np.array(SPAN), 0, "dashed")
+    line: Line = "solid" if course.kind == "latin" else "points"
+    return Curve(course.method, course.seconds, np.maximum(errors, SMALLEST), hue, line)
+
+
+def growth_panels(found: Sequence[Growth]) -> list[Panel]:
+    """Draw times over sizes, a panel for each setting that changes."""
+    hues = {method: hue for hue, method in enumerate((INCREMENTAL, *MEASURED))}
+    return [
+        Panel(
+            setting.capitalize(),
+            Axis(f"Number of {setting}", logarithmic=True, whole=True),
+            Axis("Time", "s", logarithmic=True),
+            tuple(
+                Curve(
+                    one.method,
+                    np.array([float(size.size) for size in one.sizes]),
+                    np.array([size.seconds for size in one.sizes]),
+                    hues[one.method],
+                    "points",
+                )
+                for one in found
+                if one.setting == setting
+            ),
+        )
+        for setting in dict.fromkeys(one.setting for one in found)
+    ]
