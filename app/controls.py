@@ -16,6 +16,10 @@ from solver.settings import Curve, Settings, about
 
 POINTS = "table of points"
 LOGARITHMIC = "const v = 10 ** tick; return Number(v.toPrecision(3)).toString()"
+LINEAR = "return Number(tick.toPrecision(4)).toString()"
+PLAIN = "0[.]000"
+PLAIN_FROM = 0.1
+"""Largest value of a slider from which three places behind the point are enough."""
 
 Report = Callable[[str, Any], None]
 
@@ -109,7 +113,10 @@ class SliderControl(Control):
         if whole:
             return pmui.IntSlider(start=low, end=high, **self._common())
         step = 10.0 ** math.floor(math.log10((high - low) / 80))
-        return pmui.FloatSlider(start=low, end=high, step=step, format="0[.]000", **self._common())
+        form = (
+            PLAIN if max(abs(low), abs(high)) >= PLAIN_FROM else CustomJSTickFormatter(code=LINEAR)
+        )
+        return pmui.FloatSlider(start=low, end=high, step=step, format=form, **self._common())
 
     @property
     def _logarithmic(self) -> bool:

@@ -11,13 +11,16 @@ import panel as pn
 import panel_material_ui as pmui
 from panel.util import edit_readonly
 
+from app.looks import Looks
 from app.pulse import Pulse, send_without_delay
 from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
+from app.views.axial import Axial
 from app.views.basis_size import BasisSize
 from app.views.convergence import Convergence
+from app.views.deformed import Deformed
 from app.views.drawing import Picture, View
 from app.views.error_time import ErrorTime
 from app.views.friction import FrictionForce
@@ -25,6 +28,7 @@ from app.views.loop import Loop
 from app.views.modes import SpaceModes, TimeFunctions
 from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
+from app.views.tractions import Tractions
 from app.words import card_title, key_figures, status_line
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
@@ -59,6 +63,8 @@ class Dashboard:
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
         self._pulse = self._make_pulse()
         self.transport = Transport(session, self._mark)
+        self._deformed = Deformed()
+        self._looks = Looks(session, self._deformed, self._mark)
         self._views = self._make_views()
         self._titles: dict[str, Any] = {}
         self._cards: dict[str, Any] = {}
@@ -128,6 +134,9 @@ class Dashboard:
     def _make_views(self) -> list[View]:
         return [
             FrictionForce(),
+            self._deformed,
+            Tractions(),
+            Axial(),
             StatusMap(self.transport.choose_time),
             Loop(),
             Convergence(),
@@ -217,7 +226,12 @@ class Dashboard:
             self._plots[:] = cards
         self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
         self._shown = shown
+        self._offer_looks()
         self._mark()
+
+    def _offer_looks(self) -> None:
+        self._looks.show()
+        self.transport.place(self._looks.parts(self._deformed in self._shown))
 
     def _mark(self) -> None:
         self._dirty = True
@@ -257,6 +271,7 @@ class Dashboard:
         )
         if at_once:
             return
+        self._offer_looks()
         self.transport.show()
         entry = session.run.record_of(frame) if frame is not None else None
         self._figures.object = key_figures(session.run, session.before, entry)

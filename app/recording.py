@@ -8,7 +8,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.protocol import Begun, Died, End, Frame, Progress, Reference, Refused, Report
+from app.worker.protocol import (
+    Begun,
+    Died,
+    End,
+    Frame,
+    Progress,
+    Reference,
+    Refused,
+    Report,
+    Unrivalled,
+)
 from solver.latin import Record, Status
 from solver.latin.warm import StartChoice
 from solver.settings import Settings
@@ -60,9 +70,13 @@ class Recording:
         """Add what a worker reports."""
         match report:
             case Begun():
+                if self.begun is not None and self.begun.interface != report.interface:
+                    self.reference = self.newest = self.sought = None
                 self.begun = report
             case Reference():
                 self.reference = report
+            case Unrivalled():
+                self.reference = None
             case Progress():
                 self.records.extend(report.records)
                 self.beside.extend(report.beside)

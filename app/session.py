@@ -9,17 +9,31 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from app.errand import Errand
 from app.recording import Recording
 from app.worker.bench import Bench
 from app.worker.pool import Pool
-from app.worker.protocol import Frame, Pace, Report, Run, Seek, Step, Watch
+from app.worker.protocol import (
+    Frame,
+    Look,
+    Pace,
+    Report,
+    Run,
+    Seek,
+    Step,
+    Watch,
+    instant_of,
+)
+from solver.files import scene_settings
 from solver.settings import Settings, about
 
 PAST_RUNS = 6
 DEFAULT_PACE = 20.0
+AT_THE_INSTANT = frozenset({"mesh", "axial"})
+"""What frames carry for the chosen instant alone."""
 
 
 class Session:
@@ -35,6 +49,8 @@ class Session:
         Finished runs, oldest first, for error against run time.
     instant
         Index of the chosen instant among those that frames carry.
+    look
+        Where one looks: the interface, the instant as a share of the interval, and the stress.
     substructure
         The one whose modes are looked at, from 0 at the clamp; None is the last one.
     running, pace
@@ -58,7 +74,8 @@ class Session:
         self.before: Recording | None = None
         self.past: deque[Recording] = deque(maxlen=PAST_RUNS)
         self.instant = 0
-        self.phase = 0.75
+        self.look = Look()
+        self._left: dict[str, Settings] = {}
         self.substructure: int | None = None
         self.running = True
         self.pace: float | None = DEFAULT_PACE
@@ -84,14 +101,17 @@ class Session:
         A run that `waits` does one iteration until the page is connected; a `warm` one starts
         from the last iterate of the run at work, where that is better.
         """
-        self._retire()
+        settings = settings or self.settings
+        if settings.scene == self.settings.scene:
+            self._retire()
+        else:
+            self._leave_scene()
+        before = self.settings.values() if settings.scene == self.settings.scene else {}
         changed = {
-            name: value
-            for name, value in (settings or self.settings).values().items()
-            if value != self.settings.values()[name]
+            name: value for name, value in settings.values().items() if value != before.get(name)
         }
-        self.settings = settings or self.settings
-        label = _label(self.settings, changed) if changed else self.run.label
+        self.settings = settings
+        label = _label(self.settings, changed) if before and changed else self.run.label
         self.run = Recording(self.run.ticket + 1, self.settings, label, is_warm=warm)
         self.follows = True
         self._pending = None
@@ -104,6 +124,7 @@ class Session:
                 pause_after=None if self._is_free and not waits else 1,
                 watch=self.watch,
                 substructure=self.substructure,
+                look=self.look,
                 warm=warm,
             )
         )
@@ -119,12 +140,20 @@ class Session:
         self.adopt((self._pending or self.settings).with_change(name, value))
 
     def adopt(self, settings: Settings) -> None:
-        """Take new settings as a whole."""
+        """Take new settings as a whole; those of another scene start at once."""
+        if settings.scene != self.settings.scene:
+            self.start(settings)
+            return
         if settings.values() == self.settings.values() and self._pending is None:
             return
         self._pending = settings
         if self.run.newest is not None or self.run.notice or self.run.ticket == 0:
             self.start(settings, warm=self.warm_start)
+
+    def choose_scene(self, scene: str) -> None:
+        """Go to another scene, with the settings that it was left with, or its defaults."""
+        if scene != self.wanted.scene:
+            self.adopt(self._left.get(scene) or scene_settings(scene).checked({}))
 
     def collect(self) -> bool:
         """Take the waiting reports; tell whether anything is new."""
@@ -135,7 +164,7 @@ class Session:
             if report.ticket == self.run.ticket:
                 self.run.take(report)
         if reports and self.run.begun is not None:
-            self.instant = round(self.phase * (len(self.run.begun.instants) - 1))
+            self.instant = instant_of(self.look.phase, len(self.run.begun.instants))
         if self._pending is not None and (self.run.newest is not None or self.run.notice):
             self.start(self._pending, warm=self.warm_start)
         return bool(reports)
@@ -176,7 +205,15 @@ class Session:
         if self.run.begun is not None:
             count = len(self.run.begun.instants)
             self.instant = min(max(instant, 0), count - 1)
-            self.phase = self.instant / max(count - 1, 1)
+            self._look(phase=self.instant / max(count - 1, 1))
+
+    def look_into(self, interface: str) -> None:
+        """Choose the interface whose fields are drawn."""
+        self._look(interface=interface)
+
+    def look_for(self, stress: str) -> None:
+        """Choose the stress that is drawn."""
+        self._look(stress=stress)
 
     def set_watch(self, watch: frozenset[str]) -> None:
         """Set what frames carry beyond the fields."""
@@ -186,7 +223,7 @@ class Session:
 
     def choose_substructure(self, number: int) -> None:
         """Choose the substructure whose modes are looked at, from 0 at the clamp."""
-        last = int(self.settings.values()["substructures"]) - 1
+        last = self.settings.n_substructures - 1
         chosen = None if number >= last else max(number, 0)
         if chosen != self.substructure:
             self.substructure = chosen
@@ -225,7 +262,7 @@ class Session:
         return self._pending or self.settings
 
     @property
-    def shown(self) -> Any:
+    def shown(self) -> Frame | None:
         """The frame that is looked at, or None before the first."""
         if self.follows or self.run.sought is None:
             return self.run.newest
@@ -240,9 +277,18 @@ class Session:
         if self.running and self.run.status is None:
             self._seat.send(Pace(self.run.ticket, self.pace if self._is_free else 0.0))
 
+    def _look(self, **changes: Any) -> None:
+        look = replace(self.look, **changes)
+        if look == self.look:
+            return
+        elsewhere = look.interface != self.look.interface or self.watch & AT_THE_INSTANT
+        self.look = look
+        if elsewhere:
+            self._look_again()
+
     def _look_again(self) -> None:
         """Have frames carry what is watched, and the one that is looked at sent again."""
-        self._seat.send(Watch(self.run.ticket, self.watch, self.substructure))
+        self._seat.send(Watch(self.run.ticket, self.watch, self.substructure, self.look))
         if not self.follows and self.run.sought is not None:
             self._seat.send(Seek(self.run.ticket, self.run.sought.iteration))
 
@@ -250,6 +296,14 @@ class Session:
         if self.run.is_worth_keeping:
             self.before = self.run
             self.past.append(self.run)
+
+    def _leave_scene(self) -> None:
+        """Keep the settings for a return; runs of another scene are nothing to compare with."""
+        self._left[self.settings.scene] = self.wanted
+        self.before = None
+        self.past.clear()
+        self.look = replace(self.look, interface="")
+        self.substructure = None
 
     def _receive(self, report: Report) -> None:
         with self._lock:

@@ -6,19 +6,30 @@ from collections.abc import Callable, Sequence
 from io import StringIO
 from typing import Any
 
-import numpy as np
 import panel_material_ui as pmui
 
 from app.address import query_of
 from app.controls import Control, make_control
+from app.samples import points_of
 from app.session import Session
 from solver.files import settings_from_toml
-from solver.loads import load_path
-from solver.scenes.bar import PROFILES
+from solver.scenes import CATALOGUE
 from solver.settings import Curve, SettingError, Settings, about, dump, read_table
 
-ORDER = ("Load", "Contact", "Bar", "Decomposition", "Method", "Stop")
-
+ORDER = (
+    "Load",
+    "Top",
+    "Left",
+    "Right",
+    "Contact",
+    "Bar",
+    "Strand",
+    "Body",
+    "Body force",
+    "Decomposition",
+    "Method",
+    "Stop",
+)
 
 WARM_NOTE = """\
 # The run on the page started from the solution of the run before it, so its iterations and times
@@ -62,7 +73,17 @@ class Sidebar:
         self._views = pmui.CheckBoxGroup(options=[], value=[])
         self._views.param.watch(self._on_views, "value")
         self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
+        self._scene = pmui.Select(
+            label="Scene",
+            options={entry.title: name for name, entry in CATALOGUE.items()},
+            value=session.wanted.scene,
+            size="small",
+            sizing_mode="stretch_width",
+            description="What is solved; each scene keeps its settings until the page is closed.",
+        )
+        self._scene.param.watch(self._on_scene, "value")
         self._controls = self._make_controls(essential=True)
+        self._made_for = session.wanted.scene
         self._warm = pmui.Switch(
             label="Start from the run before",
             description="When a setting changes, start from the last iterate of the run before, "
@@ -81,7 +102,14 @@ class Sidebar:
         self.view[:] = self._items()
 
     def show(self, settings: Settings) -> None:
-        """Show the settings that hold."""
+        """Show the settings that hold, with the controls of their scene."""
+        if settings.scene != self._made_for:
+            self._made_for = settings.scene
+            self._scene.value = settings.scene
+            self._more[:] = []
+            self._controls = self._make_controls(essential=True)
+            if self.view.objects:
+                self.fill()
         for control in self._controls.values():
             control.show(settings)
 
@@ -91,6 +119,11 @@ class Sidebar:
         if self._views.options != list(views):
             self._views.param.update(options=list(views), value=wanted)
         return wanted
+
+    def _on_scene(self, event: Any) -> None:
+        if event.new != self._session.wanted.scene:
+            self._session.choose_scene(event.new)
+            self._after_change()
 
     def _on_warm(self, event: Any) -> None:
         self._session.warm_start = event.new
@@ -108,7 +141,7 @@ class Sidebar:
         for control in self._controls.values():
             groups.setdefault(about(control.definition).group, []).append(control.view)
         items: list[Any] = []
-        for group in ORDER:
+        for group in [*ORDER, *(group for group in groups if group not in ORDER)]:
             if group in groups:
                 items += [_heading(group), *groups[group]]
             if group == "Method":
@@ -116,6 +149,7 @@ class Sidebar:
         more = pmui.Accordion(("More settings", self._more), sizing_mode="stretch_width")
         more.param.watch(self._open_more, "active")
         return [
+            self._scene,
             *items,
             more,
             _heading("Views"),
@@ -161,7 +195,7 @@ class Sidebar:
     def _make_controls(self, *, essential: bool) -> dict[str, Control]:
         made = {
             name: make_control(name, definition, self._on_setting, self._points_of)
-            for name, definition in self._session.settings.definitions().items()
+            for name, definition in self._session.wanted.definitions().items()
             if about(definition).essential is essential
         }
         return {name: control for name, control in made.items() if control is not None}
@@ -176,14 +210,7 @@ class Sidebar:
 
     def _points_of(self, name: str) -> list[tuple[float, float]]:
         """Give points that stand for the preset of a curve setting."""
-        values = self._session.settings.values()
-        if name in ("friction_profile", "pressure_profile"):
-            return [(x * values["length"], factor) for x, factor in PROFILES[values[name]]]
-        instants = np.linspace(0.0, values["duration"], 9)
-        forces = load_path(
-            values[name], instants, values["duration"], values["peak"], values["seed"]
-        )
-        return [(float(t), float(round(f, 6))) for t, f in zip(instants, forces, strict=True)]
+        return points_of(self._session.wanted, name)
 
     def _on_setting(self, name: str, value: Any) -> None:
         try:
@@ -208,14 +235,24 @@ class Sidebar:
             if event.obj.filename.endswith(".toml"):
                 self._adopt(settings_from_toml(text))
             else:
-                definition = self._session.settings.definitions()["load"]
-                assert isinstance(definition, Curve)
-                rows = read_table(text, definition, "load", event.obj.filename)
-                self._on_setting("load", rows)
+                name, definition = self._load()
+                self._on_setting(name, read_table(text, definition, name, event.obj.filename))
         except SettingError as refusal:
             self._complain(str(refusal))
         except UnicodeDecodeError:
             self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
+
+    def _load(self) -> tuple[str, Curve]:
+        """Find the load path that a table is for: the last one that stands in the open."""
+        settings = self._session.wanted
+        paths = [
+            (name, definition)
+            for name, definition in settings.definitions().items()
+            if isinstance(definition, Curve)
+            and definition.abscissa == "time"
+            and settings.applies(name)
+        ]
+        return max(paths, key=lambda path: about(path[1]).essential)
 
     def _saved(self) -> StringIO:
         run = self._session.run

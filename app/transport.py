@@ -18,6 +18,8 @@ PACES = {
     "100 iterations/s": 100.0,
     "as fast as it can": None,
 }
+FIXED = 5
+"""Buttons, pace and sliders, which always stand there."""
 
 
 class Transport:
@@ -87,11 +89,17 @@ class Transport:
     def arrange(self, settings: Settings) -> None:
         """Show the sliders that apply."""
         sliders = [self._iteration, self._instant]
-        if settings.is_reduced and settings.values()["substructures"] > 1:
+        if settings.is_reduced and settings.n_substructures > 1:
             sliders.append(self._substructure)
         if list(self._sliders) != sliders:
             self._show_substructure(settings)
             self._sliders[:] = sliders
+
+    def place(self, more: list[Any]) -> None:
+        """Put widgets behind the sliders, in place of those there."""
+        parts = [*self.view[:FIXED], *more]
+        if list(self.view) != parts:
+            self.view[:] = parts
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
@@ -174,7 +182,7 @@ class Transport:
         self._substructure.param.watch(self._on_substructure, "wanted")
 
     def _show_substructure(self, settings: Settings) -> None:
-        last, chosen = int(settings.values()["substructures"]), self._session.substructure
+        last, chosen = settings.n_substructures, self._session.substructure
         at = last if chosen is None else min(chosen + 1, last)
         self._substructure.param.update(end=max(last, 2), shown=at, text=str(at))
 

@@ -8,6 +8,7 @@ from html import escape
 
 from app.recording import Recording
 from app.views.drawing import Key
+from app.worker.rivals import has_reference
 from solver.latin import Ending, Record
 
 ENDINGS = {
@@ -17,6 +18,16 @@ ENDINGS = {
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
+HEADS = (
+    "Iteration",
+    "LATIN indicator η",
+    "k-free indicator",
+    "Displacement error",
+    "Friction force error",
+    "Run time",
+    "Iterations to 1 %",
+)
+ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
 
 
 def status_line(run: Recording, running: bool, sought: int | None, *, held: bool = False) -> str:
@@ -26,8 +37,7 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
     """
     if run.notice and not run.records:
         return f"<b>{escape(run.notice)}</b>"
-    settings = run.settings.values()
-    parts = settings["substructures"]
+    settings, parts = run.settings.values(), run.settings.n_substructures
     scale = (
         "one substructure"
         if parts == 1
@@ -50,7 +60,8 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
     if run.records:
         last = run.records[-1]
         line += f" · η = {number(last.indicator)}"
-        line += f" · friction force error {percent(last.error_force)}"
+        if math.isfinite(last.error_force):
+            line += f" · friction force error {percent(last.error_force)}"
         line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
@@ -77,16 +88,11 @@ def start_line(run: Recording) -> str:
 
 
 def key_figures(run: Recording, before: Recording | None, shown: Record | None) -> str:
-    """Set the figures of this run beside those of the run before (an HTML table)."""
-    heads = (
-        "Iteration",
-        "LATIN indicator η",
-        "k-free indicator",
-        "Displacement error",
-        "Friction force error",
-        "Run time",
-        "Iterations to 1 %",
-    )
+    """Set the figures of this run beside those of the run before (an HTML table).
+
+    Errors are those beside a reference; where there is none, they are left out.
+    """
+    heads = HEADS if has_reference(run.settings) else tuple(_without_errors(HEADS))
     rows = [("this run", run, shown or (run.records[-1] if run.records else None))]
     if before is not None:
         rows.append(
@@ -104,9 +110,16 @@ def key_figures(run: Recording, before: Recording | None, shown: Record | None) 
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _cells(run: Recording, entry: Record | None) -> tuple[str, ...]:
-    if entry is None:
-        return ("–",) * 7
+def _cells(run: Recording, entry: Record | None) -> Sequence[str]:
+    cells = ("–",) * len(HEADS) if entry is None else _figures(run, entry)
+    return cells if has_reference(run.settings) else _without_errors(cells)
+
+
+def _without_errors(cells: Sequence[str]) -> list[str]:
+    return [cell for cell, head in zip(cells, HEADS, strict=True) if head not in ERRORS]
+
+
+def _figures(run: Recording, entry: Record) -> tuple[str, ...]:
     within = run.first_within(0.01)
     return (
         str(entry.iteration),

@@ -473,6 +473,14 @@ class Settings(param.Parameterized):
         return self.replace(**{name: value})
 
     @property
+    def n_jumps(self) -> int:
+        """Components of all contacts that open or lie between bodies, which a reference condenses.
+
+        None on a rigid support of known bound.
+        """
+        return 0
+
+    @property
     def is_reduced(self) -> bool:
         """Whether the linear stage works on separated bases."""
         return bool(self.linear_stage == "pgd")

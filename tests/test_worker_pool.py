@@ -16,7 +16,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -42,6 +41,7 @@ from app.worker.protocol import (
     Seek,
     Step,
     Taken,
+    Unrivalled,
     Waiting,
     Watch,
 )
@@ -534,8 +534,7 @@ def test_time_for_setting_up_is_not_taken_from_the_turn() -> None:
     stage.wait(0.4)
     assert pair[0].post is not None
     turn = pair[0].post.turn
-    field, status = np.zeros((1, 1), dtype=np.float32), np.zeros((1, 1), dtype=np.int8)
-    stage.report(actor, Reference(turn, field, status, field[0], residual=0.0, seconds=0.0))
+    stage.report(actor, Unrivalled(turn))
     while not actor.orders:
         stage.wait(0.01)
     assert stage.now - begun == pytest.approx(0.9, abs=0.02)

@@ -21,6 +21,7 @@ from app.worker.protocol import (
     End,
     Frame,
     Leave,
+    Look,
     Order,
     Pace,
     Park,
@@ -118,7 +119,8 @@ def timeless(records: list[Record]) -> list[Record]:
 
 
 def shown(iterate: Iterate) -> Frame:
-    return Sampler(iterate.problem).frame(1, iterate, frozenset())
+    sampler = Sampler(iterate.problem, BarSettings.checked({}), Look())
+    return sampler.frame(1, iterate, frozenset(), Look())
 
 
 def is_same_picture(frame: Frame, other: Frame) -> bool:

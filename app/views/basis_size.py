@@ -74,7 +74,7 @@ class BasisSize:
         run, frame = picture.run, picture.frame
         if not run.sizes or frame is None or frame.bases is None or frame.ticket != run.ticket:
             return
-        done, total = len(run.sizes), int(run.settings.values()["substructures"])
+        done, total = len(run.sizes), run.settings.n_substructures
         columns = np.linspace(0, done - 1, min(done, MOST_COLUMNS)).round().astype(int)
         sizes = np.stack([run.sizes[column] for column in columns], axis=1)
         most = max(int(sizes.max()), 2)

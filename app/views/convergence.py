@@ -21,6 +21,7 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
+from app.worker.rivals import has_reference
 from solver.latin import Record
 from solver.settings import Settings
 
@@ -31,6 +32,8 @@ CURVES = (
     ("error_force", BLUE, "error f", "solid"),
 )
 FLOOR = 1e-18
+ERRORS = 2
+"""First of them that is an error, and needs a reference."""
 
 
 KEYS = tuple(
@@ -117,10 +120,10 @@ class Convergence:
         self._now.data = {name: now[name] for name in self._now.data}
         self._fit(now)
         past: list[Record] = picture.before.records if picture.before else []
-        self.keys = KEYS
+        self.keys = KEYS if has_reference(picture.run.settings) else KEYS[:ERRORS]
         if _is_reduced(picture):
             past = picture.run.beside
-            self.keys = (*KEYS, Key(BLUE, "pale", "full stage"))
+            self.keys = (*self.keys, Key(BLUE, "pale", "full stage"))
         ghost = columns(past)
         self._ghost.data = {name: ghost[name] for name in self._ghost.data}
 

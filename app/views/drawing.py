@@ -23,7 +23,7 @@ from solver.settings import Settings
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"
 SKY, VERMILION = "#56B4E9", "#D55E00"
-BACKWARD, STICK, FORWARD = BLUE, "#D9D9D9", ORANGE
+BACKWARD, STICK, FORWARD, OPEN = BLUE, "#D9D9D9", ORANGE, "#4D4D4D"
 FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
 
 

@@ -22,6 +22,7 @@ from app.views.drawing import (
     mark_decades,
     set_range,
 )
+from app.worker.rivals import has_reference
 from solver.latin import Record
 from solver.settings import Settings
 
@@ -69,8 +70,8 @@ class ErrorTime:
         made.add_layout(self._incremental)
 
     def applies(self, settings: Settings) -> bool:
-        """Every run takes time."""
-        return True
+        """Every run takes time, but there are errors only beside a reference."""
+        return has_reference(settings)
 
     def draw(self, picture: Picture) -> None:
         """Draw the run at work, and the past ones when one was added."""

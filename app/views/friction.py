@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from bokeh.models import Range1d, Span
 
@@ -18,7 +20,17 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
+from app.worker.rivals import has_reference
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
+
+KEYS = (
+    Key(BLUE, "line", "LATIN"),
+    Key(ORANGE, "line", "reference"),
+    Key(GREEN, "band", "closed form"),
+    Key(SKY, "line", "run before"),
+    Key(GREY, "dashed", "±μp"),
+)
 
 
 class FrictionForce:
@@ -26,13 +38,7 @@ class FrictionForce:
 
     name = "Friction force"
     watches = ""
-    keys = (
-        Key(BLUE, "line", "LATIN"),
-        Key(ORANGE, "line", "reference"),
-        Key(GREEN, "band", "closed form"),
-        Key(SKY, "line", "run before"),
-        Key(GREY, "dashed", "±μp"),
-    )
+    keys: Sequence[Key] = KEYS
 
     def __init__(self) -> None:
         self.figure = make_figure(
@@ -60,8 +66,8 @@ class FrictionForce:
         made.add_layout(self._zero)
 
     def applies(self, settings: Settings) -> bool:
-        """Friction is what the page is about."""
-        return True
+        """Plane bodies have no bound that is known beforehand, and tractions instead."""
+        return not isinstance(settings, PlaneSettings)
 
     def draw(self, picture: Picture) -> None:
         """Draw the profiles of the chosen instant."""
@@ -69,7 +75,9 @@ class FrictionForce:
         if run.begun is None or frame is None or frame.ticket != run.ticket:
             return
         begun = run.begun
-        known = (run.ticket, run.reference is None, picture.instant)
+        if begun.bound is None:
+            return
+        known = (run.ticket, begun.interface, run.reference is None, picture.instant)
         if known != self._drawn:
             self._drawn = known
             self._draw_base(picture)
@@ -81,6 +89,7 @@ class FrictionForce:
     def _draw_base(self, picture: Picture) -> None:
         begun, run = picture.run.begun, picture.run
         assert begun is not None
+        assert begun.bound is not None
         nothing = np.full(len(begun.positions), np.nan, dtype=np.float32)
         top = float(begun.bound.max()) or 1.0
         self._factor, unit = decimal_scale(top, "N/m")
@@ -99,15 +108,17 @@ class FrictionForce:
             if begun.closed_form is not None
             else nothing,
         }
+        self.keys = KEYS if has_reference(run.settings) else (KEYS[0], *KEYS[3:])
         self._cuts.data = {"x": begun.cuts}
         self._ghost.data = self._profile_before(picture)
 
     def _profile_before(self, picture: Picture) -> dict[str, np.ndarray]:
         before = picture.before
-        if before is None or before.newest is None or before.begun is None:
+        assert picture.run.begun is not None
+        other = before is None or before.newest is None or before.begun is None
+        if other or before.newest.interface != picture.run.begun.interface:
             return {"x": np.array([]), "y": np.array([])}
         count = before.newest.friction.shape[1]
-        assert picture.run.begun is not None
         phase = picture.instant / max(len(picture.run.begun.instants) - 1, 1)
         instant = round(phase * (count - 1))
         return {

@@ -23,6 +23,7 @@ from app.views.drawing import (
     set_range,
 )
 from app.worker.protocol import Bases, ShownModes
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
@@ -46,8 +47,8 @@ class SpaceModes:
         self._lines = _lines(self.figure)
 
     def applies(self, settings: Settings) -> bool:
-        """Only separated bases have modes."""
-        return settings.is_reduced
+        """Only separated bases have modes, and only those of wires are curves."""
+        return settings.is_reduced and not isinstance(settings, PlaneSettings)
 
     def draw(self, picture: Picture) -> None:
         """Draw the modes of the shown iterate."""

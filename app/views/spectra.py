@@ -87,14 +87,14 @@ class Spectra:
         spectra = frame.spectra
         count, width = spectra.shape
         numbers = np.arange(1, count + 1)
-        total = int(picture.run.settings.values()["substructures"])
+        total = picture.run.settings.n_substructures
         if count < total:
             numbers = np.linspace(1, total, count).round().astype(int)
         if self._mapper.high != max(total, 2):
             self._mapper.high = max(total, 2)
             marks = sorted({int(mark) for mark in np.linspace(1, total, min(total, 5)).round()})
             self._marks.ticks = marks
-        largest = float(np.nanmax(spectra)) or 1.0
+        largest = float(np.nanmax(spectra, initial=0.0)) or 1.0
         scaled = np.maximum(spectra / largest, 1e-30)
         more = self._draw_basis(frame.bases)
         low, _ = decades([*scaled[np.isfinite(scaled)].tolist(), *more], FLOOR)

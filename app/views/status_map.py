@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from bokeh.events import Pan, Tap
@@ -12,6 +12,7 @@ from app.views.drawing import (
     BACKWARD,
     FORWARD,
     GREY,
+    OPEN,
     STICK,
     VERMILION,
     Key,
@@ -21,6 +22,14 @@ from app.views.drawing import (
     set_range,
 )
 from solver.settings import Settings
+
+KEYS = (
+    Key(BACKWARD, "square", "slip −"),
+    Key(STICK, "square", "stick"),
+    Key(FORWARD, "square", "slip +"),
+    Key(VERMILION, "line", "chosen instant"),
+)
+INSTANT = Key(VERMILION, "line", "instant")
 
 
 class StatusMap:
@@ -34,12 +43,7 @@ class StatusMap:
 
     name = "Stick and slip"
     watches = ""
-    keys = (
-        Key(BACKWARD, "square", "slip −"),
-        Key(STICK, "square", "stick"),
-        Key(FORWARD, "square", "slip +"),
-        Key(VERMILION, "line", "chosen instant"),
-    )
+    keys: Sequence[Key] = KEYS
 
     def __init__(self, choose: Callable[[float], None]) -> None:
         self.figure = make_figure(
@@ -47,10 +51,10 @@ class StatusMap:
         )
         self._image = empty("image", "x", "y", "dw", "dh")
         self._cuts = empty("x")
-        self._drawn = -1
+        self._drawn: tuple[object, ...] = ()
         made = self.figure
         made.grid.visible = False
-        mapper = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=0, high=2)
+        mapper = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD, OPEN], low=0, high=3)
         made.image("image", x="x", y="y", dw="dw", dh="dh", source=self._image, color_mapper=mapper)
         made.vspan("x", source=self._cuts, line_color=GREY, line_width=1)
         self._instant = Span(location=0, dimension="width", line_color=VERMILION, line_width=3)
@@ -68,9 +72,11 @@ class StatusMap:
         if run.begun is None or frame is None or frame.ticket != run.ticket:
             return
         begun = run.begun
-        if self._drawn != run.ticket:
-            self._drawn = run.ticket
+        if self._drawn != (run.ticket, begun.interface):
+            self._drawn = (run.ticket, begun.interface)
             self._cuts.data = {"x": begun.cuts}
+            can_open = begun.coefficient is not None
+            self.keys = (*KEYS[:3], Key(OPEN, "square", "open"), INSTANT) if can_open else KEYS
         half_x = 0.5 * _step(begun.positions)
         half_t = 0.5 * _step(begun.instants)
         first_x, last_x = float(begun.positions[0]), float(begun.positions[-1])

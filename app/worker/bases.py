@@ -62,14 +62,15 @@ def _modes(
     rows = problem.substructures[place].rows
     # Rows of two interfaces that meet at a point move together.
     dofs, first = np.unique(problem.row_dofs[rows], return_index=True)
-    order = np.argsort(problem.positions[dofs])
+    places = problem.positions[dofs] if problem.positions.ndim == 1 else problem.positions[dofs, 0]
+    order = np.argsort(places, kind="stable")
     points = order[thinned(len(order))]
     space = modes.displacement_modes[first[points], :MOST_MODES].T
     size = _signed_size(space)
     instants = thinned(problem.n_instants)
     time = modes.time_functions[:MOST_MODES, instants] * problem.scales.displacement
     return ShownModes(
-        positions=_floats(problem.positions[dofs[points]]),
+        positions=_floats(places[points]),
         space_modes=_floats(space / size[:, None]),
         time_functions=_floats(time * size[:, None]),
         born=_outside(modes, past)[:MOST_MODES] > BORN,

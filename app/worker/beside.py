@@ -36,7 +36,7 @@ class Beside:
         self._ended = resume.ended if resume else False
         self._generator = iterations_from(problem, full, start, self._checkpoint)
 
-    def follow(self, number: int, distance: Distance) -> list[Record]:
+    def follow(self, number: int, distance: Distance | None) -> list[Record]:
         """Catch up with an iteration, unless it has ended before; give the new records."""
         records: list[Record] = []
         while not self._ended and self._number < number:

@@ -4,11 +4,16 @@ A run has a ticket. Orders about another ticket than the one at work are ignored
 reports about a ticket that is no longer wanted: nothing depends on who is first.
 
     server -> worker   Run, Pace, Step, Seek, Watch, Park, Leave
-    worker -> server   Ready, then per run: Taken, Begun, Frame, Begun, Reference, Progress*,
-                       Frame*, then End | Parked | Refused; Waiting whenever there is nothing to do
-    pool -> session    Begun, Reference, Progress, Frame, End, Refused, Died; the rest is internal
+    worker -> server   Ready, then per run: Taken, Begun, Frame, Begun, Reference | Unrivalled,
+                       Progress*, Frame*, then End | Parked | Refused; Waiting whenever there is
+                       nothing to do
+    pool -> session    Begun, Reference, Unrivalled, Progress, Frame, End, Refused, Died; the rest
+                       is internal
 
-Only the second Begun has the closed form, which must not hold up the first picture.
+Only the second Begun has the closed form, which must not hold up the first picture. Begun,
+Reference and Frame speak of one interface with friction, the one that is looked at; when another
+is chosen all three are sent again. Its forces are per length, N/m, where the bound is known, and
+tractions, Pa, where it depends on the pressure.
 Every record of a run is in exactly one Progress, and so is every record of the full stage that is
 iterated beside a run on separated bases; frames are only the newest. A run that was parked and
 went on sends a complete Begun, Reference and a Frame again, and no record or End twice. Died alone
@@ -53,6 +58,32 @@ MOST_MODES = 5
 """Modes of the chosen substructure that are sent at most, the largest."""
 
 
+STRESSES = ("von Mises", "xx", "yy", "xy")
+"""Components of stress that a frame may carry."""
+
+STATUS_OPEN = 2
+"""Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """Where one looks.
+
+    Attributes
+    ----------
+    interface
+        Name of an interface with friction; the first one if there is none of this name.
+    phase
+        The chosen instant, as a share of the interval.
+    stress
+        One of `STRESSES`.
+    """
+
+    interface: str = ""
+    phase: float = 0.75
+    stress: str = STRESSES[0]
+
+
 @dataclass(frozen=True)
 class Run:
     """Start a run in place of whatever is at work.
@@ -69,10 +100,11 @@ class Run:
     resume
         Where to go on; records before it are not sent again.
     watch
-        Names of what frames carry beyond the fields: "spectra", "behaviour", "modes".
+        Names of what frames carry beyond the fields: "spectra", "behaviour", "modes", "mesh",
+        "axial".
     seek
         Iteration whose frame is sought first.
-    substructure
+    substructure, look
         As in Watch.
     warm
         Whether the run may start from the last iterate of the seat's run before, where that is
@@ -91,6 +123,7 @@ class Run:
     watch: frozenset[str] = frozenset()
     seek: int | None = None
     substructure: int | None = None
+    look: Look = Look()
     warm: bool = False
     after: int | None = None
     previous: Run | None = None
@@ -142,11 +175,14 @@ class Watch:
     substructure
         The one whose modes are carried, from 0 at the clamp; None is the last one, and so is a
         number that is too large.
+    look
+        Where one looks; the chosen instant and stress matter for "mesh" and "axial" alone.
     """
 
     ticket: int
     watch: frozenset[str]
     substructure: int | None = None
+    look: Look = Look()
 
 
 @dataclass(frozen=True)
@@ -185,19 +221,65 @@ class Waiting:
 
 
 @dataclass(frozen=True)
+class Axes:
+    """Title and unit across and up."""
+
+    across: tuple[str, str]
+    up: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Quadrilaterals, as many as a screen shows: corners (n_nodes, 2), m; nodes (n_quads, 4)."""
+
+    nodes: Floats
+    quads: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Wires:
+    """Wires that a frame may show the axial force of.
+
+    Attributes
+    ----------
+    numbers
+        Of the wires, from 1.
+    positions
+        Where the force is given along each of them, shape (n_positions,), m.
+    broken
+        Number of the broken one, or 0.
+    exact_positions, exact
+        Force of the broken wire and of its neighbours in closed form, shape (2, n_nodes,
+        n_instants), N, and its places, m; None where there is none, or not yet.
+    """
+
+    numbers: tuple[int, ...]
+    positions: Floats
+    broken: int
+    exact_positions: Floats | None = None
+    exact: Floats | None = None
+
+
+@dataclass(frozen=True)
 class Begun:
     """A run has started: what its fields stand on, thinned to `LARGEST_SIDE`, in SI.
 
     Attributes
     ----------
+    interface, interfaces
+        The one that is looked at, and all with friction.
     positions, instants
         Of the field's points and columns, m and s.
     cuts
         Positions where substructures meet, m.
     bound
-        Friction bound mu p at the positions, N/m.
+        Friction bound mu p at the positions, N/m; None where it depends on the pressure.
+    coefficient
+        Coefficient of friction at the positions there; else None.
+    loop
+        What `load` and `end_displacement` are.
     load
-        Force at the loaded end, shape (n_curve,), N.
+        Force at the loaded end, shape (n_curve,), N; None where frames tell it.
     all_instants
         The instants of `load` and of end displacements, thinned to `LONGEST_CURVE`, s.
     closed_form, closed_form_end
@@ -205,30 +287,50 @@ class Begun:
         none, or as long as it is not computed.
     start
         Which start was chosen, where there was a choice.
+    mesh
+        Of plane bodies.
+    wires
+        Of a strand.
     """
 
     ticket: int
+    interface: str
+    interfaces: tuple[str, ...]
     positions: Floats
     instants: Floats
     cuts: Floats
-    bound: Floats
-    load: Floats
+    bound: Floats | None
+    coefficient: Floats | None
+    loop: Axes
+    load: Floats | None
     all_instants: Floats
     closed_form: Floats | None
     closed_form_end: Floats | None
     start: StartChoice | None = None
+    mesh: Mesh | None = None
+    wires: Wires | None = None
 
 
 @dataclass(frozen=True)
 class Reference:
-    """The incremental reference: friction force, N/m; status; end displacement, m."""
+    """The reference; its fields are as in Frame."""
 
     ticket: int
+    interface: str
     friction: Floats
+    pressure: Floats | None
     status: Bytes
     end_displacement: Floats
+    load: Floats | None
     residual: float
     seconds: float
+
+
+@dataclass(frozen=True)
+class Unrivalled:
+    """There is no reference to compare with: errors are NaN."""
+
+    ticket: int
 
 
 @dataclass(frozen=True)
@@ -318,6 +420,39 @@ class Bases:
 
 
 @dataclass(frozen=True)
+class MeshField:
+    """Displacement and stress on a `Mesh` at one instant.
+
+    Attributes
+    ----------
+    instant
+        Index of the instant among those of Begun.
+    component
+        One of `STRESSES`.
+    displacement
+        Shape (n_nodes, 2), m.
+    stress
+        Shape (n_quads,), Pa; a quadrilateral that stands for several elements has their mean.
+    largest
+        Largest displacement over the whole time, m.
+    """
+
+    instant: int
+    component: str
+    displacement: Floats
+    stress: Floats
+    largest: float
+
+
+@dataclass(frozen=True)
+class AxialForces:
+    """Axial forces at one instant, an index as in `MeshField`: (n_wires, n_positions), N."""
+
+    instant: int
+    force: Floats
+
+
+@dataclass(frozen=True)
 class Frame:
     """The fields of one iterate, thinned, in SI.
 
@@ -325,12 +460,18 @@ class Frame:
     ----------
     sought
         Whether it answers a Seek, and is not the newest.
+    interface
+        The one whose fields these are.
     friction
-        Friction force on the bar, shape (n_positions, n_instants), N/m.
+        Friction force on the body above, shape (n_positions, n_instants), N/m, or Pa.
+    pressure
+        Same shape, Pa; None where the bound is known.
     status
-        -1, 0, +1, same shape.
+        -1, 0, +1, or `STATUS_OPEN`, same shape.
     end_displacement
-        Displacement of the loaded end, shape (n_curve,), m.
+        Displacement of the loaded end or side, m, or its rotation, shape (n_curve,).
+    load
+        Force that it takes, N, same shape; None where Begun tells it.
     spectra
         Singular values, shape (n_substructures, n_values), NaN where there is none, of the
         substructures `thinned(number, MOST_SPECTRA)`; or None.
@@ -338,17 +479,24 @@ class Frame:
         Map of the k-free indicator, shape as friction; or None.
     bases
         The separated bases, if there are any.
+    mesh, axial
+        What was chosen of them, where it is watched and there is any.
     """
 
     ticket: int
     iteration: int
     sought: bool
+    interface: str
     friction: Floats
+    pressure: Floats | None
     status: Bytes
     end_displacement: Floats
+    load: Floats | None
     spectra: Floats | None
     behaviour: Floats | None
     bases: Bases | None
+    mesh: MeshField | None = None
+    axial: AxialForces | None = None
 
 
 @dataclass(frozen=True)
@@ -400,7 +548,24 @@ class Died:
     again: bool
 
 
-Report = Taken | Waiting | Begun | Reference | Progress | Frame | End | Parked | Refused | Died
+Report = (
+    Taken
+    | Waiting
+    | Begun
+    | Reference
+    | Unrivalled
+    | Progress
+    | Frame
+    | End
+    | Parked
+    | Refused
+    | Died
+)
+
+
+def instant_of(phase: float, count: int) -> int:
+    """Give the instant, among this many, at a share of the interval."""
+    return min(max(round(phase * (count - 1)), 0), count - 1)
 
 
 def thinned(size: int, largest: int = LARGEST_SIDE) -> NDArray[np.intp]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 
+from app.worker.rivals import find_reference
 from solver.discrete import Problem
 from solver.latin import Checkpoint
-from solver.reference.incremental import Reference, incremental
+from solver.reference import incremental
 from solver.settings import Settings, about
 
 METHOD_GROUPS = frozenset({"Decomposition", "Method", "Stop"})
@@ -54,10 +55,12 @@ class References:
     def __init__(self, entries: int = 8, budget: int = 200_000_000) -> None:
         self._entries = entries
         self._budget = budget
-        self._kept: OrderedDict[tuple[object, ...], Reference] = OrderedDict()
+        self._kept: OrderedDict[tuple[object, ...], incremental.Reference] = OrderedDict()
 
-    def of(self, settings: Settings, problem: Problem, stop: Callable[[], bool]) -> Reference:
-        """Give the reference of a problem, computed only if it is not at hand.
+    def of(
+        self, settings: Settings, problem: Problem, stop: Callable[[], bool]
+    ) -> incremental.Reference | None:
+        """Give the reference of a problem, if it has one, computed only if it is not at hand.
 
         Raises
         ------
@@ -65,7 +68,9 @@ class References:
             As soon as `stop` gives True.
         """
         key = physics(settings)
-        found = self._kept.pop(key, None) or incremental(problem, stop)
+        found = self._kept.pop(key, None) or find_reference(settings, problem, stop)
+        if found is None:
+            return None
         self._kept[key] = found
         while (
             len(self._kept) > self._entries or sum(map(_size, self._kept.values())) > self._budget
@@ -92,6 +97,6 @@ def _bytes_of(checkpoint: Checkpoint) -> int:
     return checkpoint.nbytes + sum(field.nbytes for field in fields)
 
 
-def _size(reference: Reference) -> int:
+def _size(reference: incremental.Reference) -> int:
     fields = (reference.displacement, reference.friction_force, reference.status)
     return sum(field.nbytes for field in fields)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from solver.latin import Checkpoint, Status, StopRules
 from solver.latin.warm import Start
-from solver.reference.incremental import Reference
+from solver.reference import incremental
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class Resume:
     rules
         Stop rules, with what they remember.
     reference
-        As computed already.
+        As computed already; None where there is none.
     status
         How the run ended, or None.
     due
@@ -57,7 +57,7 @@ class Resume:
     before: Checkpoint | None
     iteration: int
     rules: StopRules
-    reference: Reference
+    reference: incremental.Reference | None
     status: Status | None
     due: float
     beside: ResumeBeside | None = None

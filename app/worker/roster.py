@@ -52,6 +52,7 @@ from app.worker.protocol import (
     Report,
     Run,
     Taken,
+    Unrivalled,
     Waiting,
 )
 from app.worker.seat import Change, Seat
@@ -254,7 +255,7 @@ class Roster:
             self._enqueue(seat)
 
     def _for_session(self, post: Post, seat: Seat, report: Report) -> Delivery:
-        if isinstance(report, Reference):
+        if isinstance(report, Reference | Unrivalled):
             post.begin(self._clock())
         if isinstance(report, Progress):
             seat.done = report.records[-1].iteration

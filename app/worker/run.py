@@ -7,12 +7,15 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from app.worker.bases import sizes
 from app.worker.beside import Beside, beside
 from app.worker.protocol import (
     Begun,
     End,
     Frame,
+    Look,
     Pace,
     Parked,
     Progress,
@@ -20,18 +23,20 @@ from app.worker.protocol import (
     Run,
     Seek,
     Step,
+    Unrivalled,
     Watch,
 )
 from app.worker.recording import Recording, References
 from app.worker.resume import Resume
 from app.worker.sampler import Sampler
 from app.worker.tempo import Tempo
-from solver.discrete import discretise
+from solver.discrete import Problem, discretise
 from solver.latin import Checkpoint, Ending, Iterate, Record, StopRules, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.warm import choose_start, iterations_from
+from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
-from solver.reference.incremental import Interrupted, Reference
+from solver.reference.incremental import Interrupted
 from solver.scenes import CATALOGUE
 from solver.settings import SettingError, Settings
 
@@ -80,14 +85,16 @@ class WorkerRun:
         self._references = references
         self._settings = _checked(order)
         self._problem = discretise(self._settings)
-        self._sampler = Sampler(self._problem)
+        self._look = order.look
+        self._sampler = Sampler(self._problem, self._settings, self._look)
         self._rules = resume.rules if resume else StopRules(self._settings)
         self._status = resume.status if resume else None
-        self._reference: Reference | None = None
+        self._compared = False
+        self._reference: incremental.Reference | None = None
         self._distance: Distance | None = None
         self._before = resume.before if resume else None
         self._start = resume.start if resume else None
-        self._previous = None if resume else previous
+        self._previous = previous if resume is None and _fits(previous, self._problem) else None
         self._newest: Iterate | None = None
         self._search: tuple[Iterator[Iterate], int] | None = None
         self._passed: Checkpoint | None = None
@@ -108,7 +115,7 @@ class WorkerRun:
 
     def rest(self) -> float | None:
         """Give the seconds until `advance` has something to do; None waits for an order."""
-        if self._newest is None or self._distance is None or self._search is not None:
+        if self._newest is None or not self._compared or self._search is not None:
             return 0.0
         rest = self._rest_of_iterations(self._newest.number)
         if not self._stale:
@@ -120,14 +127,14 @@ class WorkerRun:
         """Do the next piece of work, if any is due."""
         if self._newest is None:
             self._open()
-        elif self._distance is None:
+        elif not self._compared:
             self._compare(self._newest)
         elif self._search is not None:
             self._search_on(*self._search)
         elif self._stale and time.monotonic() >= self._publish_at:
             self._publish()
         elif self._is_due():
-            self._iterate(self._newest, self._distance)
+            self._iterate(self._newest)
 
     def obey(self, order: Pace | Step | Seek | Watch) -> None:
         """Follow an order."""
@@ -140,18 +147,17 @@ class WorkerRun:
                 self._seek(order.iteration)
             case Watch():
                 self._watch, self._substructure = order.watch, order.substructure
-                if self._newest is not None:
-                    self._send(self._frame(self._newest, self._before))
+                self._look_at(order.look)
 
     def parked(self) -> Parked:
         """Give the order that goes on with the run, once all its records are sent."""
         resume = self._order.resume
         # A run without a past does its first iteration in any case, before all steps.
         done = resume.iteration if resume else 1
-        if self._newest is not None and self._distance is not None and self._reference is not None:
+        if self._newest is not None and self._compared:
             # However busy the machine is, a turn that came so far brings at least an iteration.
             if resume and resume.iteration == self._newest.number and self._is_due():
-                self._iterate(self._newest, self._distance)
+                self._iterate(self._newest)
             self._publish()
             done = self._newest.number
             resume = Resume(
@@ -174,6 +180,7 @@ class WorkerRun:
             watch=self._watch,
             seek=seek,
             substructure=self._substructure,
+            look=self._look,
             after=None,
             previous=None if resume else self._order.previous,
         )
@@ -191,7 +198,7 @@ class WorkerRun:
         self._newest = newest
         # Whoever watches a run that goes on has the closed form already, and must not lose it.
         begun = self._begun()
-        self._send(self._sampler.completed(begun, self._settings) if resume else begun)
+        self._send(self._sampler.completed(begun) if resume else begun)
         self._send(self._frame(newest, self._before))
         if resume is not None:
             self._refer(resume.reference)
@@ -225,23 +232,47 @@ class WorkerRun:
         except Interrupted:
             return
         # The closed form takes longer than the first iteration, so it comes after the picture.
-        self._send(self._sampler.completed(self._begun(), self._settings))
-        self._account(newest, newest, self._refer(found))
+        self._send(self._sampler.completed(self._begun()))
+        self._refer(found)
+        self._account(newest, newest)
         self._publish()
 
-    def _refer(self, found: Reference) -> Distance:
+    def _refer(self, found: incremental.Reference | None) -> None:
+        self._compared = True
         self._reference = found
-        self._distance = distance_to(found, self._problem)
-        self._send(self._sampler.reference(self.ticket, found))
-        return self._distance
+        if found is not None:
+            self._distance = distance_to(found, self._problem)
+        self._show_reference()
 
-    def _iterate(self, newest: Iterate, distance: Distance) -> None:
+    def _show_reference(self) -> None:
+        found = self._reference
+        self._send(
+            Unrivalled(self.ticket)
+            if found is None
+            else self._sampler.reference(self.ticket, found)
+        )
+
+    def _look_at(self, look: Look) -> None:
+        """Look elsewhere: show what another interface stands on before its fields."""
+        self._look = look
+        if self._newest is None:
+            self._sampler = Sampler(self._problem, self._settings, look)
+            return
+        if look.interface not in ("", self._sampler.interface):
+            self._sampler = Sampler(self._problem, self._settings, look)
+            begun = self._begun()
+            self._send(self._sampler.completed(begun) if self._compared else begun)
+            if self._compared:
+                self._show_reference()
+        self._send(self._frame(self._newest, self._before))
+
+    def _iterate(self, newest: Iterate) -> None:
         self._tempo.count()
-        self._account(newest, next(self._generator), distance)
+        self._account(newest, next(self._generator))
 
-    def _account(self, newest: Iterate, iterate: Iterate, distance: Distance) -> None:
+    def _account(self, newest: Iterate, iterate: Iterate) -> None:
         """Record and judge an iterate; one that is not finite does not become the newest."""
-        entry = record(iterate, distance)
+        entry = record(iterate, self._distance)
         self._status = self._rules.judge(iterate.number, entry.indicator, entry.behaviour)
         if self._status is None or self._status.ending is not Ending.DIVERGED:
             if iterate is not newest:
@@ -250,7 +281,7 @@ class WorkerRun:
             self._newest = newest = iterate
             self._unsent.append(entry)
             if self._beside is not None:
-                self._unsent_beside += self._beside.follow(iterate.number, distance)
+                self._unsent_beside += self._beside.follow(iterate.number, self._distance)
             self._recording.keep(iterate.checkpoint)
         if self._rest_of_iterations(newest.number) is None:
             self._publish()
@@ -306,6 +337,7 @@ class WorkerRun:
             self.ticket,
             iterate,
             self._watch,
+            self._look,
             sought=sought,
             before=before,
             substructure=self._substructure,
@@ -316,6 +348,21 @@ class WorkerRun:
 
     def _rest_of_iterations(self, done: int) -> float | None:
         return None if self._status is not None else self._tempo.rest(done)
+
+
+def _fits(previous: Iterate | None, problem: Problem) -> bool:
+    """Tell whether a run may start from another's iterate.
+
+    Row by row it always may; fields that have to be carried to another mesh must be those of wires
+    that rub where these do.
+    """
+    if previous is None:
+        return False
+    old = previous.problem
+    if np.array_equal(old.row_dofs, problem.row_dofs):
+        return True
+    wires = old.positions.ndim == problem.positions.ndim == 1
+    return wires and set(problem.rubbing) <= set(old.rubbing)
 
 
 def last_iterate(order: Run) -> Iterate | None:

@@ -9,76 +9,132 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.worker.bases import show_bases
+from app.worker.meshes import Thinned
 from app.worker.protocol import (
     LONGEST_CURVE,
     MOST_SPECTRA,
     MOST_VALUES,
+    Axes,
     Begun,
     Bytes,
     Floats,
     Frame,
+    Look,
+    MeshField,
     Reference,
+    instant_of,
     thinned,
 )
+from app.worker.wires import ShownWires
 from solver.discrete import Problem
+from solver.discrete.contact_fields import mean_by_point
+from solver.discrete.loops import Fields, loop_of
 from solver.latin import Checkpoint, Iterate
 from solver.latin.indicators import behaviour_indicator
-from solver.laws import Neumann, Perfect
+from solver.laws import Contact
 from solver.reduction.svd import friction_spectra
 from solver.reference import incremental
+from solver.reference.broken_wire import broken_wire
 from solver.reference.closed_form import closed_form
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.strand import StrandSettings, strand
 from solver.settings import Settings
 
 
 class Sampler:
-    """Thin the fields of one problem, and turn nodal forces into forces per length."""
+    """Thin the fields of one problem, and turn nodal forces into forces per length or area.
 
-    def __init__(self, problem: Problem) -> None:
-        law = problem.friction
+    Parameters
+    ----------
+    problem, settings
+        What is solved.
+    look
+        Where one looks.
+
+    Attributes
+    ----------
+    interface
+        Name of the interface that is looked at.
+    """
+
+    def __init__(self, problem: Problem, settings: Settings, look: Look) -> None:
+        names = list(problem.rubbing)
+        self.interface = look.interface if look.interface in names else names[0]
         self._problem = problem
+        self._settings = settings
+        self._law = law = problem.rubbing[self.interface]
+        sizes = [len(one.positions) for one in problem.rubbing.values()]
+        first = sum(sizes[: names.index(self.interface)])
+        self._points = slice(first, first + len(law.positions))
         self._rows = thinned(len(law.positions))
         self._columns = thinned(problem.n_instants)
         self._curve = thinned(problem.n_instants, LONGEST_CURVE)
-        lengths = law.by_point(law.weights)
-        self._lengths = lengths[self._rows]
+        self._lengths = law.by_point(law.weights)[self._rows]
+        self._loop = loop_of(settings, problem)
+        self._mesh: Thinned | None = None
+        self._wires: ShownWires | None = None
+        if isinstance(settings, PlaneSettings) and problem.inside is not None:
+            self._mesh = Thinned(problem.inside, settings)
+        elif isinstance(settings, StrandSettings):
+            self._wires = ShownWires(problem, settings)
 
     def begun(self, ticket: int) -> Begun:
         """Describe what the fields stand on, without the closed form."""
-        problem, law = self._problem, self._problem.friction
-        bound = law.by_point(law.bound)
-        cuts = [law.first[0] for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
-        (loaded,) = (law for law in problem.of_law(Neumann) if isinstance(law, Neumann))
+        problem, law, loop = self._problem, self._law, self._loop
+        bound = coefficient = None
+        if isinstance(law, Contact):
+            coefficient = _floats(mean_by_point(law, law.friction)[self._rows])
+        else:
+            whole = law.by_point(law.bound)[self._rows]
+            bound = _floats(whole * problem.scales.force / self._lengths)
+        load = loop.force if isinstance(loop.force, np.ndarray) else None
         return Begun(
             ticket=ticket,
+            interface=self.interface,
+            interfaces=tuple(problem.rubbing),
             positions=_floats(law.positions[self._rows]),
             instants=_floats(problem.instants[self._columns]),
-            cuts=_floats(problem.positions[problem.row_dofs[np.array(cuts, dtype=np.intp)]]),
-            bound=_floats(bound[self._rows] * problem.scales.force / self._lengths),
-            load=_floats(loaded.force[0, self._curve] * problem.scales.force),
+            cuts=_floats(law.positions[np.bincount(law.points) > 1]),
+            bound=bound,
+            coefficient=coefficient,
+            loop=Axes(loop.across, loop.up),
+            load=None if load is None else _floats(load[self._curve]),
             all_instants=_floats(problem.instants[self._curve]),
             closed_form=None,
             closed_form_end=None,
+            mesh=self._mesh.mesh if self._mesh else None,
+            wires=self._wires.base if self._wires else None,
         )
 
-    def completed(self, begun: Begun, settings: Settings) -> Begun:
+    def completed(self, begun: Begun) -> Begun:
         """Add the closed form, where there is one."""
-        closed = closed_form(bar(settings)) if isinstance(settings, BarSettings) else None
-        if closed is None:
-            return begun
-        return replace(
-            begun,
-            closed_form=self._density(closed.friction_force),
-            closed_form_end=_floats(closed.end_displacement[self._curve]),
-        )
+        settings = self._settings
+        if isinstance(settings, BarSettings):
+            closed = closed_form(bar(settings))
+            if closed is not None:
+                return replace(
+                    begun,
+                    closed_form=self._density(closed.friction_force),
+                    closed_form_end=_floats(closed.end_displacement[self._curve]),
+                )
+        if isinstance(settings, StrandSettings) and self._wires is not None:
+            exact = broken_wire(strand(settings))
+            if exact is not None:
+                return replace(begun, wires=self._wires.completed(exact, self._columns))
+        return begun
 
     def reference(self, ticket: int, found: incremental.Reference) -> Reference:
         """Show a reference."""
+        fields = found.contact(self.interface)
         return Reference(
             ticket=ticket,
-            friction=self._density(found.friction_force),
-            status=self._status(found.status),
-            end_displacement=_floats(found.displacement[-1, self._curve]),
+            interface=self.interface,
+            friction=self._density(fields.tangential_force),
+            pressure=None if fields.normal_force is None else self._density(fields.normal_force),
+            status=self._status(fields.status),
+            end_displacement=_floats(self._loop.displacement(found.displacement)[self._curve]),
+            load=self._load(found),
             residual=found.residual,
             seconds=found.seconds,
         )
@@ -88,6 +144,7 @@ class Sampler:
         ticket: int,
         iterate: Iterate,
         watch: frozenset[str],
+        look: Look,
         *,
         sought: bool = False,
         before: Checkpoint | None = None,
@@ -97,18 +154,42 @@ class Sampler:
 
         The iterate `before` tells what became of its modes; `substructure` is as in Watch.
         """
-        behaviour = "behaviour" in watch
+        *normal, tangential = self._problem.contact_places[self.interface]
+        force = iterate.contact_force
+        instant = instant_of(look.phase, len(self._columns))
+        axial = self._wires if "axial" in watch else None
         return Frame(
             ticket=ticket,
             iteration=iterate.number,
             sought=sought,
-            friction=self._density(iterate.friction_force),
-            status=self._status(iterate.status),
-            end_displacement=_floats(iterate.displacement[-1, self._curve]),
+            interface=self.interface,
+            friction=self._density(force[tangential]),
+            pressure=self._density(force[normal[0]]) if normal else None,
+            status=self._status(iterate.status[self._points]),
+            end_displacement=_floats(self._loop.displacement(iterate.displacement)[self._curve]),
+            load=self._load(iterate),
             spectra=_table(friction_spectra(iterate)) if "spectra" in watch else None,
-            behaviour=_floats(self._thin(behaviour_indicator(iterate).map)) if behaviour else None,
+            behaviour=self._behaviour(iterate) if "behaviour" in watch else None,
             bases=show_bases(iterate, before, watch, substructure),
+            mesh=self._mesh_field(iterate, look, instant) if "mesh" in watch else None,
+            axial=axial.forces(iterate, instant, self._columns[instant]) if axial else None,
         )
+
+    def _mesh_field(self, iterate: Iterate, look: Look, instant: int) -> MeshField | None:
+        if self._mesh is None:
+            return None
+        column = int(self._columns[instant])
+        whole = iterate.displacement
+        displacement, stress = self._mesh.fields(whole, column, look.stress)
+        largest = max(float(whole.max()), -float(whole.min()))
+        return MeshField(instant, look.stress, _floats(displacement), _floats(stress), largest)
+
+    def _behaviour(self, iterate: Iterate) -> Floats:
+        return _floats(self._thin(behaviour_indicator(iterate).map[self._points]))
+
+    def _load(self, fields: Fields) -> Floats | None:
+        force = self._loop.force
+        return None if isinstance(force, np.ndarray) else _floats(force(fields)[self._curve])
 
     def _thin(self, field: NDArray[Any]) -> NDArray[Any]:
         return field[np.ix_(self._rows, self._columns)]

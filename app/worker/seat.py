@@ -117,8 +117,8 @@ class Seat:
                 self.first = replace(self.first, pace=pace, pause_after=None)
             case Step():
                 self.first = replace(self.first, pause_after=self.done + 1)
-            case Watch(watch=watch, substructure=substructure):
-                self.first = replace(self.first, watch=watch, substructure=substructure)
+            case Watch(watch=watch, substructure=substructure, look=look):
+                self.first = replace(self.first, watch=watch, substructure=substructure, look=look)
 
     def postpone(self, change: Change) -> None:
         """Keep an order for when the run is at work; it takes the place of its like."""

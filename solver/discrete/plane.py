@@ -28,6 +28,17 @@ def elastic_matrix(young: float, poisson: float, state: str) -> Array:
     return factor * np.array([[1.0, poisson, 0.0], [poisson, 1.0, 0.0], [0.0, 0.0, shear]])
 
 
+def von_mises(stress: Array, poisson: float, state: str) -> Array:
+    """Give von Mises' equivalent of stresses (xx, yy, xy), shape (n, 3), as shape (n,).
+
+    In plane strain the stress across the plane is Poisson's ratio times the sum of the other two.
+    """
+    xx, yy, xy = stress.T
+    zz = poisson * (xx + yy) if state == "strain" else np.zeros_like(xx)
+    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * squares + 3.0 * xy**2))
+
+
 def strain_matrix(xi: float, eta: float, width: float, height: float) -> Array:
     """Give the matrix from nodal displacements to strains at a point, shape (3, 8)."""
     along = 0.25 * CORNERS[:, 0] * (1.0 + eta * CORNERS[:, 1]) * 2.0 / width

@@ -117,6 +117,20 @@ class Inside(Protocol):
             Which of them.
         """
 
+    def adjoint(self, weights: Array) -> tuple[Array, Array]:
+        """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
+
+        Parameters
+        ----------
+        weights
+            Shape (n_nodes, 2).
+
+        Returns
+        -------
+        Weights of the problem's degrees of freedom, shape (n_dofs,), and what loads inside add,
+        shape (n_instants,), m.
+        """
+
     def stress(self, displacement: Array) -> Array:
         """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
 

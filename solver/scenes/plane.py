@@ -162,6 +162,11 @@ class PlaneSettings(Settings):
         return 1
 
     @property
+    def n_jumps(self) -> int:
+        """Components of all contacts, which a reference condenses."""
+        return 2 * max(self.n_bodies - 1, 1) * (self.elements + 1)
+
+    @property
     def n_substructures(self) -> int:
         """Number of substructures in all."""
         return self.n_bodies * self.substructures * self.substructures_up

@@ -1,0 +1,183 @@
+"""The deformed bodies, coloured by a stress, at the chosen instant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from bokeh.models import CustomJS, FixedTicker, LinearColorMapper, Range1d
+from bokeh.palettes import Cividis256
+
+from app.views.drawing import (
+    GREY,
+    Key,
+    Picture,
+    color_bar,
+    decimal_scale,
+    empty,
+    make_figure,
+)
+from app.worker.protocol import Mesh, MeshField
+from solver.scenes.plane import PlaneSettings
+from solver.settings import Settings
+
+SHOWN = 0.06
+"""Share of the bodies' size that the largest displacement takes by default."""
+
+SPREAD = """
+const at = nodes.data.at, value = stress.data.value, corners = mesh.data.corners
+if (!at || !at.length || !corners.length) { return }
+const flat = new Float32Array(at.buffer, at.byteOffset, at.length)
+const n = corners.length / 4, half = at.length / 2
+const xs = new Array(n), ys = new Array(n)
+for (let i = 0; i < n; i++) {
+  const x = new Float32Array(4), y = new Float32Array(4)
+  for (let j = 0; j < 4; j++) {
+    const c = corners[4 * i + j]
+    x[j] = flat[c]
+    y[j] = flat[half + c]
+  }
+  xs[i] = x
+  ys[i] = y
+}
+quads.data.xs = xs
+quads.data.ys = ys
+quads.data.value = value
+quads.change.emit()
+"""
+"""Puts corners together in the browser: one array a frame is sent, not one for every corner list.
+What is changed in place is not sent back."""
+
+FIT = """
+const [left, right, low, high] = box.data.edge
+const wide = figure.inner_width, tall = figure.inner_height
+if (!(wide > 1 && tall > 1 && right > left)) { return }
+const scale = Math.max((right - left) / wide, (high - low) / tall)
+const x = 0.5 * (left + right), y = 0.5 * (low + high)
+figure.x_range.setv({start: x - 0.5 * scale * wide, end: x + 0.5 * scale * wide})
+figure.y_range.setv({start: y - 0.5 * scale * tall, end: y + 0.5 * scale * tall})
+"""
+"""Makes both axes of one scale, however large the plot is."""
+
+
+class Deformed:
+    """The mesh moved by its magnified displacement.
+
+    Attributes
+    ----------
+    magnification
+        Factor on the displacement; None takes one at which it can be seen.
+    """
+
+    name = "Deformed bodies"
+    watches = "mesh"
+    keys: Sequence[Key] = ()
+
+    def __init__(self) -> None:
+        self.magnification: float | None = None
+        self.figure = make_figure("x (m)", "y (m)", x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self._mesh = empty("corners")
+        self._nodes = empty("at")
+        self._stress = empty("value")
+        self._quads = empty("xs", "ys", "value")
+        self._box = empty("edge")
+        self._mapper = LinearColorMapper(palette=Cividis256, low=0, high=1)
+        self._marks = FixedTicker(ticks=[0, 1])
+        self._drawn: Mesh | None = None
+        self._scales: tuple[object, ...] = ()
+        made = self.figure
+        made.patches(
+            "xs",
+            "ys",
+            source=self._quads,
+            fill_color={"field": "value", "transform": self._mapper},
+            line_color={"field": "value", "transform": self._mapper},
+            line_width=0.5,
+        )
+        color_bar(made, self._mapper, self._marks, "MPa")
+        spread = CustomJS(
+            args={
+                "nodes": self._nodes,
+                "stress": self._stress,
+                "mesh": self._mesh,
+                "quads": self._quads,
+            },
+            code=SPREAD,
+        )
+        fit = CustomJS(args={"figure": made, "box": self._box}, code=FIT)
+        self._nodes.js_on_change("data", spread)
+        self._box.js_on_change("data", fit)
+        # A plot that gets its size draws what came with the page; this also makes the sources,
+        # which no glyph knows, a part of the page.
+        for size in ("inner_width", "inner_height"):
+            made.js_on_change(size, fit, spread)
+
+    def applies(self, settings: Settings) -> bool:
+        """Tell whether there are plane bodies to draw."""
+        return isinstance(settings, PlaneSettings)
+
+    def draw(self, picture: Picture) -> None:
+        """Draw the bodies of the shown iterate."""
+        begun, frame = picture.run.begun, picture.frame
+        if begun is None or begun.mesh is None or frame is None or frame.mesh is None:
+            return
+        mesh, field = begun.mesh, frame.mesh
+        if len(field.displacement) != len(mesh.nodes):
+            return
+        factor = self.magnification
+        if factor is None:
+            factor = fitting(mesh, field.largest)
+        moved = mesh.nodes + np.float32(factor) * field.displacement
+        self._draw_scale(mesh, field, factor)
+        self._fit(mesh, factor * field.largest)
+        if self._drawn is not mesh:
+            self._drawn = mesh
+            self._mesh.data = {"corners": mesh.quads.ravel()}
+        self._stress.data = {"value": field.stress / np.float32(self._unit)}
+        # Last, because it is what has the browser put all of it together.
+        self._nodes.data = {"at": np.ascontiguousarray(moved.T).ravel()}
+
+    def _draw_scale(self, mesh: Mesh, field: MeshField, factor: float) -> None:
+        """Let colours span the values at this instant, outward to round numbers."""
+        low, high = float(field.stress.min()), float(field.stress.max())
+        self._unit, unit = decimal_scale(max(abs(low), abs(high)), "Pa")
+        low, high = _limits(low / self._unit, high / self._unit)
+        scales = (low, high, unit)
+        if scales != self._scales:
+            self._scales = scales
+            self._mapper.update(low=low, high=high)
+            self._marks.ticks = [low, 0.5 * (low + high), high]
+            self.figure.right[0].title = unit
+        self.keys = (
+            Key(GREY, "bare", field.component),
+            Key(GREY, "bare", f"displacement × {factor:g}"),
+        )
+
+    def _fit(self, mesh: Mesh, reach: float) -> None:
+        """Ask for room for the bodies, and for where they may move to."""
+        (left, low), (right, high) = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
+        margin = 0.02 * float(right - left) + reach
+        edge = [left - margin, right + margin, low - margin, high + margin]
+        wanted = [float(value) for value in edge]
+        if list(self._box.data["edge"]) != wanted:
+            self._box.data = {"edge": wanted}
+
+
+def fitting(mesh: Mesh, largest: float) -> float:
+    """Give a magnification of 1, 2 or 5 times a power of ten at which a displacement shows."""
+    size = float(np.ptp(mesh.nodes, axis=0).max())
+    if not (np.isfinite(largest) and largest > 0.0):
+        return 1.0
+    wanted = SHOWN * size / largest
+    decade = 10.0 ** np.floor(np.log10(wanted))
+    return float(max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= wanted))
+
+
+def _limits(low: float, high: float) -> tuple[float, float]:
+    """Give round limits, so that colours keep their meaning for a while."""
+    low, high = min(low, 0.0), max(high, 0.0)
+    span = high - low
+    if not (np.isfinite(span) and span > 0.0):
+        return 0.0, 1.0
+    step = 10.0 ** np.floor(np.log10(span)) / 2.0
+    return float(np.floor(low / step) * step), float(np.ceil(high / step) * step)

@@ -1,0 +1,58 @@
+"""From a strand to what a screen shows of its wires."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.worker.protocol import AxialForces, Wires, thinned
+from solver.discrete import Problem
+from solver.discrete.probes import AxialForce
+from solver.latin import Iterate
+from solver.reference.broken_wire import BrokenWire
+from solver.scenes.strand import StrandSettings
+
+MOST_WIRES = 12
+
+
+class ShownWires:
+    """The axial forces of a strand, thinned; the broken wire is always shown.
+
+    Attributes
+    ----------
+    base
+        What the forces stand on, without the closed form.
+    """
+
+    def __init__(self, problem: Problem, settings: StrandSettings) -> None:
+        self._force = AxialForce(problem)
+        self._shape = settings.wires, settings.elements
+        wires = {int(wire) for wire in thinned(settings.wires, MOST_WIRES)}
+        if settings.broken:
+            wires.add(settings.broken - 1)
+        elements = thinned(settings.elements)
+        self._chosen = np.ix_(sorted(wires), elements)
+        self._length = settings.length
+        self.base = Wires(
+            numbers=tuple(wire + 1 for wire in sorted(wires)),
+            positions=self._force.positions[: settings.elements][elements].astype(np.float32),
+            broken=settings.broken,
+        )
+
+    def completed(self, exact: BrokenWire, columns: NDArray[np.intp]) -> Wires:
+        """Add the closed form at these instants."""
+        rows = thinned(len(exact.force))
+        both = np.stack([exact.force, exact.neighbour_force])
+        places = np.linspace(0.0, self._length, len(exact.force))
+        return replace(
+            self.base,
+            exact_positions=places[rows].astype(np.float32),
+            exact=both[np.ix_(range(2), rows, columns)].astype(np.float32),
+        )
+
+    def forces(self, iterate: Iterate, instant: int, column: int) -> AxialForces:
+        """Show the forces of an iterate at one instant."""
+        force = self._force(iterate.displacement[:, column]).reshape(self._shape)
+        return AxialForces(instant, force[self._chosen].astype(np.float32))

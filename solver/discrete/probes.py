@@ -1,0 +1,157 @@
+"""Numbers over time that a whole structure shows: mean displacements, reactions, axial forces.
+
+What is asked of the inside of condensed substructures is brought onto the degrees of freedom of the
+problem once, by the transpose of their recovery; then a probe costs as much as its few weights.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from solver.discrete.problem import Array, Indices, Inside, Problem
+from solver.laws import Dirichlet
+
+AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """A weighted sum of displacements, and what loads alone add to it.
+
+    Attributes
+    ----------
+    dofs, weights
+        Degrees of freedom of the problem and their weights, shape (n,).
+    constant
+        Shape (n_instants,), in the probe's unit, or 0.
+    """
+
+    dofs: Indices
+    weights: Array
+    constant: Array | float = 0.0
+
+    def __call__(self, displacement: Array) -> Array:
+        """Evaluate it, shape (n_instants,), for displacements (n_dofs, n_instants), m."""
+        return np.asarray(self.weights @ displacement[self.dofs] + self.constant)
+
+
+def side_mean(problem: Problem, side: str, component: int) -> Probe:
+    """Give the mean displacement along a whole outer side of the stack, m.
+
+    Parameters
+    ----------
+    problem
+        One with an inside.
+    side
+        "left", "right", "bottom" or "top".
+    component
+        0 along x, 1 along y.
+    """
+    inside = _inside(problem)
+    first, second, _ = _edges(inside, side)
+    lengths = np.linalg.norm(inside.nodes[second] - inside.nodes[first], axis=1)
+    share = 0.5 * lengths / lengths.sum()
+    weights = np.zeros_like(inside.nodes)
+    for ends in (first, second):
+        np.add.at(weights[:, component], ends, share)
+    return _probe(inside, weights)
+
+
+def end_rotation(problem: Problem, side: str = "right") -> Probe:
+    """Give the rotation of the ends of all bodies, counter-clockwise, their mean.
+
+    It is what a moment that all bodies share works on, spread over each of them as a linear
+    traction: -12 / t^3 times the integral of (y - y_middle) u_x over an end of height t.
+    """
+    inside = _inside(problem)
+    first, second, bodies = _edges(inside, side)
+    y = inside.nodes[:, 1]
+    count = int(bodies.max()) + 1
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    for ends in (first, second):
+        np.minimum.at(low, bodies, y[ends])
+        np.maximum.at(high, bodies, y[ends])
+    height, middle = (high - low)[bodies], 0.5 * (low + high)[bodies]
+    length = np.abs(y[second] - y[first])
+    weights = np.zeros_like(inside.nodes)
+    for one, other in ((first, second), (second, first)):
+        lever = (2.0 * (y[one] - middle) + (y[other] - middle)) / 6.0
+        np.add.at(weights[:, 0], one, -12.0 / height**3 * lever * length / count)
+    return _probe(inside, weights)
+
+
+def reaction(problem: Problem, name: str) -> Probe:
+    """Give the sum of the forces that hold an interface of prescribed displacements, N."""
+    law = problem.interfaces[name]
+    assert isinstance(law, Dirichlet)
+    held = np.zeros(problem.n_dofs)
+    held[problem.row_dofs[law.rows]] = 1.0
+    weights, constant = np.zeros(problem.n_dofs), np.zeros(problem.n_instants)
+    for part in problem.substructures:
+        own = held[part.dofs]
+        if own.any():
+            np.add.at(weights, part.dofs, part.elasticity.stiffness @ own)
+            if part.body_force is not None:
+                constant -= own @ part.body_force
+    scales = problem.scales
+    dofs = np.flatnonzero(weights)
+    return Probe(dofs, weights[dofs] * scales.force / scales.displacement, constant * scales.force)
+
+
+class AxialForce:
+    """Axial force in the elements of wires, from their displacement.
+
+    Parameters
+    ----------
+    problem
+        One of rods.
+
+    Attributes
+    ----------
+    positions
+        Middle of every element, shape (n_elements,), m.
+    wires
+        Wire of every element, from 0, shape (n_elements,).
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        parts, places = problem.substructures, problem.positions
+        self._first = np.concatenate([part.dofs[:-1] for part in parts])
+        self._second = np.concatenate([part.dofs[1:] for part in parts])
+        scale = problem.scales.force / problem.scales.displacement
+        self._stiffness = scale * np.concatenate(
+            [-sparse.csr_array(part.elasticity.stiffness).diagonal(1) for part in parts]
+        )
+        self.positions: Array = 0.5 * (places[self._first] + places[self._second])
+        begins = [places[part.dofs[0]] == places[0] for part in parts]
+        sizes = [len(part.dofs) - 1 for part in parts]
+        self.wires: Indices = np.repeat(np.cumsum(begins) - 1, sizes)
+
+    def __call__(self, displacement: Array) -> Array:
+        """Give the forces, shape (n_elements,), N, for displacements of one instant (n_dofs,)."""
+        return np.asarray(
+            self._stiffness * (displacement[self._second] - displacement[self._first])
+        )
+
+
+def _inside(problem: Problem) -> Inside:
+    assert problem.inside is not None
+    return problem.inside
+
+
+def _edges(inside: Inside, side: str) -> tuple[Indices, Indices, Indices]:
+    """Give both ends of all element edges along an outer side, and their bodies."""
+    places = inside.nodes[:, AXES[side]]
+    outermost = places.min() if side in ("left", "bottom") else places.max()
+    first, second = inside.elements, np.roll(inside.elements, -1, axis=1)
+    along = (places[first] == outermost) & (places[second] == outermost)
+    return first[along], second[along], inside.bodies[np.nonzero(along)[0]]
+
+
+def _probe(inside: Inside, weights: Array) -> Probe:
+    found, constant = inside.adjoint(weights)
+    dofs = np.flatnonzero(found)
+    return Probe(dofs, found[dofs], constant)
