@@ -178,6 +178,11 @@ class StrandSettings(Settings):
         logarithmic=True,
     )
 
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures in all."""
+        return self.wires * max(self.substructures, 2 if self.broken else 1)
+
     def with_change(self, name: str, value: object) -> StrandSettings:
         """Change one setting; fewer elements or wires take down what could not stand beside."""
         if name == "elements" and isinstance(value, int) and value < self.substructures:
