@@ -181,7 +181,8 @@ class Settings(param.Parameterized):
     )
     multiscale = switch(
         True,
-        "Solve the coarse problem: macro forces on the cuts are in equilibrium at every iteration.",
+        "Solve the coarse problem: macro forces between substructures are in equilibrium at every "
+        "iteration.",
         group="Decomposition",
         title="Multiscale (coarse problem)",
         applies=lambda settings: settings.n_substructures > 1,

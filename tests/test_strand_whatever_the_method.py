@@ -247,7 +247,7 @@ def test_the_command_line_runs_it_and_writes_each_contact(tmp_path, capsys):
     changes = [f"--set={name}={value}" for name, value in {**SMALL, "wires": 4}.items()]
     assert main(["run", "strand", *changes, "--out", str(file), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
-    assert printed["error_force"] is None
+    assert 0.0 < printed["error_force"] < 0.1
     with np.load(file, allow_pickle=False) as found:
         arrays = dict(found)
     points = {"contact 1-2": 25, "contact 2-3": 25, "contact 3-4": 24}

@@ -239,7 +239,7 @@ class Problem:
     def has_cuts(self) -> bool:
         """Whether any two substructures meet, glued or in contact."""
         return bool(self.of_law(Perfect)) or any(
-            isinstance(law, Contact) and law.macro is not None for law in self.rubbing.values()
+            law.macro is not None for law in self.rubbing.values()
         )
 
     @cached_property

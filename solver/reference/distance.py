@@ -10,11 +10,14 @@ from scipy import sparse
 
 from solver.discrete.problem import Indices, Problem
 from solver.laws import Neumann
+from solver.reference.assembly import assembled_stiffness
 from solver.reference.condensation import jumps
 from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 
 Array = NDArray[np.float64]
+ROUNDING = 1e-10
+"""Share of the load and of all that friction could carry below which contact forces vanish."""
 
 
 class Fields(Protocol):
@@ -33,8 +36,9 @@ class Distance:
     """Relative L2 distance over space and time to a reference on the same mesh and instants.
 
     Displacements are compared at interfaces. Where the reference field vanishes, the distance is
-    relative to `load` instead, and absolute if that vanishes too. Forces are compared where they
-    are determinate.
+    relative to `load` instead, and absolute if that vanishes too; contact forces vanish also if
+    they are but rounding beside what friction could carry and beside the load. Forces are compared
+    where they are determinate.
 
     Parameters
     ----------
@@ -44,6 +48,8 @@ class Distance:
         Shape (n_instants,).
     load
         Forces that act on the structure, shape (n, n_instants), N.
+    bound
+        Friction forces that are allowed without any pressure, shape (n_forces,), N.
     dofs
         Degrees of freedom at interfaces, shape (n,).
     determinate
@@ -56,6 +62,7 @@ class Distance:
         reference: Fields,
         time_weights: Array,
         load: Array,
+        bound: Array,
         dofs: Indices,
         determinate: NDArray[np.bool_],
     ) -> None:
@@ -65,7 +72,10 @@ class Distance:
         self._displacement = reference.displacement[dofs]
         self._force = reference.contact_force * determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
-        self._force_size = self._norm(self._force) or self._norm(load) or 1.0
+        force_size, load_size = self._norm(self._force), self._norm(load)
+        allowed = self._norm(np.outer(bound, np.ones(len(time_weights))))
+        vanishes = force_size <= ROUNDING * min(load_size, allowed)
+        self._force_size = (load_size if vanishes else force_size) or 1.0
 
     def of_displacement(self, fields: Fields) -> float:
         """Give the relative error of the displacement."""
@@ -86,15 +96,23 @@ class Distance:
 
 
 def distance_to(reference: Fields, problem: Problem) -> Distance:
-    """Prepare the distance to a reference of a problem."""
+    """Prepare the distance to a reference of a problem.
+
+    Where no forces are given, those that move what is prescribed are the load.
+    """
     forces = [law.force for law in problem.of_law(Neumann) if isinstance(law, Neumann)]
     if not forces:
         forces = [part.body_force for part in problem.substructures if part.body_force is not None]
+    if not forces:
+        dofs, prescribed = problem.prescribed
+        moved = assembled_stiffness(problem)[dofs[prescribed.any(axis=1)]]
+        forces = [moved @ reference.displacement / problem.scales.displacement]
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])
     return Distance(
         reference,
         problem.time_weights,
         load * problem.scales.force,
+        rules_of(problem).bound * problem.scales.force,
         np.unique(problem.row_dofs),
         determinate_forces(problem),
     )

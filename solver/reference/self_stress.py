@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from solver.discrete.problem import Array
 
 NONE = 1e-9
-"""Eigenvalue of J J', whose entries are whole numbers, that counts as zero."""
+"""Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
 
 
 def self_stresses(jumps: sparse.csr_array) -> Array:
@@ -36,7 +36,8 @@ def self_stresses(jumps: sparse.csr_array) -> Array:
     found = []
     for members in np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1]):
         values, vectors = np.linalg.eigh(products[members][:, members].toarray())
-        whole = np.zeros((size, int((values < NONE).sum())))
-        whole[members] = vectors[:, values < NONE]
+        own = vectors[:, values < NONE]
+        whole = np.zeros((size, own.shape[1]))
+        whole[members] = np.where(np.abs(own) > NONE, own, 0.0)
         found.append(whole)
     return np.concatenate(found, axis=1)
