@@ -227,6 +227,7 @@ class Dashboard:
         self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
         self._shown = shown
         self._offer_looks()
+        self._study.refresh()
         self._mark()
 
     def _offer_looks(self) -> None:
@@ -299,6 +300,8 @@ class Dashboard:
         now = time.monotonic()
         if event.new == self._pulse.frame:
             self._rest_until = now + REST * (now - self._sent_at)
+        if self.session.run.ticket == self._drawn_ticket:
+            self._sidebar.catch_up()
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:

@@ -39,7 +39,7 @@ class Looks:
         self._interface = pmui.Select(
             label="Interface",
             options=[],
-            width=122,
+            width=145,
             size="small",
             description="The interface whose forces and status are drawn.",
         )
@@ -47,7 +47,7 @@ class Looks:
             label="Stress",
             options=STRESS_TITLES,
             value=STRESSES[0],
-            width=118,
+            width=128,
             size="small",
             description="What colours the deformed bodies.",
         )

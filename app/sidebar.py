@@ -102,16 +102,22 @@ class Sidebar:
         self.view[:] = self._items()
 
     def show(self, settings: Settings) -> None:
-        """Show the settings that hold, with the controls of their scene."""
+        """Show the settings that hold; the controls of another scene come with `catch_up`."""
         if settings.scene != self._made_for:
             self._made_for = settings.scene
             self._scene.value = settings.scene
+            self._controls = {}
             self._more[:] = []
-            self._controls = self._make_controls(essential=True)
-            if self.view.objects:
-                self.fill()
+            self.view[1:] = []
         for control in self._controls.values():
             control.show(settings)
+
+    def catch_up(self) -> None:
+        """Put in the controls of a scene once its first picture is painted: they take longer."""
+        if not self._controls:
+            self._controls = self._make_controls(essential=True)
+            self.show(self._session.wanted)
+            self.fill()
 
     def offer(self, views: Sequence[str]) -> list[str]:
         """Offer these views, and give those of them that are wanted."""
@@ -243,7 +249,7 @@ class Sidebar:
             self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
 
     def _load(self) -> tuple[str, Curve]:
-        """Find the load path that a table is for: the last one that stands in the open."""
+        """Find the load path that a table is for: the first one that stands in the open."""
         settings = self._session.wanted
         paths = [
             (name, definition)

@@ -16,17 +16,20 @@ from app.views.drawing import (
     SKY,
     VERMILION,
     Key,
+    Limits,
     Picture,
     decimal_scale,
     empty,
+    held,
     make_figure,
-    round_up,
     set_range,
 )
 from app.worker.protocol import Wires
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings
 
+SHARED = 1.5
+"""Times the tension: what neighbours take over from a wire between two others."""
 WIRE_COLORS = (BLUE, ORANGE, PURPLE, SKY, GREY)
 
 
@@ -49,6 +52,7 @@ class Axial:
         )
         made.multi_line("xs", "ys", source=self._lines, line_color="color", line_width="width")
         self._factor = 1.0
+        self._limits: Limits | None = None
 
     def applies(self, settings: Settings) -> bool:
         """Tell whether there are wires."""
@@ -89,13 +93,13 @@ class Axial:
         load = begun.load if begun.load is not None else frame.load
         assert load is not None
         assert frame.axial is not None
-        top = max(float(np.abs(load).max()) * 1.6, float(frame.axial.force.max()))
-        low = min(-0.1 * top, float(frame.axial.force.min()))
-        self._factor, unit = decimal_scale(top, "N")
+        force = frame.axial.force
+        top = max(SHARED * float(np.abs(load).max()), float(force.max()))
+        self._limits = held(self._limits, min(-0.1 * top, float(force.min())), top)
+        self._factor, unit = decimal_scale(self._limits[1], "N")
         if self.figure.yaxis[0].axis_label != f"Axial force ({unit})":
             self.figure.yaxis[0].axis_label = f"Axial force ({unit})"
-        low = -0.1 * top if low == -0.1 * top else -round_up(-low)
-        set_range(self.figure.y_range, low / self._factor, top / self._factor)
+        set_range(self.figure.y_range, *(limit / self._factor for limit in self._limits))
         positions = picture.run.settings.values()["length"]
         set_range(self.figure.x_range, 0.0, float(positions))
 

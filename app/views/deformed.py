@@ -11,11 +11,14 @@ from bokeh.palettes import Cividis256
 from app.views.drawing import (
     GREY,
     Key,
+    Limits,
     Picture,
     color_bar,
     decimal_scale,
     empty,
+    held,
     make_figure,
+    round_up,
 )
 from app.worker.protocol import Mesh, MeshField
 from solver.scenes.plane import PlaneSettings
@@ -84,7 +87,9 @@ class Deformed:
         self._mapper = LinearColorMapper(palette=Cividis256, low=0, high=1)
         self._marks = FixedTicker(ticks=[0, 1])
         self._drawn: Mesh | None = None
-        self._scales: tuple[object, ...] = ()
+        self._limits: Limits | None = None
+        self._unit = 1.0
+        self._fitting = 1.0
         made = self.figure
         made.patches(
             "xs",
@@ -126,10 +131,10 @@ class Deformed:
             return
         factor = self.magnification
         if factor is None:
-            factor = fitting(mesh, field.largest)
+            factor = self._fitting = fitting(mesh, field.largest, self._fitting)
         moved = mesh.nodes + np.float32(factor) * field.displacement
         self._draw_scale(mesh, field, factor)
-        self._fit(mesh, factor * field.largest)
+        self._fit(mesh, round_up(factor * field.largest))
         if self._drawn is not mesh:
             self._drawn = mesh
             self._mesh.data = {"corners": mesh.quads.ravel()}
@@ -138,23 +143,23 @@ class Deformed:
         self._nodes.data = {"at": np.ascontiguousarray(moved.T).ravel()}
 
     def _draw_scale(self, mesh: Mesh, field: MeshField, factor: float) -> None:
-        """Let colours span the values at this instant, outward to round numbers."""
-        low, high = float(field.stress.min()), float(field.stress.max())
-        self._unit, unit = decimal_scale(max(abs(low), abs(high)), "Pa")
-        low, high = _limits(low / self._unit, high / self._unit)
-        scales = (low, high, unit)
-        if scales != self._scales:
-            self._scales = scales
+        """Let colours span the values at this instant."""
+        limits = held(self._limits, float(field.stress.min()), float(field.stress.max()))
+        if limits != self._limits:
+            self._limits = limits
+            self._unit, unit = decimal_scale(max(-limits[0], limits[1]), "Pa")
+            low, high = (limit / self._unit for limit in limits)
             self._mapper.update(low=low, high=high)
             self._marks.ticks = [low, 0.5 * (low + high), high]
-            self.figure.right[0].title = unit
+            if self.figure.right[0].title != unit:
+                self.figure.right[0].title = unit
         self.keys = (
             Key(GREY, "bare", field.component),
             Key(GREY, "bare", f"displacement × {factor:g}"),
         )
 
     def _fit(self, mesh: Mesh, reach: float) -> None:
-        """Ask for room for the bodies, and for where they may move to."""
+        """Ask for room for the bodies, and for where they may move to: seldom."""
         (left, low), (right, high) = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
         margin = 0.02 * float(right - left) + reach
         edge = [left - margin, right + margin, low - margin, high + margin]
@@ -163,21 +168,16 @@ class Deformed:
             self._box.data = {"edge": wanted}
 
 
-def fitting(mesh: Mesh, largest: float) -> float:
-    """Give a magnification of 1, 2 or 5 times a power of ten at which a displacement shows."""
+def fitting(mesh: Mesh, largest: float, present: float = 1.0) -> float:
+    """Give a magnification of 1, 2 or 5 times a power of ten at which a displacement shows.
+
+    The present one is kept as long as it does.
+    """
     size = float(np.ptp(mesh.nodes, axis=0).max())
     if not (np.isfinite(largest) and largest > 0.0):
-        return 1.0
+        return present
     wanted = SHOWN * size / largest
+    if 0.25 * wanted <= present <= 1.5 * wanted:
+        return present
     decade = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= wanted))
-
-
-def _limits(low: float, high: float) -> tuple[float, float]:
-    """Give round limits, so that colours keep their meaning for a while."""
-    low, high = min(low, 0.0), max(high, 0.0)
-    span = high - low
-    if not (np.isfinite(span) and span > 0.0):
-        return 0.0, 1.0
-    step = 10.0 ** np.floor(np.log10(span)) / 2.0
-    return float(np.floor(low / step) * step), float(np.ceil(high / step) * step)

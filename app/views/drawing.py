@@ -184,3 +184,28 @@ def round_up(value: float) -> float:
     decade = 10.0 ** np.floor(np.log10(value))
     steps = (1.0, 2.0, 5.0, 10.0)
     return float(next(step * decade for step in steps if step * decade >= 0.999 * value))
+
+
+Limits = tuple[float, float]
+FILLED = 0.6
+"""Share of an axis that values have to fill, or it is drawn in."""
+ROOM = 1.1
+
+
+def held(old: Limits | None, low: float, high: float) -> Limits:
+    """Give round limits around values and zero: those there were, as long as they suit.
+
+    A browser spends more on an axis whose labels change than on all that it draws.
+    """
+    low, high = min(low, 0.0), max(high, 0.0)
+    span = high - low
+    if not np.isfinite(span):
+        return old or (0.0, 1.0)
+    if old is not None:
+        inside = old[0] <= low and high <= old[1]
+        if inside and span >= FILLED * (old[1] - old[0]):
+            return old
+    if span == 0.0:
+        return 0.0, 1.0
+    step = round_up(ROOM * span) / 10.0
+    return float(np.floor(ROOM * low / step) * step), float(np.ceil(ROOM * high / step) * step)

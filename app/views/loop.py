@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from bokeh.models import Range1d
@@ -14,11 +15,12 @@ from app.views.drawing import (
     SKY,
     VERMILION,
     Key,
+    Limits,
     Picture,
     decimal_scale,
     empty,
+    held,
     make_figure,
-    round_up,
     set_range,
 )
 from app.worker.protocol import Frame, Reference
@@ -26,8 +28,6 @@ from app.worker.rivals import has_reference
 from solver.settings import Settings
 
 Curve = tuple[np.ndarray, np.ndarray]
-ROUND = 20.0
-"""Steps of an axis, for one decade at most, on which limits stand that follow the iterates."""
 
 
 KEYS = (
@@ -54,6 +54,8 @@ class Loop:
         self._point = empty("x", "y")
         self._drawn: tuple[object, ...] = ()
         self._scales = (1.0, 1.0)
+        self._across: Limits | None = None
+        self._up: Limits | None = None
         made = self.figure
         made.line(
             "x",
@@ -84,16 +86,14 @@ class Loop:
             return
         x, y = _curve(run, frame)
         settled = _settled(run)
-        limits = (_around(x, ROUND), _around(y, ROUND)) if settled is None else ()
-        known = (run.ticket, run.reference is None, limits)
+        if settled is None:
+            self._across, self._up = _held(self._across, x), _held(self._up, y)
+        else:
+            self._across, self._up = (_around(values) for values in settled)
+        known = (run.ticket, run.reference is None, self._across, self._up)
         if known != self._drawn:
             self._drawn = known
-            self._draw_base(picture, settled or (x, y))
-            if settled is None:
-                for axis, ends, scale in zip(
-                    (self.figure.x_range, self.figure.y_range), limits, self._scales, strict=True
-                ):
-                    set_range(axis, ends[0] / scale, ends[1] / scale)
+            self._draw_base(picture)
         across, up = self._scales
         x, y = x / across, y / up
         self._line.data = {"x": x, "y": y}
@@ -104,22 +104,16 @@ class Loop:
             "y": [float(np.interp(time, all_instants, y))],
         }
 
-    def _draw_base(self, picture: Picture, shown: Curve) -> None:
-        run = picture.run
+    def _draw_base(self, picture: Picture) -> None:
+        run, made = picture.run, self.figure
         assert run.begun is not None
-        labels = []
-        for values, (title, unit) in zip(
-            shown, (run.begun.loop.across, run.begun.loop.up), strict=True
-        ):
-            size = float(np.abs(values).max())
-            factor, shown_unit = decimal_scale(size, unit) if unit else _of_angle(size)
-            labels.append((factor, f"{title} ({shown_unit})"))
-        (across, across_label), (up, up_label) = labels
-        self._scales = across, up
-        self.figure.xaxis[0].axis_label = across_label
-        self.figure.yaxis[0].axis_label = up_label
-        set_range(self.figure.x_range, *_around(shown[0] / across))
-        set_range(self.figure.y_range, *_around(shown[1] / up))
+        assert self._across is not None
+        assert self._up is not None
+        axes = run.begun.loop
+        self._scales = (
+            _label(made.xaxis[0], made.x_range, axes.across, self._across),
+            _label(made.yaxis[0], made.y_range, axes.up, self._up),
+        )
         self._reference.data = self._scaled(_settled(run) if run.reference else None)
         self._ghost.data = self._scaled(_last(picture.before) if picture.before else None)
 
@@ -160,14 +154,22 @@ def _of_angle(size: float) -> tuple[float, str]:
     return (1e-3, "mrad") if size < 0.5 else (1.0, "rad")
 
 
-def _around(values: np.ndarray, steps: float = 0.0) -> tuple[float, float]:
-    """Give the ends of an axis with room around values; to whole steps, if any."""
+def _label(axis: Any, scale: Range1d, quantity: tuple[str, str], limits: Limits) -> float:
+    """Put limits and a unit that suits them on an axis; give the factor of the unit."""
+    title, unit = quantity
+    size = max(-limits[0], limits[1])
+    factor, shown = decimal_scale(size, unit) if unit else _of_angle(size)
+    if axis.axis_label != f"{title} ({shown})":
+        axis.axis_label = f"{title} ({shown})"
+    set_range(scale, limits[0] / factor, limits[1] / factor)
+    return factor
+
+
+def _held(old: Limits | None, values: np.ndarray) -> Limits:
+    return held(old, float(values.min()), float(values.max()))
+
+
+def _around(values: np.ndarray) -> Limits:
     low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
     margin = 0.12 * (high - low) or 1.0
-    if not steps:
-        return low - margin, high + margin
-    step = round_up(high - low or 1.0) / steps
-    return (
-        float(np.floor((low - 0.3 * margin) / step) * step),
-        float(np.ceil((high + 0.3 * margin) / step) * step),
-    )
+    return low - margin, high + margin

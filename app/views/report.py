@@ -62,6 +62,10 @@ class Report:
     def _show(self) -> None:
         raise NotImplementedError
 
+    def _refusal(self) -> str:
+        """Say why it cannot be asked for at present, if so."""
+        return ""
+
     def _bar(self) -> list[Any]:
         self._start = pmui.Button(label="Start", icon="play_arrow", size="small", color="primary")
         self._cancel = pmui.Button(
@@ -89,10 +93,11 @@ class Report:
         self._refresh()
 
     def _refresh(self) -> None:
-        errand = self._errand
-        self._start.disabled = errand.is_busy
+        errand, refusal = self._errand, self._refusal()
+        self._start.disabled = errand.is_busy or bool(refusal)
         self._cancel.visible = errand.is_busy
-        self._progress.object = progress(errand)
+        waiting = f"<b>{escape(refusal)}</b>" if refusal and not errand.is_busy else ""
+        self._progress.object = waiting or progress(errand)
         self._show()
 
     def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:

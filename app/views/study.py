@@ -14,6 +14,7 @@ from app.errand import Errand, Found
 from app.views.panels import keys, plot
 from app.views.report import Report, bullets, table
 from app.words import card_title
+from app.worker.rivals import has_reference
 from app.worker.studies import StudyFound, study_of
 from solver.settings import Settings
 from solver.study.figure_data import Panel
@@ -35,6 +36,7 @@ WORDS = (
     "stands still while they are timed."
 )
 REPEATS = (3, 5, 9)
+NO_REFERENCE = "This scene has no reference yet to measure errors by; choose the bar."
 
 
 class StudyReport(Report):
@@ -88,6 +90,9 @@ class StudyReport(Report):
         sizes = bool(self._growth.value)
         work = partial(study_of, settings.scene, settings.values(), repeats, sizes)
         self._errand.ask(title_of(settings), work)
+
+    def _refusal(self) -> str:
+        return "" if has_reference(self._settings()) else NO_REFERENCE
 
     def _show(self) -> None:
         found = list(self._errand.found)

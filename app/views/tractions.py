@@ -14,19 +14,17 @@ from app.views.drawing import (
     ORANGE,
     PURPLE,
     Key,
+    Limits,
     Picture,
     decimal_scale,
     empty,
+    held,
     make_figure,
-    round_up,
     set_range,
 )
 from app.worker.protocol import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
-
-ROOM = 1.15
-
 
 KEYS = (
     Key(PURPLE, "line", "pressure p"),
@@ -52,6 +50,7 @@ class Tractions:
         self._cuts = empty("x")
         self._drawn: tuple[object, ...] = ()
         self._factor = 1.0
+        self._limits: Limits | None = None
         made = self.figure
         made.vspan("x", source=self._cuts, line_color=GREY, line_alpha=0.35, line_width=1)
         colors = (("pressure", PURPLE), ("friction", BLUE))
@@ -80,7 +79,8 @@ class Tractions:
         begun = run.begun
         if begun.coefficient is None:
             return
-        self._scale(frame.pressure, frame.friction)
+        largest_bound = float((begun.coefficient[:, None] * frame.pressure).max())
+        self._scale(frame.pressure, frame.friction, largest_bound)
         known = (run.ticket, begun.interface, run.reference is None, picture.instant, self._factor)
         if known != self._drawn:
             self._drawn = known
@@ -95,14 +95,15 @@ class Tractions:
             "lower": -bound,
         }
 
-    def _scale(self, pressure: np.ndarray, friction: np.ndarray) -> None:
-        top = max(float(pressure.max()), float(np.abs(friction).max()))
-        self._factor, unit = decimal_scale(top, "Pa")
+    def _scale(self, pressure: np.ndarray, friction: np.ndarray, bound: float) -> None:
+        """Hold all instants."""
+        low = float(min(pressure.min(), friction.min(), -bound))
+        high = float(max(pressure.max(), friction.max(), bound))
+        self._limits = held(self._limits, low, high)
+        self._factor, unit = decimal_scale(max(-self._limits[0], self._limits[1]), "Pa")
         if self.figure.yaxis[0].axis_label != f"Traction ({unit})":
             self.figure.yaxis[0].axis_label = f"Traction ({unit})"
-        low = min(float(pressure.min()), float(friction.min()))
-        high = _outward(top / self._factor)
-        set_range(self.figure.y_range, min(-_outward(-low / self._factor), -0.05 * high), high)
+        set_range(self.figure.y_range, *(limit / self._factor for limit in self._limits))
 
     def _draw_base(self, picture: Picture) -> None:
         begun, run = picture.run.begun, picture.run
@@ -143,11 +144,3 @@ class Tractions:
             "pressure": frame.pressure[:, instant] / self._factor,
             "friction": frame.friction[:, instant] / self._factor,
         }
-
-
-def _outward(value: float) -> float:
-    """Give a round limit that changes seldom, well beyond a value."""
-    if value <= 0.0:
-        return 0.0
-    unit = round_up(value) / 10.0
-    return float(np.ceil(ROOM * value / unit) * unit)

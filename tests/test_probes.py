@@ -1,0 +1,119 @@
+"""Probes give what the recovered inside gives, and loops close the balance of forces."""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.discrete import Problem, discretise
+from solver.discrete.loops import loop_of
+from solver.discrete.plane import von_mises
+from solver.discrete.probes import AxialForce, end_rotation, reaction, side_mean
+from solver.latin import Iterate, iterations
+from solver.reference.broken_wire import broken_wire
+from solver.scenes import CATALOGUE
+from solver.scenes.strand import StrandSettings, strand
+from solver.settings import Settings
+
+SMALL = {"elements": 12, "elements_up": 4, "instants": 9}
+PULLED = {"top": "traction", "top_normal_traction": -2e7, "top_tangential_traction": 4e6}
+HEAVY = {"body_force_y": -1e8, "body_force_x": 3e7}
+LAYERS = {**SMALL, "elements_up": 2, "layers": 3}
+
+
+def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Settings, Iterate]:
+    settings = CATALOGUE[scene].settings.checked(values)
+    run = iterations(discretise(settings), settings)
+    return settings, next(islice(run, number - 1, None))
+
+
+def trapezoid(along: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Give the mean over a line of places, in any order; values (n_places, n)."""
+    order = np.argsort(along)
+    along, values = along[order], values[order]
+    pieces = np.diff(along)[:, None] * 0.5 * (values[1:] + values[:-1])
+    return np.asarray(pieces.sum(axis=0) / (along[-1] - along[0]))
+
+
+def whole(problem: Problem, iterate: Iterate) -> tuple[np.ndarray, np.ndarray]:
+    assert problem.inside is not None
+    return problem.inside.nodes, problem.inside.displacement(iterate.displacement, slice(None))
+
+
+@pytest.mark.parametrize("side", ["top", "left", "right"])
+@pytest.mark.parametrize("component", [0, 1])
+def test_mean_displacement_of_a_side_is_that_of_the_recovered_nodes(
+    side: str, component: int
+) -> None:
+    """Also where nothing is prescribed, and loads inside move the side beside the skeleton."""
+    _, iterate = iterate_of("block", {**SMALL, **PULLED, **HEAVY}, 4)
+    nodes, found = whole(iterate.problem, iterate)
+    axis = 1 if side == "top" else 0
+    outermost = nodes[:, axis].min() if side == "left" else nodes[:, axis].max()
+    on = nodes[:, axis] == outermost
+    expected = trapezoid(nodes[on, 1 - axis], found[on, component])
+    probe = side_mean(iterate.problem, side, component)
+    shown = probe(iterate.displacement)
+    assert shown == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
+
+
+def test_end_rotation_of_turned_ends_is_their_angle() -> None:
+    _, iterate = iterate_of("layers", {**LAYERS, "bending": "moment"}, 1)
+    problem = iterate.problem
+    angle = 1e-3
+    turned = np.zeros((problem.n_dofs, problem.n_instants))
+    turned[0::2] = -angle * problem.positions[0::2, 1:]
+    turned[1::2] = angle * problem.positions[1::2, :1]
+    probe = end_rotation(problem)
+    probe_without_loads = probe.weights @ turned[probe.dofs]
+    assert probe_without_loads == pytest.approx(np.full(problem.n_instants, angle), rel=1e-9)
+
+
+def test_reaction_is_the_force_that_holds_the_prescribed_end() -> None:
+    _, iterate = iterate_of("layers", LAYERS, 120)
+    problem = iterate.problem
+    law: Any = problem.interfaces["right"]
+    expected = iterate.boundary_force[law.rows].sum(axis=0) * problem.scales.force
+    found = reaction(problem, "right")(iterate.displacement)
+    assert found == pytest.approx(expected, abs=2e-3 * np.abs(expected).max())
+
+
+def test_shear_force_on_the_support_is_the_traction_on_the_top() -> None:
+    settings, iterate = iterate_of("block", {**SMALL, **PULLED}, 200)
+    loop = loop_of(settings, iterate.problem)
+    assert callable(loop.force)
+    expected = settings.path("top_tangential_load", 4e6) * settings.values()["length"]
+    assert loop.force(iterate) == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+
+
+def test_axial_forces_of_a_strand_meet_their_closed_form() -> None:
+    settings, iterate = iterate_of("strand", {"load": "ramp", "instants": 21}, 150)
+    assert isinstance(settings, StrandSettings)
+    exact = broken_wire(strand(settings))
+    assert exact is not None
+    axial = AxialForce(iterate.problem)
+    force = axial(iterate.displacement[:, -1]).reshape(settings.wires, settings.elements)
+    middle = 0.5 * (exact.force[1:, -1] + exact.force[:-1, -1])
+    assert list(np.unique(axial.wires)) == [0, 1, 2]
+    assert force[1] == pytest.approx(middle, abs=0.02 * settings.peak)
+    assert force.sum(axis=0) == pytest.approx(np.full(60, 3 * settings.peak), rel=1e-3)
+
+
+def test_mean_tension_under_a_rigid_grip_is_what_the_ends_carry() -> None:
+    settings, iterate = iterate_of("strand", {"grip": "displacement", "instants": 21}, 150)
+    loop = loop_of(settings, iterate.problem)
+    assert callable(loop.force)
+    axial = AxialForce(iterate.problem)
+    last = np.stack([axial(column)[59::60].mean() for column in iterate.displacement.T])
+    assert loop.force(iterate) == pytest.approx(last, abs=1e-6 * np.abs(last).max())
+
+
+def test_equivalent_stress_of_pure_shear_and_of_even_pressure() -> None:
+    shear = von_mises(np.array([[0.0, 0.0, 2.0]]), 0.3, "stress")
+    assert shear == pytest.approx([2.0 * np.sqrt(3.0)])
+    even = von_mises(np.array([[1.0, 1.0, 0.0]]), 0.5, "strain")
+    assert even == pytest.approx([0.0])
+    assert von_mises(np.array([[3.0, 0.0, 0.0]]), 0.3, "stress") == pytest.approx([3.0])
