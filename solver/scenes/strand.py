@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.loads import PULLS, Array, load_path
-from solver.settings import SettingError, Settings, choice, count, curve, quantity
+from solver.settings import SettingError, Settings, choice, count, curve, quantity, redefined
 
 LARGEST_FIELD = 25_000_000
 COARSEST = 6
@@ -177,6 +177,10 @@ class StrandSettings(Settings):
         unit="m^2",
         logarithmic=True,
     )
+
+    search_direction = redefined(Settings.param["search_direction"], "auto")
+    acceleration = redefined(Settings.param["acceleration"], "anderson")
+    start = redefined(Settings.param["start"], "nested")
 
     @property
     def n_substructures(self) -> int:
