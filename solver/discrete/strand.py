@@ -15,7 +15,9 @@ NO_ROW = -1
 MACRO_DEGREE = 1
 """Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
 them both sides balance each other but slowly: 1 % of the friction force then takes more than 200
-iterations instead of 40 (measured by default, with Anderson acceleration and automatic k)."""
+iterations instead of 40 (measured by default, with Anderson acceleration and automatic k). 3 saves
+up to half of the iterations with 20 wires or more in 4 pieces each, and so do 10 pieces; few wires
+gain nothing."""
 
 
 def discretise_strand(scene: Strand) -> Problem:
