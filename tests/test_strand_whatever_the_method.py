@@ -20,12 +20,13 @@ from solver.scenes.strand import LARGEST_FIELD, StrandSettings, strand
 from solver.settings import SettingError
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
+PLAIN = {"search_direction": "paper", "acceleration": "none", "start": "zero"}
 TIGHT = {"tolerance": 1e-16, "max_iterations": 4000}
 FAST = {"search_direction": "auto", "acceleration": "anderson"}
 
 
 def options(**changes: object) -> StrandSettings:
-    return StrandSettings.checked({**SMALL, **TIGHT, **changes})
+    return StrandSettings.checked({**SMALL, **PLAIN, **TIGHT, **changes})
 
 
 def solution_of(settings):
