@@ -227,7 +227,7 @@ class Dashboard:
         self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
         self._shown = shown
         self._offer_looks()
-        self._study.refresh()
+        self._tabs.refresh()
         self._mark()
 
     def _offer_looks(self) -> None:
