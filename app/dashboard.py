@@ -32,6 +32,9 @@ from app.views.status_map import StatusMap
 from app.views.study import StudyReport
 from app.views.tractions import Tractions
 from app.words import card_title, key_figures, status_line
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.strand import StrandSettings
+from solver.settings import Settings
 
 LIVE = "Live"
 TABS = {
@@ -98,9 +101,9 @@ class Dashboard:
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
         self._pulse = self._make_pulse()
         self.transport = Transport(session, self._mark)
-        self._deformed = Deformed()
-        self._looks = Looks(session, self._deformed, self._mark)
+        self._looks = Looks(session, self._mark)
         self._views = self._make_views()
+        self._made_for: set[type[Settings]] = set()
         self._titles: dict[str, Any] = {}
         self._cards: dict[str, Any] = {}
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
@@ -187,9 +190,6 @@ class Dashboard:
     def _make_views(self) -> list[View]:
         return [
             FrictionForce(),
-            self._deformed,
-            Tractions(),
-            Axial(),
             StatusMap(self.transport.choose_time),
             Loop(),
             Convergence(),
@@ -199,6 +199,18 @@ class Dashboard:
             TimeFunctions(),
             BasisSize(self.transport.choose_substructure),
         ]
+
+    def _add_views(self, settings: Settings) -> None:
+        """Make the views that only some scenes have, when the first of those comes."""
+        if type(settings) in self._made_for:
+            return
+        self._made_for.add(type(settings))
+        names = [view.name for view in self._views]
+        place = names.index(StatusMap.name)
+        if isinstance(settings, PlaneSettings) and Deformed.name not in names:
+            self._views[:0] = [Deformed(lambda: self._looks.magnification), Tractions()]
+        if isinstance(settings, StrandSettings):
+            self._views.insert(place, Axial())
 
     def _make_live(self) -> pn.Column:
         return pn.Column(
@@ -270,6 +282,7 @@ class Dashboard:
     def _arrange(self) -> None:
         """Show the views that are chosen and apply; frames carry what they need."""
         settings = self.session.wanted
+        self._add_views(settings)
         fitting = [view for view in self._views if view.applies(settings)]
         wanted = self._sidebar.offer([view.name for view in fitting])
         shown = [view for view in fitting if view.name in wanted]
@@ -284,8 +297,8 @@ class Dashboard:
         self._mark()
 
     def _offer_looks(self) -> None:
-        self._looks.show()
-        self.transport.place(self._looks.parts(self._deformed in self._shown))
+        bodies = any(view.watches == "mesh" for view in self._shown)
+        self.transport.place(self._looks.parts(shows_bodies=bodies))
 
     def _mark(self) -> None:
         self._dirty = True
