@@ -30,6 +30,9 @@ from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
 from app.views.tractions import Tractions
 from app.words import card_title, key_figures, status_line
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.strand import StrandSettings
+from solver.settings import Settings
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -63,9 +66,9 @@ class Dashboard:
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
         self._pulse = self._make_pulse()
         self.transport = Transport(session, self._mark)
-        self._deformed = Deformed()
-        self._looks = Looks(session, self._deformed, self._mark)
+        self._looks = Looks(session, self._mark)
         self._views = self._make_views()
+        self._made_for: set[type[Settings]] = set()
         self._titles: dict[str, Any] = {}
         self._cards: dict[str, Any] = {}
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
@@ -134,9 +137,6 @@ class Dashboard:
     def _make_views(self) -> list[View]:
         return [
             FrictionForce(),
-            self._deformed,
-            Tractions(),
-            Axial(),
             StatusMap(self.transport.choose_time),
             Loop(),
             Convergence(),
@@ -146,6 +146,18 @@ class Dashboard:
             TimeFunctions(),
             BasisSize(self.transport.choose_substructure),
         ]
+
+    def _add_views(self, settings: Settings) -> None:
+        """Make the views that only some scenes have, when the first of those comes."""
+        if type(settings) in self._made_for:
+            return
+        self._made_for.add(type(settings))
+        names = [view.name for view in self._views]
+        place = names.index(StatusMap.name)
+        if isinstance(settings, PlaneSettings) and Deformed.name not in names:
+            self._views[:0] = [Deformed(lambda: self._looks.magnification), Tractions()]
+        if isinstance(settings, StrandSettings):
+            self._views.insert(place, Axial())
 
     def _make_live(self) -> pn.Column:
         return pn.Column(
@@ -217,6 +229,7 @@ class Dashboard:
     def _arrange(self) -> None:
         """Show the views that are chosen and apply; frames carry what they need."""
         settings = self.session.wanted
+        self._add_views(settings)
         fitting = [view for view in self._views if view.applies(settings)]
         wanted = self._sidebar.offer([view.name for view in fitting])
         shown = [view for view in fitting if view.name in wanted]
@@ -231,8 +244,8 @@ class Dashboard:
         self._mark()
 
     def _offer_looks(self) -> None:
-        self._looks.show()
-        self.transport.place(self._looks.parts(self._deformed in self._shown))
+        bodies = any(view.watches == "mesh" for view in self._shown)
+        self.transport.place(self._looks.parts(shows_bodies=bodies))
 
     def _mark(self) -> None:
         self._dirty = True

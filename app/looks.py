@@ -3,47 +3,66 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import panel_material_ui as pmui
 
 from app.scrubber import Scrubber
 from app.session import Session
-from app.views.deformed import Deformed
 from app.worker.protocol import STRESSES
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6
-MOST = DECADES * len(STEPS) + 1
 STRESS_TITLES = {name if name == STRESSES[0] else f"stress {name}": name for name in STRESSES}
 
 
 class Looks:
-    """What is chosen beside the instant, as far as the scene has it.
+    """What is chosen beside the instant; a widget is made for the first scene that needs it.
 
     Parameters
     ----------
     session
         Is told the interface and the stress.
-    deformed
-        Is told the magnification.
     refresh
         Called when something is to be drawn again.
 
+    Attributes
+    ----------
+    magnification
+        Factor on the displacement; None leaves it to the view.
     """
 
-    def __init__(self, session: Session, deformed: Deformed, refresh: Callable[[], None]) -> None:
+    def __init__(self, session: Session, refresh: Callable[[], None]) -> None:
+        self.magnification: float | None = None
         self._session = session
-        self._deformed = deformed
         self._refresh = refresh
-        self._interface = pmui.Select(
+        self._showing = False
+
+    def parts(self, *, shows_bodies: bool) -> list[Any]:
+        """Give the widgets that choose anything at present, as they have to stand."""
+        begun = self._session.run.begun
+        found: list[Any] = []
+        if begun is not None and len(begun.interfaces) > 1:
+            self._show(list(begun.interfaces), begun.interface)
+            found.append(self._interface)
+        return [*found, self._stress, self._magnification] if shows_bodies else found
+
+    @cached_property
+    def _interface(self) -> Any:
+        made = pmui.Select(
             label="Interface",
             options=[],
             width=145,
             size="small",
             description="The interface whose forces and status are drawn.",
         )
-        self._stress = pmui.Select(
+        made.param.watch(self._on_interface, "value")
+        return made
+
+    @cached_property
+    def _stress(self) -> Any:
+        made = pmui.Select(
             label="Stress",
             options=STRESS_TITLES,
             value=STRESSES[0],
@@ -51,44 +70,32 @@ class Looks:
             size="small",
             description="What colours the deformed bodies.",
         )
-        self._magnification = Scrubber(
+        made.param.watch(lambda event: self._session.look_for(event.new), "value")
+        return made
+
+    @cached_property
+    def _magnification(self) -> Scrubber:
+        made = Scrubber(
             label="Magnification",
             help="Factor on the displacement of the drawn bodies; at the left end it is chosen so "
             "that they are seen to move.",
-            end=MOST,
+            end=DECADES * len(STEPS) + 1,
             text="auto",
             margin=(0, 8),
             min_width=140,
             sizing_mode="stretch_width",
             styles={"flex": "1 1 140px"},
         )
-        self._showing = False
-        self._interface.param.watch(self._on_interface, "value")
-        self._stress.param.watch(lambda event: session.look_for(event.new), "value")
-        self._magnification.param.watch(self._on_magnification, "wanted")
+        made.param.watch(self._on_magnification, "wanted")
+        return made
 
-    def parts(self, shows_bodies: bool) -> list[Any]:
-        """Give the widgets that choose anything at present."""
-        begun = self._session.run.begun
-        several = begun is not None and len(begun.interfaces) > 1
-        return [
-            *([self._interface] if several else []),
-            *([self._stress, self._magnification] if shows_bodies else []),
-        ]
-
-    def show(self) -> None:
-        """Offer the interfaces of the run."""
-        begun = self._session.run.begun
-        if begun is None or self._interface.options == list(begun.interfaces):
-            if begun is not None and self._interface.value != begun.interface:
-                self._set(value=begun.interface)
+    def _show(self, interfaces: list[str], chosen: str) -> None:
+        select = self._interface
+        if select.options == interfaces and select.value == chosen:
             return
-        self._set(options=list(begun.interfaces), value=begun.interface)
-
-    def _set(self, **values: Any) -> None:
         self._showing = True
         try:
-            self._interface.param.update(**values)
+            select.param.update(options=interfaces, value=chosen)
         finally:
             self._showing = False
 
@@ -99,9 +106,8 @@ class Looks:
 
     def _on_magnification(self, event: Any) -> None:
         place = int(event.new)
-        factor = None if place == 0 else STEPS[(place - 1) % 3] * 10.0 ** ((place - 1) // 3)
-        self._deformed.magnification = factor
-        self._magnification.param.update(
-            shown=place, text="auto" if factor is None else f"× {factor:,.0f}"
-        )
+        decade, step = divmod(place - 1, len(STEPS))
+        self.magnification = None if place == 0 else STEPS[step] * 10.0**decade
+        text = "auto" if self.magnification is None else f"× {self.magnification:,.0f}"
+        self._magnification.param.update(shown=place, text=text)
         self._refresh()

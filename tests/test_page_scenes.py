@@ -16,8 +16,11 @@ TITLES = {
     "block": "Block pressed",
     "layers": "Stack of layers",
 }
+OURS = r'File ".*/(app|solver)/'
+"""In a traceback; a page that is closed leaves those of the web server."""
 DRAWN = """() => {
-  for (const model of Bokeh.documents[0]._all_models.values()) {
+  const models = window.Bokeh && Bokeh.documents.length ? Bokeh.documents[0]._all_models : new Map()
+  for (const model of models.values()) {
     const data = model.data
     if (model.type === "ColumnDataSource" && data.xs && data.ys && data.value) {
       return data.xs.length && data.xs[0].length === 4 ? data.xs.length : 0
@@ -54,7 +57,7 @@ def test_scenes_are_chosen_and_keep_their_settings(open_page, server):
     choose(page, "Scene", TITLES["bar"])
     expect(status(page)).to_contain_text("5 substructures", timeout=WAIT)
     expect(page.locator(".figures")).not_to_contain_text("before")
-    assert "Traceback" not in server.log
+    assert not re.search(OURS, server.log)
 
 
 def test_bodies_are_drawn_in_the_browser_and_looked_at_otherwise(open_page):
@@ -86,8 +89,6 @@ def test_an_interface_is_chosen_only_where_there_are_several(open_page):
     [
         ("?scene=layers&layers=1", "layers = 1 is refused"),
         ("?scene=strand&broken=9", "broken = 9 is refused"),
-        ("?scene=block&top=sideways", "is refused"),
-        ("?scene=block&poisson=0.5", "poisson = 0.5 is refused"),
     ],
 )
 def test_a_bad_address_is_explained_and_its_scene_is_shown(open_page, query, words):
@@ -100,13 +101,12 @@ def test_a_bad_address_is_explained_and_its_scene_is_shown(open_page, query, wor
 def test_odd_settings_run_without_a_complaint(open_page, server):
     for query in (
         "?scene=block&instants=1",
-        "?scene=block&top=free",
         "?scene=block&substructures=1&substructures_up=1&linear_stage=pgd",
         "?scene=strand&wires=20&broken=0&elements=2&substructures=1",
     ):
         page = open_page(f"{query}&max_iterations=4")
         expect(status(page)).to_contain_text(re.compile("iteration [1-9]|after"), timeout=WAIT)
-    assert "Traceback" not in server.log
+    assert not re.search(OURS, server.log)
 
 
 def test_a_study_is_offered_where_there_is_a_reference(open_page):

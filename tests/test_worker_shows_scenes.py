@@ -245,7 +245,7 @@ def test_views_that_apply_draw_every_scene(scene: str, stage: str) -> None:
             recording.take(report)
     views: list[View] = [
         FrictionForce(),
-        Deformed(),
+        Deformed(lambda: None),
         Tractions(),
         Axial(),
         StatusMap(lambda time: None),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from bokeh.models import CustomJS, FixedTicker, LinearColorMapper, Range1d
@@ -66,18 +66,18 @@ figure.y_range.setv({start: y - 0.5 * scale * tall, end: y + 0.5 * scale * tall}
 class Deformed:
     """The mesh moved by its magnified displacement.
 
-    Attributes
+    Parameters
     ----------
     magnification
-        Factor on the displacement; None takes one at which it can be seen.
+        Gives the factor on the displacement; None takes one at which it can be seen.
     """
 
     name = "Deformed bodies"
     watches = "mesh"
     keys: Sequence[Key] = ()
 
-    def __init__(self) -> None:
-        self.magnification: float | None = None
+    def __init__(self, magnification: Callable[[], float | None]) -> None:
+        self._magnification = magnification
         self.figure = make_figure("x (m)", "y (m)", x_range=Range1d(0, 1), y_range=Range1d(0, 1))
         self._mesh = empty("corners")
         self._nodes = empty("at")
@@ -129,7 +129,7 @@ class Deformed:
         mesh, field = begun.mesh, frame.mesh
         if len(field.displacement) != len(mesh.nodes):
             return
-        factor = self.magnification
+        factor = self._magnification()
         if factor is None:
             factor = self._fitting = fitting(mesh, field.largest, self._fitting)
         moved = mesh.nodes + np.float32(factor) * field.displacement
