@@ -54,7 +54,9 @@ def automatic(problem: Problem) -> Array:
     what is local the distance h of its points. So k of a point is `FRICTION_FACTOR` times the
     geometric mean of ES/s and ES/h, for which neither end is slower than the other, and a row's
     share of it is by tributary length, so that cuts change nothing; between two rods of a strand
-    it serves as well (of 0.35 to 4 times as much, 0.7 and 1.4 take the fewest iterations). On
+    it serves as well (of 0.35 to 4 times as much, 0.7 and 1.4 take the fewest iterations). Where
+    the section varies, ES is that around the point: with ten thousand times more at the load than
+    at the clamp, 1 % of friction force takes 45 iterations, and more than 1500 with the mean. On
     cuts, k is `CUT_FACTOR` times the paper's. In the plane k is that of a body as a whole on
     contacts, and `PLANE_FACTOR` times the paper's elsewhere.
     """
@@ -67,11 +69,14 @@ def automatic(problem: Problem) -> Array:
         return k
     parts = 1.0 / sliding_share(problem)
     for law in problem.rubbing.values():
+        assert isinstance(law, Friction)
         length = law.weights.sum()
         spacing = length / max(len(law.positions) - 1, 1)
         stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
         for rows in sliding_rows(law):
             k[rows] = stiffness * law.weights / spacing
+            if law.modulus is not None:
+                k[rows] *= law.modulus
     for cut in problem.of_law(Perfect):
         assert isinstance(cut, Perfect)
         k[cut.first] *= CUT_FACTOR

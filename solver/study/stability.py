@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import time
 import warnings
 from collections.abc import Callable, Iterable
@@ -144,8 +143,6 @@ def run_case(case: Case, method: str) -> Outcome:
     """Run a case to its stop rule, and measure it."""
     settings = BarSettings.checked({**PRECISE, **METHODS[method], **case.changes})
     problem = discretise(settings)
-    if case.contrast != 1.0:
-        problem = with_contrast(problem, case.contrast)
     distance = distance_to(incremental(problem), problem)
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as leaked:
@@ -169,37 +166,6 @@ def run_case(case: Case, method: str) -> Outcome:
             problem, search_direction(problem, settings)
         ),
     )
-
-
-def with_contrast(problem: Problem, contrast: float) -> Problem:
-    """Give the bar elements whose stiffness grows evenly by decades from clamp to load.
-
-    The geometric mean stays what it was. No setting makes such a bar, so its matrices are
-    scaled here; the paper's k follows the mean stiffness of each substructure.
-
-    Parameters
-    ----------
-    problem
-        A bar of equal elements.
-    contrast
-        Last over first stiffness.
-    """
-    elements = problem.n_dofs - 1
-    factors = contrast ** (np.linspace(-0.5, 0.5, elements) if elements > 1 else np.zeros(1))
-    parts = []
-    for part in problem.substructures:
-        own = factors[part.dofs[:-1]]
-        unit = -part.elasticity.stiffness.diagonal(1)
-        side = own * unit
-        diagonal = np.concatenate([side, [0.0]]) + np.concatenate([[0.0], side])
-        stiffness = sparse.diags_array([-side, diagonal, -side], offsets=[-1, 0, 1])
-        elasticity = dataclasses.replace(
-            part.elasticity,
-            stiffness=sparse.csr_array(stiffness),
-            direction=part.elasticity.direction / float(np.mean(1.0 / own)),
-        )
-        parts.append(dataclasses.replace(part, elasticity=elasticity))
-    return dataclasses.replace(problem, substructures=tuple(parts))
 
 
 def condition_of_structure(problem: Problem) -> float:

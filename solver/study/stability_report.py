@@ -111,9 +111,6 @@ def notes(apart: Mapping[str, float]) -> list[str]:
         )
         + ". Condition numbers: of the assembled stiffness with its support (K), and the largest "
         "of the substructures' operators K + B' k B (E).",
-        "Stiffness contrast: no setting makes a bar of varying section; these cases scale the "
-        "matrices of the discrete problem, from the zero start, since coarser meshes of the nested "
-        "start would be uniform.",
         f"Invariance {held}: largest relative difference of an iterate in other units, {units}.",
     ]
 
