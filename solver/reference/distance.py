@@ -10,11 +10,16 @@ from scipy import sparse
 
 from solver.discrete.problem import Indices, Problem
 from solver.laws import Neumann
+from solver.reference.assembly import assembled_stiffness
 from solver.reference.condensation import jumps
 from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 
 Array = NDArray[np.float64]
+
+
+ROUNDING = 1e-13
+"""Share of the load up to which forces may be those of rounding alone; friction may be 1e-12."""
 
 
 class Fields(Protocol):
@@ -32,9 +37,9 @@ class Fields(Protocol):
 class Distance:
     """Relative L2 distance over space and time to a reference on the same mesh and instants.
 
-    Displacements are compared at interfaces. Where the reference field vanishes, the distance is
-    relative to `load` instead, and absolute if that vanishes too. Forces are compared where they
-    are determinate.
+    Displacements are compared at interfaces. Where the reference force vanishes, up to rounding of
+    the load, the distance is relative to `load` instead, and absolute if that vanishes too. Forces
+    are compared where they are determinate.
 
     Parameters
     ----------
@@ -43,7 +48,7 @@ class Distance:
     time_weights
         Shape (n_instants,).
     load
-        Forces that act on the structure, shape (n, n_instants), N.
+        Forces that act on the structure, or that make its displacements, (n, n_instants), N.
     dofs
         Degrees of freedom at interfaces, shape (n,).
     determinate
@@ -65,7 +70,8 @@ class Distance:
         self._displacement = reference.displacement[dofs]
         self._force = reference.contact_force * determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
-        self._force_size = self._norm(self._force) or self._norm(load) or 1.0
+        size, largest = self._norm(self._force), self._norm(load)
+        self._force_size = size if size > ROUNDING * largest else largest or 1.0
 
     def of_displacement(self, fields: Fields) -> float:
         """Give the relative error of the displacement."""
@@ -90,6 +96,9 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
     forces = [law.force for law in problem.of_law(Neumann) if isinstance(law, Neumann)]
     if not forces:
         forces = [part.body_force for part in problem.substructures if part.body_force is not None]
+    fixed, displacement = problem.prescribed
+    if displacement.any():
+        forces.append(abs(assembled_stiffness(problem)[:, fixed]) @ np.abs(displacement))
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])
     return Distance(
         reference,

@@ -1,4 +1,4 @@
-"""Stiff and extreme cases of the friction bar, and what is expected of each."""
+"""Stiff and extreme cases: what one is, and those of the friction bar."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from solver.settings import Pairs
 
 RIGHT = "right answer"
 TOLD = "right answer, or told that it is not"
+REFUSED = "refused in words"
+UNCLEAR = "right answer, or told that the reference has several or none"
 PRECISE = {"tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 SMALL = {"elements": 20, "substructures": 4, "instants": 41}
@@ -19,16 +21,17 @@ SMALL = {"elements": 20, "substructures": 4, "instants": 41}
 
 @dataclass(frozen=True)
 class Case:
-    """A run of the bar.
+    """A run of a scene.
 
     Attributes
     ----------
     group, name
         What is extreme, and how much.
     changes
-        Settings that differ from Table 1, beside `PRECISE`.
+        Settings that differ from the scene's own, beside `PRECISE`.
     expected
-        `RIGHT`, or `TOLD` where the method is known to be slow or beyond its digits.
+        `RIGHT`; `TOLD` where the method is known to be slow or beyond its digits; `REFUSED` where
+        there is no solution; `UNCLEAR` where friction is so large that there may be several.
     quick
         Whether it is one of the few for a short check.
     """
@@ -38,6 +41,7 @@ class Case:
     changes: Mapping[str, object] = field(default_factory=dict)
     expected: str = RIGHT
     quick: bool = False
+    scene: str = "bar"
 
 
 def reversals(instants: int, peak: float) -> Pairs:
@@ -73,7 +77,7 @@ QUICK = {"k_scale": (1e-6, 1e6), "young": (1.0, 1e18), "length": (1e-6, 1e4)}
 
 
 def cases() -> tuple[Case, ...]:
-    """Give the whole matrix."""
+    """Give all cases of the bar."""
     return (
         Case("Table 1", "as it is", quick=True),
         *_ranges(),
