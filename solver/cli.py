@@ -82,7 +82,7 @@ def _parser() -> argparse.ArgumentParser:
     stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
     stable.add_argument("scene", nargs="?", help="a name of the catalogue; all without")
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
-    stable.add_argument("--quick", action="store_true", help="a third of the cases")
+    stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
     stable.set_defaults(command=_stability)
     return parser
 

@@ -87,7 +87,11 @@ def assert_ends(scene, raw):
         event("not held")
         reference = None
     distance = None if reference is None else distance_to(reference, problem)
-    solution = solve(problem, chosen, distance=distance)
+    try:
+        solution = solve(problem, chosen, distance=distance)
+    except SettingError:
+        event("refused")
+        return
     ending = solution.status.ending
     event(str(ending))
     assert ending in set(Ending)

@@ -23,7 +23,7 @@ WORDS = (
     "them end with the right answer, or with a status that says that it is not? The run of this "
     "page goes on beside, so seconds in the files are no measurement."
 )
-CASES = {"a third of the cases": True, "all cases": False}
+CASES = {"a quarter of the cases": True, "all cases": False}
 EVERY, WRONG = "All runs", "Not right"
 HEADS = (
     "Verdict",

@@ -60,7 +60,7 @@ def study_of(
 
 
 def stability_of(quick: bool, send: Send) -> StabilityFound:
-    """Run the stability matrix, or a third of it, and send every row as it comes."""
+    """Run the stability matrix, or a quarter of it, and send every row as it comes."""
     matrix = cases_of(quick=quick)
     total = sum(len(methods_of(case.scene)) for case in matrix)
     rows: list[Row] = []
