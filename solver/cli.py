@@ -23,8 +23,7 @@ from solver.study.growth import growth
 from solver.study.iteration_cost import print_iteration_cost
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
-from solver.study.stability import invariance, stability
-from solver.study.stability_cases import cases
+from solver.study.stability import cases_of, invariance, stability
 from solver.study.stability_report import HEAD, line, notes, passes, prepare, write_report
 from solver.study.stability_report import summary as summary_of
 from solver.study.study_files import NO_PAGE, write_study
@@ -81,8 +80,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     study.set_defaults(command=_study)
     stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
+    stable.add_argument("scene", nargs="?", help="a name of the catalogue; all without")
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
-    stable.add_argument("--quick", action="store_true", help="a third of the cases")
+    stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
     stable.set_defaults(command=_stability)
     return parser
 
@@ -189,12 +189,13 @@ def _study(chosen: argparse.Namespace) -> int:
 
 
 def _stability(chosen: argparse.Namespace) -> int:
-    matrix = [case for case in cases() if case.quick or not chosen.quick]
+    scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
+    matrix = cases_of(scene, quick=chosen.quick)
     try:
         prepare(chosen.out)
         print(HEAD)
         rows = stability(matrix, lambda row: print(line(row), flush=True))
-        apart = invariance()
+        apart = invariance() if scene in (None, "bar") else {}
         files = write_report(rows, apart, chosen.out)
     except BrokenPipeError:
         raise

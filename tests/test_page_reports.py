@@ -233,7 +233,7 @@ def test_stability_sends_every_row_and_gives_them_all(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     few = [Case("size", "tiny", TINY), Case("size", "small", {**TINY, "elements": 10})]
-    monkeypatch.setattr("app.worker.studies.cases", lambda: few)
+    monkeypatch.setattr("app.worker.studies.cases_of", lambda quick: few)
     said: list[Any] = []
     found = stability_of(False, said.append)
     parts = [one.value for one in said if isinstance(one, Part)]
@@ -331,7 +331,7 @@ def test_the_stability_table_fills_row_by_row_and_can_be_filtered(open_page) -> 
 def test_a_phone_has_all_tabs_in_reach(open_page) -> None:
     page = open_page(width=390, height=844)
     open_tab(page, "Stability")
-    expect(page.get_by_text("Stiff and extreme cases of the bar")).to_be_visible(timeout=WAIT)
+    expect(page.get_by_text("Stiff and extreme cases of every scene")).to_be_visible(timeout=WAIT)
     open_tab_again = page.get_by_role("button", name="Study", exact=True)
     box = open_tab_again.bounding_box()
     assert box is not None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from plane import solved
 
 from solver.cli import main
 from solver.discrete import discretise
+from solver.latin import iterations
 from solver.latin.direction import pressing_rows, search_direction, sliding_rows
 from solver.scenes import CATALOGUE
 from solver.scenes.block import BlockSettings, block
@@ -132,10 +134,23 @@ def test_the_wrench_is_that_of_forces_at_their_lever_arms():
         (BlockSettings, {"gap": [[0.1, 0.0], [0.0, 0.0]]}, "must increase"),
         (BlockSettings, {"radius": 0.0}, "radius"),
         (LayersSettings, {"layers": 1}, "layers"),
+        (LayersSettings, {"thickness": 1e-6, "length": 1e3}, "thickness"),
+        (BlockSettings, {"height": 1e4}, "no side is more than 10000 times the other"),
     ],
 )
 def test_what_does_not_fit_together_is_refused_by_name(kind, values, name):
     assert name in refusal(kind, **values)
+
+
+def test_a_substructure_that_k_does_not_hold_is_refused_in_words():
+    settings = BlockSettings.checked({"elements": 4, "elements_up": 2, "instants": 2})
+    problem = discretise(settings)
+    loose = [
+        replace(part, elasticity=replace(part.elasticity, stiffness=-part.elasticity.stiffness))
+        for part in problem.substructures
+    ]
+    with pytest.raises(SettingError, match="k_scale"):
+        next(iterations(replace(problem, substructures=tuple(loose)), settings))
 
 
 def test_fewer_elements_take_substructures_down_with_them():

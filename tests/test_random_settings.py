@@ -44,6 +44,8 @@ SMALL = {
     "pgd_fixed_point_steps": 10,
     "anderson_memory": 30,
 }
+SECTION = (1e-4, 1e4)
+"""Range of the factors on the section: their contrast is bounded, so most tables are refused."""
 """Upper bounds that keep a run short; all other settings go over their whole range."""
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
 DECADES = 12.0
@@ -68,13 +70,16 @@ def numbers(low, high):
 
 
 def tables(definition, extent):
-    """Points over, before and beyond an extent: plateaus, jumps and reversals among them."""
+    """Points of any size: plateaus, jumps and reversals among them."""
     low = 0.0 if definition.ordinate == "factor" else -1e15
+    values = numbers(low, 1e15) | st.sampled_from([0.0, 900.0, 1e-6, 1e6])
+    return paired(values, extent)
+
+
+def paired(values, extent):
+    """Values at points over, before and beyond an extent."""
     places = st.lists(st.floats(-0.2, 1.2), min_size=1, max_size=8, unique=True).map(sorted)
-    values = st.lists(
-        numbers(low, 1e15) | st.sampled_from([0.0, 900.0, 1e-6, 1e6]), min_size=8, max_size=8
-    )
-    return st.tuples(places, values).map(
+    return st.tuples(places, st.lists(values, min_size=8, max_size=8)).map(
         lambda pair: [[place * extent, value] for place, value in zip(*pair, strict=False)]
     )
 
@@ -82,7 +87,9 @@ def tables(definition, extent):
 def values_of(name, definition, extents):
     if isinstance(definition, Curve):
         extent = extents[definition.abscissa]
-        return st.sampled_from(definition.presets) | tables(definition, extent)
+        is_section = name == "section_profile"
+        points = paired(sizes(*SECTION), extent) if is_section else tables(definition, extent)
+        return st.sampled_from(definition.presets) | points
     if isinstance(definition, param.Boolean):
         return st.booleans()
     if isinstance(definition, param.Selector):

@@ -14,22 +14,26 @@ from solver import cli
 from solver.cli import main
 from solver.discrete import discretise
 from solver.latin import Ending
+from solver.reference.assembly import assembled_stiffness
 from solver.reference.incremental import incremental
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
+from solver.scenes.block import BlockSettings
 from solver.study.stability import (
     METHODS,
     SAME_UP_TO,
     Outcome,
     Row,
     Verdict,
+    cases_of,
     condition_of_structure,
     condition_of_substructures,
     invariance,
     judge,
     stability,
-    with_contrast,
 )
-from solver.study.stability_cases import RIGHT, TOLD, Case, cases
+from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR, Case, graded
+from solver.study.stability_plane import PRESSED
 from solver.study.stability_report import COLOURS, COLUMNS, notes, passes, summary, values
 
 GOOD = Outcome(
@@ -47,6 +51,9 @@ GOOD = Outcome(
     condition_substructure=10.0,
 )
 KNOWN_TOLD = {
+    ("k_scale", "0.001"): "k is a thousandth of the stiffness in play",
+    ("contrast", "1e6"): "one k does not suit six decades",
+    ("layers", "as it is"): "the paper's k is that of a body as short as it is thick",
     ("k_scale", "1e-06"): "k is a millionth of the stiffness in play",
     ("k_scale", "1e+06"): "k is a million times the stiffness in play",
     ("stiffness contrast", "1e+08 towards the load"): "one k does not suit eight decades",
@@ -56,7 +63,7 @@ KNOWN_TOLD = {
 
 @pytest.fixture(scope="module")
 def rows():
-    return stability(case for case in cases() if case.quick)
+    return stability(cases_of(quick=True))
 
 
 def changed(**changes):
@@ -65,13 +72,17 @@ def changed(**changes):
 
 def test_every_quick_case_comes_to_what_is_expected(rows):
     assert [row for row in rows if not row.as_expected] == []
-    assert len(rows) == 2 * sum(case.quick for case in cases())
+    assert len(rows) == 2 * len(cases_of(quick=True))
+    assert {row.case.scene for row in rows} == set(CATALOGUE)
 
 
 def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
     for row in rows:
         place = (row.case.group, row.case.name)
-        if row.verdict is Verdict.TOLD:
+        if row.verdict is Verdict.TOLD and row.case.expected == REFUSED:
+            assert row.outcome.ending == REFUSED
+            assert "is refused; allowed: " in row.outcome.advice
+        elif row.verdict is Verdict.TOLD:
             assert place in KNOWN_TOLD
             assert row.outcome.ending in {Ending.STALLED, Ending.EXHAUSTED}
         else:
@@ -92,6 +103,9 @@ def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
         (changed(error_displacement=math.nan), Verdict.FAIL),
         (changed(finite=False, ending=Ending.DIVERGED), Verdict.FAIL),
         (changed(warned="overflow"), Verdict.FAIL),
+        (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
+        (changed(doubt="it is one of several", finite=False), Verdict.FAIL),
+        (Outcome(REFUSED, "load = 1 is refused"), Verdict.TOLD),
     ],
 )
 def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
@@ -100,10 +114,17 @@ def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
 
 def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
     wrong = changed(error_force=0.5, ending=Ending.STALLED)
-    for expected, as_expected in ((RIGHT, False), (TOLD, True)):
-        assert Row(Case("a", "b", {}, expected), "default", wrong, judge(wrong)).as_expected is (
-            as_expected
-        )
+    unclear = changed(doubt="the reference finds no solution")
+    refused = Outcome(REFUSED, "load = 1 is refused")
+    for found, passing in (
+        (wrong, {TOLD, UNCLEAR}),
+        (unclear, {UNCLEAR}),
+        (refused, {REFUSED}),
+        (GOOD, {RIGHT, TOLD, UNCLEAR}),
+    ):
+        for expected in (RIGHT, TOLD, UNCLEAR, REFUSED):
+            row = Row(Case("a", "b", {}, expected), "default", found, judge(found))
+            assert row.as_expected is (expected in passing)
 
 
 def test_one_failure_or_one_changed_iterate_fails_the_whole():
@@ -117,11 +138,11 @@ def test_one_failure_or_one_changed_iterate_fails_the_whole():
 
 
 def test_the_matrix_covers_the_ranges():
-    groups = {case.group for case in cases()}
+    groups = {case.group for case in cases_of("bar")}
     assert groups >= {"k_scale", "young", "length", "friction", "pressure", "load", "relaxation"}
     assert groups >= {"substructures", "instants", "nodes", "stiffness contrast"}
     for name in ("k_scale", "young", "length"):
-        tried = [case.changes[name] for case in cases() if case.group == name]
+        tried = [case.changes[name] for case in cases_of("bar") if case.group == name]
         low, high = BarSettings.definitions()[name].bounds
         assert (min(tried), max(tried)) == (low, high)
 
@@ -133,9 +154,8 @@ def test_units_change_no_iterate():
 
 
 def test_condition_numbers_are_those_of_the_dense_matrices():
-    problem = with_contrast(
-        discretise(BarSettings.checked({"elements": 9, "substructures": 3})), 50
-    )
+    uneven = {"elements": 9, "substructures": 3, "section_profile": graded(50.0, 9)}
+    problem = discretise(BarSettings.checked(uneven))
     k = 3.0 * problem.direction
     whole, largest = np.zeros((10, 10)), 0.0
     for part in problem.substructures:
@@ -147,11 +167,28 @@ def test_condition_numbers_are_those_of_the_dense_matrices():
     assert condition_of_substructures(problem, k) == pytest.approx(largest)
 
 
+def test_condition_numbers_in_the_plane_are_those_of_the_skeleton():
+    sizes = {"elements": 6, "elements_up": 4, "substructures": 2, "substructures_up": 1}
+    held = discretise(BlockSettings.checked({**sizes, "instants": 1}))
+    whole = assembled_stiffness(held).toarray()
+    free = np.setdiff1d(np.arange(held.n_dofs), held.prescribed[0])
+    assert condition_of_structure(held) == pytest.approx(np.linalg.cond(whole[np.ix_(free, free)]))
+    loose = BlockSettings.checked({**sizes, **PRESSED, "instants": 1})
+    assert condition_of_structure(discretise(loose)) == np.inf
+
+
 def test_elements_in_a_row_stretch_by_the_inverse_of_their_stiffness():
     settings = BarSettings.checked(
-        {"elements": 7, "substructures": 2, "friction": 0.0, "load": "ramp", "instants": 2}
+        {
+            "elements": 7,
+            "substructures": 2,
+            "friction": 0.0,
+            "load": "ramp",
+            "instants": 2,
+            "section_profile": graded(1e6, 7),
+        }
     )
-    found = incremental(with_contrast(discretise(settings), 1e6)).displacement[:, -1]
+    found = incremental(discretise(settings)).displacement[:, -1]
     stretch = np.diff(found)
     assert stretch[:-1] / stretch[1:] == pytest.approx(np.full(6, 10.0))
 
@@ -159,7 +196,7 @@ def test_elements_in_a_row_stretch_by_the_inverse_of_their_stiffness():
 @pytest.fixture
 def written(tmp_path, monkeypatch, capsys):
     few = [Case("load", "zero <N>", {"peak": 0.0}, quick=True), Case("friction", "0")]
-    monkeypatch.setattr(cli, "cases", lambda: few)
+    monkeypatch.setattr(cli, "cases_of", lambda scene, quick: few[: 1 if quick else 2])
     folder = tmp_path / "made by" / "the command"
     code = main(["stability", "--quick", "--out", str(folder)])
     return folder, code, capsys.readouterr()
@@ -186,13 +223,22 @@ def test_every_verdict_has_its_own_colour_and_words(rows):
     assert len(set(COLOURS.values())) == len(Verdict)
     text = " ".join(notes({"units": 0.0}))
     assert all(f"{verdict}: " in text for verdict in Verdict)
-    assert "no setting makes a bar of varying section" in text
     assert summary(rows).startswith(f"{len(rows)} of {len(rows)} runs pass")
     assert tuple(values(rows[0])) == COLUMNS
 
 
+def test_one_scene_alone_can_be_asked(tmp_path, capsys):
+    assert {case.scene for case in cases_of("strand")} == {"strand"}
+    assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
+    assert "Invariance" not in capsys.readouterr().out
+    assert main(["stability", "rope", "--out", str(tmp_path)]) == 2
+    assert "bar, block, layers, strand" in capsys.readouterr().err
+
+
 def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
-    monkeypatch.setattr(cli, "cases", lambda: [Case("load", "too few", {"max_iterations": 3})])
+    monkeypatch.setattr(
+        cli, "cases_of", lambda scene, quick: [Case("load", "too few", {"max_iterations": 3})]
+    )
     assert main(["stability", "--out", str(tmp_path)]) == 1
     assert "FAIL" in (tmp_path / "stability.csv").read_text(encoding="utf-8")
 

@@ -15,18 +15,19 @@ from app.views.report import Report, bullets
 from app.words import number
 from app.worker.studies import StabilityFound, stability_of
 from solver.study.stability import Row, Verdict
-from solver.study.stability_cases import RIGHT, TOLD
-from solver.study.stability_report import COLOURS, notes, summary
+from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR
+from solver.study.stability_report import COLOURS, notes, said, summary
 
 WORDS = (
-    "Stiff and extreme cases of the bar, whatever the settings of the page: does every one of them "
-    "end with the right answer, or with a status that says that it is not? The run of this page "
-    "goes on beside, so seconds in the files are no measurement."
+    "Stiff and extreme cases of every scene, whatever the settings of the page: does every one of "
+    "them end with the right answer, or with a status that says that it is not? The run of this "
+    "page goes on beside, so seconds in the files are no measurement."
 )
-CASES = {"a third of the cases": True, "all cases": False}
+CASES = {"a quarter of the cases": True, "all cases": False}
 EVERY, WRONG = "All runs", "Not right"
 HEADS = (
     "Verdict",
+    "Scene",
     "Case",
     "Method",
     "Expected",
@@ -39,7 +40,12 @@ HEADS = (
     "What the status says",
 )
 PLAIN = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding": "4px 14px"}}
-EXPECTED = {RIGHT: "right", TOLD: "right or told"}
+EXPECTED = {
+    RIGHT: "right",
+    TOLD: "right or told",
+    REFUSED: "refused",
+    UNCLEAR: "right, told or unclear",
+}
 REDRAW_EVERY = 0.5
 """Seconds: the whole table is sent each time."""
 
@@ -109,8 +115,9 @@ def matrix(rows: Sequence[Row], *, only_wrong: bool) -> str:
 def _row(row: Row) -> str:
     """Write one row; what the status says is worth the space only where it is not the answer."""
     found, case = row.outcome, row.case
-    advice = "" if row.verdict is Verdict.RIGHT else found.advice
+    advice = "" if row.verdict is Verdict.RIGHT else said(row)
     cells = [
+        escape(case.scene),
         escape(f"{case.group}: {case.name}"),
         escape(row.method),
         f"{'✓' if row.as_expected else '✗ not'} {EXPECTED[case.expected]}",
@@ -120,7 +127,7 @@ def _row(row: Row) -> str:
         number(found.error_force),
         number(found.condition_structure),
         number(found.condition_substructure),
-        escape(f"{found.warned} {advice}".strip()),
+        escape(advice),
     ]
     verdict = (
         f'<td class="verdict" style="border-left-color: {COLOURS[row.verdict]}">{row.verdict}</td>'

@@ -16,7 +16,8 @@ def discretise_bar(scene: Bar) -> Problem:
     Lengths are scaled by L, forces by ES (theory.md, 1). Rows are ordered by law: the friction
     rows of all substructures, then their left ends, then their right ends.
 
-    The search direction of the cuts and ends is ES/l_sub. On the friction points it is that of a
+    The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
+    substructure. On the friction points it is that of a
     density ES/l_sub^2 over one element's length, the same at every node: with the halved tributary
     length at the two sides of a cut, the iterations miss the figures that an independent
     implementation reports (displacement error 0.15 against 0.21 at iteration 10 of its test),
@@ -24,7 +25,7 @@ def discretise_bar(scene: Bar) -> Problem:
     """
     sizes = substructure_sizes(scene.elements, scene.substructures)
     starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
-    shapes = {size: _elasticity(size, scene.elements) for size in sorted(set(sizes))}
+    shapes: dict[tuple[int, bytes], Elasticity] = {}
     n_friction = scene.elements + len(sizes)
     left = n_friction + np.arange(len(sizes))
     right = left + len(sizes)
@@ -32,6 +33,10 @@ def discretise_bar(scene: Bar) -> Problem:
 
     parts, points = [], []
     for number, (size, start) in enumerate(zip(sizes, starts, strict=True)):
+        section = np.ones(0) if scene.section is None else scene.section[start : start + size]
+        shape = size, section.tobytes()
+        if shape not in shapes:
+            shapes[shape] = _elasticity(size, scene.elements, section)
         nodes = np.arange(start, start + size + 1)
         rows = np.concatenate([nodes + number, [left[number], right[number]]])
         inside = (
@@ -39,7 +44,7 @@ def discretise_bar(scene: Bar) -> Problem:
             if (body_force is not None)
             else None
         )
-        parts.append(Substructure(shapes[size], nodes, rows, inside))
+        parts.append(Substructure(shapes[shape], nodes, rows, inside))
         points.append(nodes)
     weights = np.concatenate([tributary(size, 1.0 / scene.elements) for size in sizes])
     node = np.concatenate(points)
@@ -58,13 +63,16 @@ def substructure_sizes(elements: int, substructures: int) -> list[int]:
     return [size + 1] * extra + [size] * (substructures - extra)
 
 
-def _elasticity(size: int, elements: int) -> Elasticity:
+def _elasticity(size: int, elements: int, section: Array) -> Elasticity:
+    """Make the operator of a substructure; `section` is empty where it is 1 throughout."""
     element = 1.0 / elements
     part = size * element
-    end = 1.0 / part
+    varies = len(section) > 0
+    end = 1.0 / part / float(np.mean(1.0 / section)) if varies else 1.0 / part
     direction = np.concatenate([np.full(size + 1, end * element / part), [end, end]])
     trace = np.concatenate([np.arange(size + 1), [0, size]])
-    return Elasticity(rod_stiffness(size, float(elements)), trace, direction)
+    stiffness = rod_stiffness(size, elements * section if varies else float(elements))
+    return Elasticity(stiffness, trace, direction)
 
 
 def _interfaces(
@@ -75,7 +83,9 @@ def _interfaces(
     bound = scene.bound[node] * lengths / scene.stiffness
     support = np.zeros_like(scene.load) if scene.support is None else scene.support
     interfaces: dict[str, Interface] = {
-        "friction": Friction(np.arange(len(node)), node, scene.nodes, lengths, bound),
+        "friction": Friction(
+            np.arange(len(node)), node, scene.nodes, lengths, bound, modulus=_modulus(scene, node)
+        ),
         "support": Dirichlet(left[:1], support[None] / scene.length),
     }
     for number in range(len(left) - 1):
@@ -83,6 +93,15 @@ def _interfaces(
         interfaces[name] = Perfect(right[number : number + 1], left[number + 1 : number + 2], one)
     interfaces["load"] = Neumann(right[-1:], scene.load[None] / scene.stiffness, one)
     return interfaces
+
+
+def _modulus(scene: Bar, node: Indices) -> Array | None:
+    """Give the stiffness around nodes: of half an element on either side, in series."""
+    if scene.section is None:
+        return None
+    soft = np.pad(1.0 / scene.section, 1, mode="edge")
+    around: Array = 2.0 / (soft[:-1] + soft[1:])
+    return around[node]
 
 
 def _scaled_body_force(scene: Bar) -> Array | None:

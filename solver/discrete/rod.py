@@ -8,25 +8,27 @@ from scipy import sparse
 from solver.discrete.problem import Array
 
 
-def rod_stiffness(elements: int, element_stiffness: float) -> sparse.csr_array:
-    """Assemble the stiffness of equal linear elements in a row.
+def rod_stiffness(elements: int, element_stiffness: float | Array) -> sparse.csr_array:
+    """Assemble the stiffness of linear elements in a row.
 
     Parameters
     ----------
     elements
         Their number.
     element_stiffness
-        ES/h of one of them.
+        ES/h of each of them, or of all alike.
 
     Returns
     -------
     Shape (elements + 1, elements + 1).
     """
-    diagonal = np.full(elements + 1, 2.0 * element_stiffness)
-    diagonal[[0, -1]] = element_stiffness
+    diagonal = np.zeros(elements + 1)
+    diagonal[:-1] = element_stiffness
+    diagonal[1:] += element_stiffness
     # Written out as it is stored: a general constructor takes ten times as long.
-    entries = np.full(3 * elements + 1, -element_stiffness)
+    entries = np.empty(3 * elements + 1)
     entries[::3] = diagonal
+    entries[1::3] = entries[2::3] = np.negative(element_stiffness)
     nodes = np.arange(elements + 1)
     columns = np.repeat(nodes, 3)[1:-1]
     columns[1::3] += 1

@@ -6,6 +6,8 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
+from numpy.linalg import LinAlgError
+
 from solver.discrete import coarser_problems
 from solver.discrete.problem import Array, Problem, space_time
 from solver.latin.acceleration import Anderson, anderson
@@ -18,7 +20,7 @@ from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import ReducedLocalStage
 from solver.reduction.basis import Reduction, References
-from solver.settings import Settings
+from solver.settings import SettingError, Settings
 
 
 def iterations(
@@ -82,7 +84,15 @@ class _Engine:
         if settings.k_update == "status" and settings.linear_stage == "full":
             self._update = DirectionUpdate(problem, k, start.course if start else None)
             k = self._update.course.k
-        self._make_stages(k)
+        try:
+            self._make_stages(k)
+        except LinAlgError:
+            raise SettingError(
+                "k_scale",
+                settings.k_scale,
+                "a k that holds every substructure in the digits of a number",
+                "bring the factors on k nearer to 1, or the sides of the elements to each other",
+            ) from None
         if start is None and settings.start == "nested":
             start = nested_start(coarser_problems(settings), settings, problem, self.k)
         stage: LinearStage[Any] = self._linear_stage

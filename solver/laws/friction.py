@@ -42,6 +42,8 @@ class Friction:
     macro
         Macro basis between two bodies, shape (n_rows, n_macro): the macro forces of both sides
         cancel each other. None on a rigid support.
+    modulus
+        Stiffness of what rubs around each row, shape (n_rows,), scaled; None where it is 1.
     """
 
     rows: Indices
@@ -51,6 +53,7 @@ class Friction:
     bound: Array
     below: Indices | None = None
     macro: sparse.csr_array | None = None
+    modulus: Array | None = None
 
     def by_point(self, values: Array) -> Array:
         """Add up values of the rows, shape (n_rows, ...), at every point, shape (n_points, ...)."""

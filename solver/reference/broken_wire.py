@@ -90,6 +90,7 @@ def _sides(scene: Strand, tension: Array) -> tuple[ClosedForm, ClosedForm]:
             bound=np.full(elements + 1, sides * scene.bound),
             support=None,
             body_force=None,
+            section=None,
         )
         solved = closed_form(side)
         assert solved is not None

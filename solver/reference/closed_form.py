@@ -64,9 +64,9 @@ def closed_form(scene: Bar) -> ClosedForm | None:
     Returns
     -------
     The solution, or None for a bar whose support moves or that carries body forces: there, the
-    normal force is no play operator of the load.
+    normal force is no play operator of the load. Also None for a bar of varying section.
     """
-    if scene.support is not None or scene.body_force is not None:
+    if scene.support is not None or scene.body_force is not None or scene.section is not None:
         return None
     nodal = _normal_force(scene, _grip_beyond(scene, 0.0, with_end=True))
     middle = _normal_force(scene, _grip_beyond(scene, 0.5))

@@ -15,7 +15,13 @@ PROFILES = {
     "falling": ((0.0, 1.8), (1.0, 0.2)),
     "gap": ((0.0, 1.0), (0.4, 1.0), (0.401, 0.0), (0.599, 0.0), (0.6, 1.0), (1.0, 1.0)),
 }
+SECTIONS = ("uniform", "rising", "falling")
+"""Of `PROFILES`, those that leave no element without a section."""
+FACTORS = 1e-8, 1e8
+LARGEST_CONTRAST = 1e8
 LARGEST_FIELD = 25_000_000
+SLACK = 1e-9
+"""Share by which rounding may exceed the largest contrast."""
 COARSEST = 6
 """Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 
@@ -185,6 +191,16 @@ class BarSettings(Settings):
         unit="m^2",
         logarithmic=True,
     )
+    section_profile = curve(
+        "uniform",
+        SECTIONS,
+        "position",
+        "factor",
+        "Factor on S along the bar, taken at the middle of every element: a preset, or points "
+        "(m, factor).",
+        group="Bar",
+        title="S along the bar",
+    )
 
     def with_change(self, name: str, value: object) -> BarSettings:
         """Change one setting; fewer elements than substructures take these down with them."""
@@ -215,6 +231,29 @@ class BarSettings(Settings):
                 raise SettingError(
                     name, table, "factors of at least 0", "raise the negative factor"
                 )
+        self._check_section()
+
+    def _check_section(self) -> None:
+        """Refuse a section that vanishes, or is too uneven for the digits of a number."""
+        table = self.section_profile
+        if isinstance(table, str):
+            return
+        factors = [factor for _, factor in table]
+        low, high = FACTORS
+        if not low <= min(factors) <= max(factors) <= high:
+            raise SettingError(
+                "section_profile",
+                table,
+                f"factors above 0, from {low:g} to {high:g}",
+                "bring the factors into this range",
+            )
+        if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
+            raise SettingError(
+                "section_profile",
+                table,
+                f"a largest factor of at most {LARGEST_CONTRAST:g} times the smallest",
+                "bring the factors nearer to each other",
+            )
 
 
 @dataclass(frozen=True)
@@ -224,7 +263,8 @@ class Bar:
     Attributes
     ----------
     length, stiffness
-        Length L, m, and axial stiffness ES, N.
+        Length L, m, and axial stiffness ES, N; where that varies, of the uniform bar that the same
+        force at both ends stretches by as much.
     elements, substructures
         Numbers of equal linear elements, and of parts that they are dealt to.
     instants, duration
@@ -237,6 +277,9 @@ class Bar:
         Displacement of the clamped end, shape (n_instants,), m.
     body_force
         Axial force per length, uniform along the bar, shape (n_instants,), N/m.
+    section
+        Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
+        of the inverse is 1.
     """
 
     length: float
@@ -249,6 +292,7 @@ class Bar:
     bound: Array
     support: Array | None
     body_force: Array | None
+    section: Array | None
 
     @property
     def nodes(self) -> Array:
@@ -262,7 +306,16 @@ class Bar:
             return None
         nodes = np.linspace(0.0, self.length, elements + 1)
         bound = np.interp(nodes, self.nodes, self.bound)
-        return replace(self, elements=elements, substructures=1, bound=bound)
+        section = self._section_between(nodes)
+        return replace(self, elements=elements, substructures=1, bound=bound, section=section)
+
+    def _section_between(self, nodes: Array) -> Array | None:
+        """Give the stiffness between other nodes, in series what the elements have there."""
+        if self.section is None:
+            return None
+        compliance = np.concatenate([[0.0], np.cumsum(1.0 / self.section)])
+        own = np.diff(np.interp(nodes, self.nodes, compliance))
+        return np.asarray(np.mean(own) / own)
 
 
 def bar(settings: BarSettings) -> Bar:
@@ -284,9 +337,10 @@ def bar(settings: BarSettings) -> Bar:
     nodes = np.linspace(0.0, settings.length, settings.elements + 1)
     mu = settings.friction * _profile(settings.friction_profile, nodes, settings.length)
     pressure = settings.pressure * _profile(settings.pressure_profile, nodes, settings.length)
+    mean, section = _section(settings)
     return Bar(
         length=settings.length,
-        stiffness=settings.young * settings.section,
+        stiffness=settings.young * settings.section * mean,
         elements=settings.elements,
         substructures=settings.substructures,
         instants=instants,
@@ -297,7 +351,19 @@ def bar(settings: BarSettings) -> Bar:
         if settings.support_displacement
         else None,
         body_force=path(settings.body_load, settings.body_force) if settings.body_force else None,
+        section=section,
     )
+
+
+def _section(settings: BarSettings) -> tuple[float, Array | None]:
+    """Give the harmonic mean of the section's factors, and every element's over that mean."""
+    if settings.section_profile == "uniform":
+        return 1.0, None
+    ends = np.linspace(0.0, settings.length, settings.elements + 1)
+    middles = 0.5 * (ends[:-1] + ends[1:])
+    factors = _profile(settings.section_profile, middles, settings.length)
+    mean = float(1.0 / np.mean(1.0 / factors))
+    return mean, factors / mean
 
 
 def _profile(profile: str | tuple[tuple[float, float], ...], nodes: Array, length: float) -> Array:

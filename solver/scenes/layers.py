@@ -14,6 +14,7 @@ class LayersSettings(PlaneSettings):
     """Settings of the stack; by default it is pressed, then its end is bent up and down."""
 
     scene = "layers"
+    across = "thickness"
 
     pressure = quantity(
         2e6,

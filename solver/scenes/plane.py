@@ -21,9 +21,15 @@ LARGEST_FIELD = 50_000_000
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
 
+FLATTEST = 1e4
+"""Longer over shorter side of an element, at most. Its stiffness varies with the square of that: at
+3e9 no digit of a substructure's is left, at 1e5 none beside a k of a millionth (measured)."""
+
 
 class PlaneSettings(Settings):
     """Settings of elastic rectangles with frictional contact; one metre thick."""
+
+    across = "height"
 
     duration = quantity(
         1.0,
@@ -201,8 +207,21 @@ class PlaneSettings(Settings):
             return self.replace(**{name: value, cut: max(value, 1)})
         return self.replace(**{name: value})
 
+    def _check_shape(self) -> None:
+        """Refuse elements so flat that their stiffness has no digits left."""
+        length: float = getattr(self, "length", 1.0)
+        height: float = getattr(self, self.across, length)
+        ratio = length * self.elements_up / (height * self.elements)
+        if not 1.0 / FLATTEST <= ratio <= FLATTEST:
+            raise SettingError(
+                self.across,
+                height,
+                f"elements of which no side is more than {FLATTEST:g} times the other",
+                f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
+            )
+
     def check_together(self) -> None:
-        """Refuse more substructures than elements, and fields or matrices beyond memory."""
+        """Refuse flat elements, too many substructures, and fields or matrices beyond memory."""
         for cut, elements in (("substructures", "elements"), ("substructures_up", "elements_up")):
             if getattr(self, cut) > getattr(self, elements):
                 raise SettingError(
@@ -211,6 +230,7 @@ class PlaneSettings(Settings):
                     f"1 to {elements} ({getattr(self, elements)})",
                     f"give fewer substructures or raise {elements}",
                 )
+        self._check_shape()
         unknowns = 2 * self.n_bodies * (self.elements + 1) * (self.elements_up + 1)
         if unknowns * self.instants > LARGEST_FIELD:
             raise SettingError(

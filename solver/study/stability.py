@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import time
 import warnings
 from collections.abc import Callable, Iterable
@@ -12,22 +11,33 @@ from itertools import islice
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import eigvals_banded
+from scipy.linalg import eigvals_banded, eigvalsh
 
 from solver.discrete import discretise
 from solver.discrete.problem import Array, Problem
 from solver.latin import Ending, Solution, iterations, solve
 from solver.latin.direction import search_direction
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NotHeldError
+from solver.reference.distance import Distance, distance_to
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.study.stability_cases import PRECISE, RIGHT, Case
+from solver.scenes.plane import PlaneSettings
+from solver.settings import SettingError
+from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, TOLD, UNCLEAR, Case, cases
+from solver.study.stability_plane import plane_cases
+from solver.study.stability_strand import strand_cases
 
 METHODS: dict[str, dict[str, object]] = {
     "default": {},
     "accelerated": {"search_direction": "auto", "acceleration": "anderson", "start": "nested"},
 }
+PLANE_METHODS: dict[str, dict[str, object]] = {
+    "default": {},
+    "paper": {"search_direction": "paper", "acceleration": "none"},
+}
+"""The defaults of the plane are the automatic k and Anderson acceleration."""
 RIGHT_UP_TO = 1e-6
 """Error of displacement and friction force up to which an answer is right."""
 WRONG_FROM = 1e-3
@@ -46,15 +56,41 @@ class Verdict(StrEnum):
     RIGHT = "right"
     NEAR = "near"
     TOLD = "told"
+    UNCLEAR = "unclear"
     FAIL = "fail"
 
 
 MEANING = {
     Verdict.RIGHT: "both errors are at most 1e-6",
     Verdict.NEAR: "called converged, with an error between 1e-6 and 1e-3",
-    Verdict.TOLD: "not the answer, and the status says so, and what to try",
+    Verdict.TOLD: "not the answer, and the status or the refusal says so, and what to try",
+    Verdict.UNCLEAR: "the reference knows several solutions or none, so that no error is judged",
     Verdict.FAIL: "not finite, a warning leaked, or called converged with an error above 1e-3",
 }
+
+
+ALLOWED = {
+    RIGHT: {Verdict.RIGHT},
+    TOLD: {Verdict.RIGHT, Verdict.TOLD},
+    UNCLEAR: {Verdict.RIGHT, Verdict.TOLD, Verdict.UNCLEAR},
+}
+"""What may come of a case, by what is expected of it."""
+LARGEST_DENSE = 2000
+"""Degrees of freedom up to which condition numbers of other than tridiagonal matrices are found."""
+
+
+def methods_of(scene: str) -> dict[str, dict[str, object]]:
+    """Give the two methods that run a scene's cases: options by name."""
+    return PLANE_METHODS if issubclass(CATALOGUE[scene].settings, PlaneSettings) else METHODS
+
+
+def cases_of(scene: str | None = None, *, quick: bool = False) -> list[Case]:
+    """Give the cases of one scene, or of all, and with `quick` only the few for a short check."""
+    return [
+        case
+        for case in (*cases(), *strand_cases(), *plane_cases())
+        if scene in (None, case.scene) and (case.quick or not quick)
+    ]
 
 
 @dataclass(frozen=True)
@@ -64,34 +100,39 @@ class Outcome:
     Attributes
     ----------
     ending, advice
-        The status.
+        The status; or `REFUSED`, and the refusal.
     iterations, seconds
         Iterations done, and what they took, set-up included, s.
     indicator, behaviour
         At the end.
     error_displacement, error_force
-        True errors, relative; absolute (m, N) where reference and load are zero.
+        True errors, relative; absolute (m, N) where reference and load are zero; NaN where they
+        are not known.
     finite
         Whether all fields are.
     warned
         First warning that leaked, or empty.
+    doubt
+        Why the reference is not the one solution, or empty.
     condition_structure, condition_substructure
-        Condition numbers of the stiffness with supports, and largest of the substructures'
-        operators K + B' k B.
+        Condition numbers of the stiffness with supports but without contact, infinite if that
+        alone holds a body, and largest of the substructures' operators K + B' k B; NaN where they
+        are too large to tell.
     """
 
-    ending: Ending
+    ending: str
     advice: str
-    iterations: int
-    seconds: float
-    indicator: float
-    behaviour: float
-    error_displacement: float
-    error_force: float
-    finite: bool
-    warned: str
-    condition_structure: float
-    condition_substructure: float
+    iterations: int = 0
+    seconds: float = 0.0
+    indicator: float = float("nan")
+    behaviour: float = float("nan")
+    error_displacement: float = float("nan")
+    error_force: float = float("nan")
+    finite: bool = True
+    warned: str = ""
+    doubt: str = ""
+    condition_structure: float = float("nan")
+    condition_substructure: float = float("nan")
 
     @property
     def error(self) -> float:
@@ -112,17 +153,22 @@ class Row:
     @property
     def as_expected(self) -> bool:
         """Whether the answer is right, or where that is allowed, known to be not."""
-        told = self.case.expected != RIGHT and self.verdict is Verdict.TOLD
-        return told or self.verdict is Verdict.RIGHT
+        if self.outcome.ending == REFUSED or self.case.expected == REFUSED:
+            return self.outcome.ending == self.case.expected == REFUSED
+        return self.verdict in ALLOWED[self.case.expected]
 
 
 def judge(outcome: Outcome) -> Verdict:
     """Judge an outcome by its numbers and its status alone."""
     if not outcome.finite or outcome.warned or not outcome.advice:
         return Verdict.FAIL
+    if outcome.ending == REFUSED:
+        return Verdict.TOLD
+    if outcome.doubt:
+        return Verdict.UNCLEAR
     if outcome.error <= RIGHT_UP_TO:
         return Verdict.RIGHT
-    if outcome.ending is not Ending.CONVERGED:
+    if outcome.ending != Ending.CONVERGED:
         return Verdict.TOLD
     return Verdict.NEAR if outcome.error <= WRONG_FROM else Verdict.FAIL
 
@@ -130,10 +176,10 @@ def judge(outcome: Outcome) -> Verdict:
 def stability(
     matrix: Iterable[Case], report: Callable[[Row], None] = lambda row: None
 ) -> list[Row]:
-    """Run cases by both methods; `report` is told of each row when it is done."""
+    """Run cases by both methods of their scene; `report` is told of each row when it is done."""
     rows = []
     for case in matrix:
-        for method in METHODS:
+        for method in methods_of(case.scene):
             outcome = run_case(case, method)
             rows.append(Row(case, method, outcome, judge(outcome)))
             report(rows[-1])
@@ -142,11 +188,13 @@ def stability(
 
 def run_case(case: Case, method: str) -> Outcome:
     """Run a case to its stop rule, and measure it."""
-    settings = BarSettings.checked({**PRECISE, **METHODS[method], **case.changes})
+    options = methods_of(case.scene)[method]
+    try:
+        settings = CATALOGUE[case.scene].settings.checked({**PRECISE, **options, **case.changes})
+    except SettingError as refusal:
+        return Outcome(REFUSED, str(refusal))
     problem = discretise(settings)
-    if case.contrast != 1.0:
-        problem = with_contrast(problem, case.contrast)
-    distance = distance_to(incremental(problem), problem)
+    distance, doubt = _reference(problem)
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as leaked:
         warnings.simplefilter("always")
@@ -160,10 +208,11 @@ def run_case(case: Case, method: str) -> Outcome:
         seconds=seconds,
         indicator=last.indicator if last else float("nan"),
         behaviour=last.behaviour if last else float("nan"),
-        error_displacement=distance.of_displacement(iterate),
-        error_force=distance.of_friction_force(iterate),
+        error_displacement=distance.of_displacement(iterate) if distance else float("nan"),
+        error_force=distance.of_friction_force(iterate) if distance else float("nan"),
         finite=_is_finite(solution),
         warned=str(leaked[0].message) if leaked else "",
+        doubt=doubt,
         condition_structure=condition_of_structure(problem),
         condition_substructure=condition_of_substructures(
             problem, search_direction(problem, settings)
@@ -171,35 +220,19 @@ def run_case(case: Case, method: str) -> Outcome:
     )
 
 
-def with_contrast(problem: Problem, contrast: float) -> Problem:
-    """Give the bar elements whose stiffness grows evenly by decades from clamp to load.
-
-    The geometric mean stays what it was. No setting makes such a bar, so its matrices are
-    scaled here; the paper's k follows the mean stiffness of each substructure.
-
-    Parameters
-    ----------
-    problem
-        A bar of equal elements.
-    contrast
-        Last over first stiffness.
-    """
-    elements = problem.n_dofs - 1
-    factors = contrast ** (np.linspace(-0.5, 0.5, elements) if elements > 1 else np.zeros(1))
-    parts = []
-    for part in problem.substructures:
-        own = factors[part.dofs[:-1]]
-        unit = -part.elasticity.stiffness.diagonal(1)
-        side = own * unit
-        diagonal = np.concatenate([side, [0.0]]) + np.concatenate([[0.0], side])
-        stiffness = sparse.diags_array([-side, diagonal, -side], offsets=[-1, 0, 1])
-        elasticity = dataclasses.replace(
-            part.elasticity,
-            stiffness=sparse.csr_array(stiffness),
-            direction=part.elasticity.direction / float(np.mean(1.0 / own)),
-        )
-        parts.append(dataclasses.replace(part, elasticity=elasticity))
-    return dataclasses.replace(problem, substructures=tuple(parts))
+def _reference(problem: Problem) -> tuple[Distance | None, str]:
+    """Give the distance to the one solution, or why there is none or more than one."""
+    try:
+        found = reference_of(problem)
+    except NotHeldError as refusal:
+        return None, str(refusal)
+    lost, several = (~found.converged).sum(), found.ambiguous.sum()
+    doubt = []
+    if lost:
+        doubt.append(f"the reference finds no solution at {lost} of {problem.n_instants} instants")
+    if several:
+        doubt.append(f"it is one of several at {several} of {problem.n_instants} instants")
+    return (None if doubt else distance_to(found, problem)), "; ".join(doubt)
 
 
 def condition_of_structure(problem: Problem) -> float:
@@ -222,15 +255,19 @@ def condition_of_substructures(problem: Problem, k: Array) -> float:
         if key not in found:
             springs = np.zeros(len(part.dofs))
             np.add.at(springs, part.elasticity.trace, k[part.rows])
-            found[key] = _condition(part.elasticity.stiffness + sparse.diags_array(springs))
+            stiffness = sparse.csr_array(part.elasticity.stiffness)
+            found[key] = _condition(sparse.csr_array(stiffness + sparse.diags_array(springs)))
     return max(found.values())
 
 
 def _condition(matrix: sparse.csr_array) -> float:
-    """Give largest over smallest eigenvalue of a tridiagonal matrix; infinite if that is zero."""
+    """Give largest over smallest eigenvalue of a symmetric matrix; infinite if that is zero."""
     size = matrix.shape[0]
     if size == 1:
         return 1.0
+    rows, columns = sparse.coo_array(matrix).coords
+    if np.abs(rows - columns).max() > 1:
+        return _condition_of_dense(matrix)
     band = np.zeros((2, size))
     band[0], band[1, :-1] = matrix.diagonal(), matrix.diagonal(1)
     first, last = (
@@ -238,6 +275,14 @@ def _condition(matrix: sparse.csr_array) -> float:
         for place in (0, size - 1)
     )
     return last / first if first > 0.0 else float("inf")
+
+
+def _condition_of_dense(matrix: sparse.csr_array) -> float:
+    if matrix.shape[0] > LARGEST_DENSE:
+        return float("nan")
+    found = eigvalsh(matrix.toarray())
+    rounding = len(found) * np.finfo(float).eps * found[-1]
+    return float(found[-1] / found[0]) if found[0] > rounding else float("inf")
 
 
 def invariance(number: int = 40) -> dict[str, float]:
@@ -287,5 +332,5 @@ def _apart(one: Array, other: Array) -> float:
 def _is_finite(solution: Solution) -> bool:
     iterate = solution.iterate
     return bool(
-        np.isfinite(iterate.displacement).all() and np.isfinite(iterate.friction_force).all()
+        np.isfinite(iterate.displacement).all() and np.isfinite(iterate.contact_force).all()
     )

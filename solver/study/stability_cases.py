@@ -1,14 +1,18 @@
-"""Stiff and extreme cases of the friction bar, and what is expected of each."""
+"""Stiff and extreme cases: what one is, and those of the friction bar."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from solver.settings import Pairs
 
 RIGHT = "right answer"
 TOLD = "right answer, or told that it is not"
+REFUSED = "refused in words"
+UNCLEAR = "right answer, or told that the reference has several or none"
 PRECISE = {"tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 SMALL = {"elements": 20, "substructures": 4, "instants": 41}
@@ -17,19 +21,17 @@ SMALL = {"elements": 20, "substructures": 4, "instants": 41}
 
 @dataclass(frozen=True)
 class Case:
-    """A run of the bar.
+    """A run of a scene.
 
     Attributes
     ----------
     group, name
         What is extreme, and how much.
     changes
-        Settings that differ from Table 1, beside `PRECISE`.
+        Settings that differ from the scene's own, beside `PRECISE`.
     expected
-        `RIGHT`, or `TOLD` where the method is known to be slow or beyond its digits.
-    contrast
-        Largest over smallest stiffness of the elements, which grows evenly by decades from the
-        clamp to the loaded end, or falls if below 1.
+        `RIGHT`; `TOLD` where the method is known to be slow or beyond its digits; `REFUSED` where
+        there is no solution; `UNCLEAR` where friction is so large that there may be several.
     quick
         Whether it is one of the few for a short check.
     """
@@ -38,14 +40,28 @@ class Case:
     name: str
     changes: Mapping[str, object] = field(default_factory=dict)
     expected: str = RIGHT
-    contrast: float = 1.0
     quick: bool = False
+    scene: str = "bar"
 
 
 def reversals(instants: int, peak: float) -> Pairs:
     """Give a load of full size that turns at every instant of a second, (s, N)."""
     step = 1.0 / (instants - 1)
     return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
+
+
+def graded(contrast: float, elements: int) -> Pairs:
+    """Give a section that grows by equal factors from element to element of a bar of 1 m.
+
+    Parameters
+    ----------
+    contrast
+        Last over first section; their geometric mean stays what it was.
+    elements
+        Number of elements.
+    """
+    factors = contrast ** np.linspace(-0.5, 0.5, elements)
+    return tuple(((i + 0.5) / elements, float(factor)) for i, factor in enumerate(factors))
 
 
 JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
@@ -61,7 +77,7 @@ QUICK = {"k_scale": (1e-6, 1e6), "young": (1.0, 1e18), "length": (1e-6, 1e4)}
 
 
 def cases() -> tuple[Case, ...]:
-    """Give the whole matrix."""
+    """Give all cases of the bar."""
     return (
         Case("Table 1", "as it is", quick=True),
         *_ranges(),
@@ -97,9 +113,8 @@ def _ranges() -> list[Case]:
         Case(
             "stiffness contrast",
             f"{value:g} towards the load",
-            {**SMALL, "start": "zero"},
-            TOLD,
-            contrast=value,
+            {**SMALL, "section_profile": graded(value, SMALL["elements"])},
+            TOLD if value in (1e4, 1e8, 1e-8) else RIGHT,
             quick=value == 1e8,
         )
         for value in contrasts

@@ -3,22 +3,32 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-from solver.study.stability import MEANING, METHODS, SAME_UP_TO, Row, Verdict
+from solver.study.stability import (
+    MEANING,
+    METHODS,
+    PLANE_METHODS,
+    SAME_UP_TO,
+    Row,
+    Verdict,
+)
 
 COLOURS = {
     Verdict.RIGHT: "#0072B2",
     Verdict.NEAR: "#56B4E9",
     Verdict.TOLD: "#E69F00",
+    Verdict.UNCLEAR: "#999999",
     Verdict.FAIL: "#D55E00",
 }
 """Okabe and Ito's palette, told apart by the colour-blind."""
 FILES = ("stability.csv", "stability.html")
 COLUMNS = (
+    "scene",
     "group",
     "case",
     "method",
@@ -72,17 +82,32 @@ def passes(rows: Sequence[Row], apart: Mapping[str, float]) -> bool:
 def line(row: Row) -> str:
     """Give one row of the console's table."""
     found, case = row.outcome, row.case
+    sizes = (
+        found.error_displacement,
+        found.error_force,
+        found.condition_structure,
+        found.condition_substructure,
+    )
     return (
-        f"{_passed(row):<5} {row.verdict:<6} {case.group + ': ' + case.name:<44} {row.method:<12} "
-        f"{found.ending:<10} {found.iterations:>5} {found.error_displacement:8.1e} "
-        f"{found.error_force:8.1e} {found.condition_structure:8.1e} "
-        f"{found.condition_substructure:8.1e} {found.seconds:6.2f} s"
+        f"{_passed(row):<5} {row.verdict:<7} {case.scene:<6} {case.group + ': ' + case.name:<44} "
+        f"{row.method:<12} {found.ending.split()[0]:<10} {found.iterations:>5} "
+        f"{' '.join(f'{_number(size):>8}' for size in sizes)} {found.seconds:6.2f} s"
     )
 
 
+def said(row: Row) -> str:
+    """Say what a run said of itself, after what it should not have said, and why it is unclear."""
+    found = row.outcome
+    return " ".join(filter(None, [found.warned, found.doubt and f"{found.doubt};", found.advice]))
+
+
+def _number(value: float, digits: str = ".1e") -> str:
+    return "-" if math.isnan(value) else f"{value:{digits}}"
+
+
 HEAD = (
-    f"{'':<5} {'':<6} {'case':<44} {'method':<12} {'status':<10} {'iter.':>5} {'error W':>8} "
-    f"{'error F':>8} {'cond. K':>8} {'cond. E':>8}"
+    f"{'':<5} {'':<7} {'scene':<6} {'case':<44} {'method':<12} {'status':<10} {'iter.':>5} "
+    f"{'error W':>8} {'error F':>8} {'cond. K':>8} {'cond. E':>8}"
 )
 
 
@@ -97,25 +122,30 @@ def summary(rows: Sequence[Row]) -> str:
 def notes(apart: Mapping[str, float]) -> list[str]:
     """Say what the words mean, and what the table does not show."""
     words = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
-    units = ", ".join(f"{found:.1e} {name}" for name, found in apart.items())
-    held = "holds" if max(apart.values()) <= SAME_UP_TO else "does not hold"
     return [
         *words,
-        "A run passes if it does not fail and, where the right answer is expected, comes to it or "
-        "near it. Errors are distances to the incremental reference, over space and time, relative "
-        "to it; to the load or absolute where it is zero.",
-        "Methods: "
-        + "; ".join(
-            f"{name}: {', '.join(f'{key}={value}' for key, value in options.items()) or 'Table 1'}"
-            for name, options in METHODS.items()
-        )
-        + ". Condition numbers: of the assembled stiffness with its support (K), and the largest "
-        "of the substructures' operators K + B' k B (E).",
-        "Stiffness contrast: no setting makes a bar of varying section; these cases scale the "
-        "matrices of the discrete problem, from the zero start, since coarser meshes of the nested "
-        "start would be uniform.",
-        f"Invariance {held}: largest relative difference of an iterate in other units, {units}.",
+        "A run passes if it does not fail and, where the right answer is expected, comes to it. "
+        "Errors are distances to the incremental reference, over space and time, relative to it; "
+        "to the load or absolute where it is zero.",
+        f"Methods of the bar and the strand: {_methods(METHODS)}. Of the block and the layers: "
+        f"{_methods(PLANE_METHODS)}. Condition numbers: of the assembled stiffness with its "
+        "support but no contact (K; infinite where contact alone holds a body), and the largest of "
+        "the substructures' operators K + B' k B (E).",
+        *([_invariance(apart)] if apart else []),
     ]
+
+
+def _methods(methods: Mapping[str, Mapping[str, object]]) -> str:
+    return "; ".join(
+        f"{name}: {', '.join(f'{key}={value}' for key, value in options.items()) or 'the defaults'}"
+        for name, options in methods.items()
+    )
+
+
+def _invariance(apart: Mapping[str, float]) -> str:
+    units = ", ".join(f"{found:.1e} {name}" for name, found in apart.items())
+    held = "holds" if max(apart.values()) <= SAME_UP_TO else "does not hold"
+    return f"Invariance {held}: largest relative difference of an iterate in other units, {units}."
 
 
 def prepare(folder: Path) -> None:
@@ -139,7 +169,7 @@ def write_report(rows: Sequence[Row], apart: Mapping[str, float], folder: Path) 
     rows
         The matrix.
     apart
-        What `invariance` found.
+        What `invariance` found; empty where it was not asked.
     folder
         An existing folder; files of these names are replaced.
 
@@ -165,6 +195,7 @@ def values(row: Row) -> dict[str, object]:
     """Give the entries of a row by column."""
     found = row.outcome
     return {
+        "scene": row.case.scene,
         "group": row.case.group,
         "case": row.case.name,
         "method": row.method,
@@ -180,7 +211,7 @@ def values(row: Row) -> dict[str, object]:
         "condition_structure": found.condition_structure,
         "condition_substructure": found.condition_substructure,
         "seconds": found.seconds,
-        "advice": f"{found.warned} {found.advice}".strip(),
+        "advice": said(row),
     }
 
 
@@ -201,7 +232,7 @@ def _row(row: Row) -> str:
             colour = COLOURS[row.verdict]
             cells.append(f'<td class="verdict" style="border-color: {colour}">{value}</td>')
         elif isinstance(value, float):
-            text = f"{value:.2f}" if column == "seconds" else f"{value:.1e}"
+            text = _number(value, ".2f" if column == "seconds" else ".1e")
             cells.append(f'<td class="number">{text}</td>')
         elif isinstance(value, int):
             cells.append(f'<td class="number">{value}</td>')

@@ -1,0 +1,109 @@
+"""Stiff and extreme cases of the scenes in the plane, and what is expected of each."""
+
+from __future__ import annotations
+
+from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR, Case, reversals
+
+BLOCK = {
+    "elements": 16,
+    "elements_up": 8,
+    "substructures": 4,
+    "substructures_up": 2,
+    "instants": 21,
+    "max_iterations": 600,
+}
+LAYERS = {
+    "elements": 24,
+    "elements_up": 2,
+    "substructures": 3,
+    "substructures_up": 1,
+    "layers": 3,
+    "instants": 17,
+    "max_iterations": 600,
+}
+PRESSED = {
+    "gap": "flat",
+    "top": "traction",
+    "top_normal_traction": -1e8,
+    "top_tangential_traction": 2e7,
+}
+"""Held by contact alone: pressed from above, then sheared by two thirds of what friction holds."""
+TILTED = {**PRESSED, "top_tangential_traction": 0.0, "top_normal_slope": 2.0}
+
+
+def plane_cases() -> tuple[Case, ...]:
+    """Give all cases of the block and of the layers."""
+    return (*_block(), *_layers())
+
+
+def _of_block(
+    group: str, name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
+) -> Case:
+    return Case(group, name, {**BLOCK, **changes}, expected, quick, "block")
+
+
+def _of_layers(
+    group: str, name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
+) -> Case:
+    return Case(group, name, {**LAYERS, **changes}, expected, quick, "layers")
+
+
+def _block() -> list[Case]:
+    case = _of_block
+    jump = [[0.0, 0.0], [0.5, 0.0], [0.55, -4e-5], [1.0, -4e-5]]
+    return [
+        case("block", "as it is", {}, quick=True),
+        case("poisson", "0.4999", {"poisson": 0.4999}, TOLD),
+        *(
+            case("friction", f"{mu:g}", {"friction": mu}, UNCLEAR if mu >= 3.0 else RIGHT, mu == 10)
+            for mu in (0.0, 1.0, 3.0, 10.0)
+        ),
+        case("friction", "10, held by contact alone", {**PRESSED, "friction": 10.0}, UNCLEAR),
+        case("height / length", "0.001", {"height": 1e-4, "elements_up": 2}, TOLD),
+        case("height / length", "100", {"height": 10.0, "elements_up": 32}, TOLD),
+        case("young", "1", {"young": 1.0}),
+        case("young", "1e18", {"young": 1e18}),
+        *(
+            case("k_scale", f"{scale:g}", {"k_scale": scale}, TOLD, scale == 1e-3)
+            for scale in (1e-3, 1e-1, 10.0, 1e3)
+        ),
+        case("instants", "1", {"instants": 1}),
+        case("instants", "2", {"instants": 2}),
+        case("substructures", "1 x 1", {"substructures": 1, "substructures_up": 1}),
+        case("substructures", "as many as elements", {"substructures": 16, "substructures_up": 8}),
+        case("gap", "flat", {"gap": "flat"}),
+        case("gap", "never closes", {"gap": [[0.0, 1.0]]}, quick=True),
+        case("load", "zero", {"top_normal_displacement": 0.0, "top_tangential_displacement": 0.0}),
+        case("load", "held by contact alone", PRESSED, TOLD, quick=True),
+        case("load", "tilts until it lifts off", TILTED, TOLD),
+        case(
+            "load",
+            "turns at every instant",
+            {"top_tangential_load": reversals(21, 2e-5)},
+        ),
+        case("load", "one jump", {"top_normal_load": jump}),
+        case("refused", "pushed beyond friction", {**PRESSED, "friction": 0.1}, REFUSED, True),
+        case("refused", "lifted", {**PRESSED, "top_normal_traction": 1e8}, REFUSED),
+        case("refused", "tipped over", {**PRESSED, "top_normal_slope": 4.0}, REFUSED),
+    ]
+
+
+def _layers() -> list[Case]:
+    case = _of_layers
+    moment = {"bending": "moment", "moment": 1e3}
+    return [
+        case("layers", "as it is", {}, TOLD, quick=True),
+        case("contrast", "1e6", {"contrast": 1e6}, TOLD, quick=True),
+        case("contrast", "1e-6", {"contrast": 1e-6}, TOLD),
+        case("friction", "0", {"friction": 0.0}, TOLD),
+        case("friction", "10", {"friction": 10.0}, UNCLEAR),
+        case("thickness / length", "0.001", {"thickness": 5e-4}, TOLD),
+        case("number", "2", {"layers": 2}),
+        case("number", "20", {"layers": 20, "elements": 12, "instants": 9}, TOLD),
+        case("load", "moment", moment, TOLD),
+        case("load", "no pressure", {"pressure": 0.0}, TOLD),
+        case("young", "1", {"young": 1.0, "pressure": 1e-5}, TOLD),
+        case("young", "1e18", {"young": 1e18, "pressure": 1e13}, TOLD),
+        case("substructures", "1", {"substructures": 1}, TOLD),
+        case("instants", "1", {"instants": 1, "bend_load": "ramp"}, TOLD),
+    ]

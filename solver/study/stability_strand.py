@@ -1,0 +1,49 @@
+"""Stiff and extreme cases of the strand, and what is expected of each."""
+
+from __future__ import annotations
+
+from solver.study.stability_cases import JUMP, REFUSED, RIGHT, TOLD, Case
+
+SMALL = {"elements": 24, "substructures": 4, "instants": 31, "max_iterations": 1000}
+
+
+def strand_cases() -> tuple[Case, ...]:
+    """Give all cases of the strand."""
+
+    def case(
+        group: str,
+        name: str,
+        changes: dict[str, object],
+        expected: str = RIGHT,
+        quick: bool = False,
+    ) -> Case:
+        return Case(group, name, {**SMALL, **changes}, expected, quick, "strand")
+
+    return (
+        case("strand", "as it is", {}, quick=True),
+        case("friction", "0, given displacement", {"friction": 0.0, "grip": "displacement"}),
+        case("friction", "1e6", {"friction": 1e6}, TOLD),
+        case("wires", "2", {"wires": 2, "broken": 1}, TOLD),
+        case("wires", "40", {"wires": 40, "broken": 20, "elements": 12, "instants": 11}, TOLD),
+        case("break", "none", {"broken": 0}, quick=True),
+        case("break", "at the clamp", {"break_position": 0.0}, TOLD),
+        case("break", "at the grip", {"break_position": 1.0, "grip": "displacement"}),
+        case("break", "an outer wire", {"broken": 1}, TOLD),
+        case("grip", "given displacement", {"grip": "displacement"}),
+        case("load", "zero", {"peak": 0.0}),
+        case("load", "one jump", {"load": JUMP, "peak": 900.0, "pressure": 9000.0}, TOLD),
+        case("refused", "pulled out", {"peak": 2000.0}, REFUSED, quick=True),
+        case("young", "1", {"young": 1.0}),
+        case("young", "1e18", {"young": 1e18}),
+        case("k_scale", "0.001", {"k_scale": 1e-3}, TOLD),
+        case("k_scale", "1000", {"k_scale": 1e3}, TOLD),
+        case("substructures", "1", {"substructures": 1}, TOLD),
+        case("substructures", "as many as elements", {"substructures": 24}, TOLD),
+        case("instants", "1", {"instants": 1, "load": "ramp"}),
+    )
+
+
+def _of_strand(
+    group: str, name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
+) -> Case:
+    return Case(group, name, {**SMALL, **changes}, expected, quick, "strand")

@@ -1,0 +1,106 @@
+"""A bar whose section varies: its stiffness, its search direction, its coarser meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from solver.discrete import discretise
+from solver.latin import solve
+from solver.reference.assembly import assembled_stiffness
+from solver.reference.closed_form import closed_form
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.scenes.bar import BarSettings, bar
+from solver.settings import SettingError
+
+SMALL = {"elements": 24, "substructures": 4, "instants": 31}
+GRADED = [[0.0, 100.0], [0.4, 1.0], [1.0, 3.0]]
+
+
+def settings(**changes):
+    return BarSettings.checked({**SMALL, **changes})
+
+
+def test_one_factor_everywhere_is_a_bar_of_that_section():
+    times_seven = settings(section_profile=[[0.0, 7.0], [1.0, 7.0]])
+    thicker = settings(section=7.0 * settings().section)
+    found, same = (incremental(discretise(one)) for one in (times_seven, thicker))
+    assert found.displacement == pytest.approx(same.displacement, rel=1e-12)
+    assert found.friction_force == pytest.approx(same.friction_force, rel=1e-12)
+
+
+def test_every_element_has_the_section_of_its_middle():
+    chosen = settings(section_profile=GRADED, length=2.0)
+    scene = bar(chosen)
+    middles = 0.5 * (scene.nodes[1:] + scene.nodes[:-1])
+    factors = np.interp(middles, *np.transpose(GRADED))
+    assert scene.stiffness * scene.section == pytest.approx(
+        chosen.young * chosen.section * factors, rel=1e-14
+    )
+    stiffness = assembled_stiffness(discretise(chosen))
+    assert -stiffness.diagonal(1) / 24 == pytest.approx(scene.section)
+    assert abs(stiffness.sum(axis=1)).max() <= 1e-13 * abs(stiffness).max()
+
+
+def test_a_bar_without_friction_stretches_by_the_mean_compliance():
+    chosen = settings(section_profile="falling", friction=0.0, load="ramp")
+    scene = bar(chosen)
+    end = incremental(discretise(chosen)).displacement[-1, -1]
+    assert end == pytest.approx(chosen.peak * scene.length / scene.stiffness)
+    assert np.mean(1.0 / scene.section) == pytest.approx(1.0)
+
+
+def test_the_paper_search_direction_follows_the_mean_stiffness_of_a_substructure():
+    even, uneven = (discretise(settings(section_profile=one)) for one in ("uniform", GRADED))
+    scene = bar(settings(section_profile=GRADED))
+    for part, other in zip(even.substructures, uneven.substructures, strict=True):
+        own = scene.section[part.dofs[:-1]]
+        harmonic = 1.0 / np.mean(1.0 / own)
+        assert other.elasticity.direction == pytest.approx(harmonic * part.elasticity.direction)
+
+
+@pytest.mark.parametrize("elements", [24, 25, 55])
+def test_coarser_meshes_are_as_compliant_between_their_nodes(elements):
+    scene = bar(settings(elements=elements, section_profile=GRADED))
+    coarse = scene.coarser()
+    assert len(coarse.section) == coarse.elements == elements // 2
+    whole, half = (
+        np.concatenate([[0.0], np.cumsum(1.0 / one.section) / one.elements])
+        for one in (scene, coarse)
+    )
+    assert half == pytest.approx(np.interp(coarse.nodes, scene.nodes, whole))
+    assert bar(settings()).coarser().section is None
+
+
+@pytest.mark.parametrize("options", [{}, {"search_direction": "auto", "start": "nested"}])
+@pytest.mark.parametrize("profile", ["rising", "falling", GRADED])
+def test_the_method_reaches_the_reference(options, profile):
+    fast = {"acceleration": "anderson", "tolerance": 1e-20, **options}
+    chosen = settings(section_profile=profile, **fast)
+    problem = discretise(chosen)
+    solution = solve(problem, chosen, distance=distance_to(incremental(problem), problem))
+    assert solution.status.ending == "converged"
+    assert solution.records[-1].error_force <= 1e-6
+
+
+def test_the_closed_form_is_for_one_section_alone():
+    assert closed_form(bar(settings())) is not None
+    assert closed_form(bar(settings(section_profile="rising"))) is None
+
+
+@pytest.mark.parametrize(
+    ("table", "allowed"),
+    [
+        ([[0.0, 1.0], [1.0, 0.0]], "above 0"),
+        ([[0.0, 1.0], [1.0, -2.0]], "above 0"),
+        ([[0.0, 1e-9]], "from 1e-08 to 1e+08"),
+        ([[0.0, 1e-4], [1.0, 1.1e4]], "at most 1e+08 times"),
+        ("gap", "uniform, rising, falling"),
+    ],
+)
+def test_a_section_that_vanishes_or_is_too_uneven_is_refused(table, allowed):
+    with pytest.raises(SettingError, match="section_profile") as refusal:
+        settings(section_profile=table)
+    assert allowed in str(refusal.value)
+    settings(section_profile=[[0.0, 1e-4], [1.0, 1e4]])
