@@ -29,7 +29,7 @@ SIZES = {
     "layers": {"elements": (1, 8), "elements_up": (1, 2), "layers": (2, 3), "instants": (1, 8)},
 }
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
-TIGHT = {"max_iterations": 400, "linear_stage": "full"}
+TIGHT = {"max_iterations": 200, "linear_stage": "full"}
 
 
 @st.composite

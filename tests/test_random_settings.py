@@ -1,6 +1,7 @@
 """Whatever the settings, a run ends with finite fields and a known status, or is refused in words.
 
 SLIPFRONT_RANDOM_RUNS=5000 makes that many runs, other ones each time, instead of the few here.
+The other scenes are in test_random_scenes.py.
 """
 
 from __future__ import annotations
