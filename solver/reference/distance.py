@@ -74,7 +74,8 @@ class Distance:
         self._displacement_size = self._norm(self._displacement) or 1.0
         force_size, load_size = self._norm(self._force), self._norm(load)
         allowed = self._norm(np.outer(bound, np.ones(len(time_weights))))
-        vanishes = force_size <= ROUNDING * min(load_size, allowed)
+        # Without a known bound it is the load alone that contact forces can vanish beside.
+        vanishes = force_size <= ROUNDING * (min(load_size, allowed) or load_size)
         self._force_size = (load_size if vanishes else force_size) or 1.0
 
     def of_displacement(self, fields: Fields) -> float:
@@ -98,15 +99,20 @@ class Distance:
 def distance_to(reference: Fields, problem: Problem) -> Distance:
     """Prepare the distance to a reference of a problem.
 
-    Where no forces are given, those that move what is prescribed are the load.
+    Where no forces are given, those that move what is prescribed are the load; and where these are
+    but rounding, because nothing resists, those that such displacements would cost elements.
     """
     forces = [law.force for law in problem.of_law(Neumann) if isinstance(law, Neumann)]
     if not forces:
         forces = [part.body_force for part in problem.substructures if part.body_force is not None]
     if not forces:
         dofs, prescribed = problem.prescribed
-        moved = assembled_stiffness(problem)[dofs[prescribed.any(axis=1)]]
+        stiffness = assembled_stiffness(problem)
+        moved = stiffness[dofs[prescribed.any(axis=1)]]
         forces = [moved @ reference.displacement / problem.scales.displacement]
+        elements = abs(stiffness[:, dofs]) @ np.abs(prescribed)
+        if np.abs(forces[0]).max(initial=0.0) <= ROUNDING * elements.max(initial=0.0):
+            forces = [elements]
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])
     return Distance(
         reference,
