@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from urllib.parse import parse_qsl, quote
 
+from solver.definitions import SettingError, parse
 from solver.files import scene_settings
-from solver.settings import SettingError, Settings, parse
+from solver.settings import Settings
 
 DEFAULT_SCENE = "bar"
 

@@ -12,7 +12,8 @@ import param
 from bokeh.models import CustomJSTickFormatter
 
 from app.points import PointsTable
-from solver.settings import Curve, Settings, about
+from solver.definitions import Curve, about
+from solver.settings import Settings
 
 POINTS = "table of points"
 LOGARITHMIC = "const v = 10 ** tick; return Number(v.toPrecision(3)).toString()"

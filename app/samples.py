@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.definitions import Curve
 from solver.loads import PRESETS, PULLS, load_path
 from solver.scenes.bar import PROFILES, BarSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
 from solver.scenes.sides import COMPONENTS, PRESCRIBED
 from solver.scenes.strand import StrandSettings
-from solver.settings import Curve, Settings
+from solver.settings import Settings
 
 INSTANTS = 9
 PLACES = 9

@@ -27,8 +27,9 @@ from app.worker.protocol import (
     Watch,
     instant_of,
 )
+from solver.definitions import about
 from solver.files import scene_settings
-from solver.settings import Settings, about
+from solver.settings import Settings
 
 PAST_RUNS = 6
 DEFAULT_PACE = 20.0

@@ -12,9 +12,10 @@ from app.address import query_of
 from app.controls import Control, make_control
 from app.samples import points_of
 from app.session import Session
+from solver.definitions import Curve, SettingError, about, read_table
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE
-from solver.settings import Curve, SettingError, Settings, about, dump, read_table
+from solver.settings import Settings, dump
 
 ORDER = (
     "Load",

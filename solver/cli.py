@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem, discretise
 from solver.files import save_result, scene_settings, settings_from_command, summary
 from solver.latin import Ending, solve
@@ -17,7 +18,6 @@ from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE
-from solver.settings import SettingError, about, allowed
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
 from solver.study.iteration_cost import print_iteration_cost

@@ -10,12 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from solver.definitions import SettingError, parse, resolve
 from solver.discrete.problem import Inside
 from solver.latin import Iterate, Solution
 from solver.laws import Friction
 from solver.reduction.basis import Reduction
 from solver.scenes import CATALOGUE
-from solver.settings import SettingError, Settings, parse, resolve
+from solver.settings import Settings
 
 
 def settings_from_toml(text: str, folder: Path | None = None) -> Settings:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.settings import Pairs
+from solver.definitions import Pairs
 
 Array = NDArray[np.float64]
 

@@ -13,6 +13,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
+    ["definitions"],
     ["settings"],
     ["loads"],
     ["laws"],

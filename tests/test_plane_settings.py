@@ -10,6 +10,7 @@ import pytest
 from plane import solved
 
 from solver.cli import main
+from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import iterations
 from solver.latin.direction import pressing_rows, search_direction, sliding_rows
@@ -18,7 +19,6 @@ from solver.scenes.block import BlockSettings, block
 from solver.scenes.equilibrium import wrench
 from solver.scenes.layers import LayersSettings, layers
 from solver.scenes.sides import PRESCRIBED
-from solver.settings import SettingError
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
 SMALL = {"elements": 8, "elements_up": 4, "instants": 11}

@@ -13,6 +13,7 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from test_random_settings import RANDOM, RUNS, WRONG, values_of
 
+from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.latin.solve import agreement
@@ -20,7 +21,6 @@ from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE
-from solver.settings import SettingError
 
 FEW = settings(RANDOM, max_examples=int(RUNS or 30))
 SIZES = {

@@ -14,13 +14,13 @@ import param
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
+from solver.definitions import Curve, SettingError
 from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.latin.solve import agreement
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings
-from solver.settings import Curve, SettingError
 
 RUNS = os.environ.get("SLIPFRONT_RANDOM_RUNS")
 RANDOM = settings(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import solve
 from solver.reference.assembly import assembled_stiffness
@@ -12,7 +13,6 @@ from solver.reference.closed_form import closed_form
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings, bar
-from solver.settings import SettingError
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 31}
 GRADED = [[0.0, 100.0], [0.4, 1.0], [1.0, 3.0]]

@@ -11,10 +11,11 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from solver.definitions import Curve, SettingError, allowed, parse
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import LARGEST_FIELD, BarSettings
-from solver.settings import Curve, SettingError, allowed, dump, parse
+from solver.settings import dump
 
 ANY = settings(
     derandomize=True, deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow]
@@ -60,6 +61,10 @@ def valid_settings(draw):
     elements = values.get("elements", BarSettings.elements)
     values["substructures"] = min(values.get("substructures", BarSettings.substructures), elements)
     assume((elements + 1) * values.get("instants", BarSettings.instants) <= LARGEST_FIELD)
+    sections = values.get("section_profile", "uniform")
+    if not isinstance(sections, str):
+        # Sections are positive, within eight decades of each other.
+        values["section_profile"] = [(place, 1.0 + abs(size) % 1e7) for place, size in sections]
     return BarSettings.checked(values)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solver.cli import main
+from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import behaviour_indicator
@@ -17,7 +18,6 @@ from solver.laws import Friction
 from solver.loads import PRESETS, PULLS
 from solver.reduction.svd import InterfaceField, decompositions, friction_spectra
 from solver.scenes.strand import LARGEST_FIELD, StrandSettings, strand
-from solver.settings import SettingError
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 PLAIN = {"search_direction": "paper", "acceleration": "none", "start": "zero"}

@@ -33,7 +33,7 @@ from app.worker.protocol import (
 )
 from app.worker.recording import References
 from app.worker.run import WorkerRun, last_iterate
-from solver.settings import SettingError
+from solver.definitions import SettingError
 
 NICENESS = 2
 """Below the server, so that pages stay alive, but not by much: the first picture of a run waits for

@@ -6,10 +6,11 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 from app.worker.rivals import find_reference
+from solver.definitions import about
 from solver.discrete import Problem
 from solver.latin import Checkpoint
 from solver.reference import incremental
-from solver.settings import Settings, about
+from solver.settings import Settings
 
 METHOD_GROUPS = frozenset({"Decomposition", "Method", "Stop"})
 """Groups of settings that lead to the same solution."""

@@ -30,6 +30,7 @@ from app.worker.recording import Recording, References
 from app.worker.resume import Resume
 from app.worker.sampler import Sampler
 from app.worker.tempo import Tempo
+from solver.definitions import SettingError
 from solver.discrete import Problem, discretise
 from solver.latin import Checkpoint, Ending, Iterate, Record, StopRules, record
 from solver.latin.indicators import latin_indicator
@@ -38,7 +39,7 @@ from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted
 from solver.scenes import CATALOGUE
-from solver.settings import SettingError, Settings
+from solver.settings import Settings
 
 PUBLISH_EVERY = 1.0 / 25.0
 """Seconds between two frames of a run that goes on by itself."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from numpy.linalg import LinAlgError
 
+from solver.definitions import SettingError
 from solver.discrete import coarser_problems
 from solver.discrete.problem import Array, Problem, space_time
 from solver.latin.acceleration import Anderson, anderson
@@ -20,7 +21,7 @@ from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import ReducedLocalStage
 from solver.reduction.basis import Reduction, References
-from solver.settings import SettingError, Settings
+from solver.settings import Settings
 
 
 def iterations(

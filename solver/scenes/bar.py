@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.loads import PRESETS, Array, interpolate, load_path
-from solver.settings import SettingError, Settings, choice, count, curve, quantity
+from solver.settings import Settings
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),

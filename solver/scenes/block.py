@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.definitions import SettingError, choice, curve, quantity, redefined
 from solver.loads import PRESETS, Array, interpolate
 from solver.scenes.equilibrium import loss_of_equilibrium
 from solver.scenes.sides import SideSettings
 from solver.scenes.stack import Given, Side, Stack, Support
-from solver.settings import SettingError, choice, curve, quantity, redefined
 
 GAPS = ("flat", "parabola")
 

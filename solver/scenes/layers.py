@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.definitions import choice, count, curve, quantity, redefined
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.stack import Given, Side, Stack
-from solver.settings import choice, count, curve, quantity, redefined
 
 
 class LayersSettings(PlaneSettings):

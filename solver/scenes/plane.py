@@ -5,16 +5,9 @@ from __future__ import annotations
 import numpy as np
 import param
 
+from solver.definitions import Pairs, SettingError, choice, count, quantity, redefined
 from solver.loads import Array, load_path
-from solver.settings import (
-    Pairs,
-    SettingError,
-    Settings,
-    choice,
-    count,
-    quantity,
-    redefined,
-)
+from solver.settings import Settings
 
 LARGEST_FIELD = 50_000_000
 """Numbers in one field over all degrees of freedom and instants; a run keeps about ten such."""

@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from solver.definitions import Parameter, choice, curve, quantity
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.stack import Given, Side
-from solver.settings import Parameter, choice, curve, quantity
 
 LOADED_SIDES = ("left", "right", "top")
 COMPONENTS = ("normal", "tangential")

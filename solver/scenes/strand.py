@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.definitions import SettingError, choice, count, curve, quantity, redefined
 from solver.loads import PULLS, Array, load_path
-from solver.settings import SettingError, Settings, choice, count, curve, quantity, redefined
+from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
 COARSEST = 6

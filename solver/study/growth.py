@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes.plane import PlaneSettings
-from solver.settings import SettingError, Settings
+from solver.settings import Settings
 from solver.study.error_against_time import INCREMENTAL, by_increments, course_of, forms_of
 from solver.study.progress import Tell, silent
 

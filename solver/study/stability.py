@@ -13,6 +13,7 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import eigvals_banded, eigvalsh
 
+from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.discrete.problem import Array, Problem
 from solver.latin import Ending, Solution, iterations, solve
@@ -24,7 +25,6 @@ from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.scenes.plane import PlaneSettings
-from solver.settings import SettingError
 from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, TOLD, UNCLEAR, Case, cases
 from solver.study.stability_plane import plane_cases
 from solver.study.stability_strand import strand_cases

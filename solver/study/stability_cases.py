@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solver.settings import Pairs
+from solver.definitions import Pairs
 
 RIGHT = "right answer"
 TOLD = "right answer, or told that it is not"

@@ -1,0 +1,295 @@
+"""Definitions of settings: which values a setting takes, and how they are read and checked.
+
+Widgets, address, command line and saved files all derive from these definitions.
+"""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import json
+import math
+import tomllib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import param
+
+Pairs = tuple[tuple[float, float], ...]
+Parameter = param.Parameter[Any]
+
+
+class SettingError(ValueError):
+    """A refused setting: the message names it, its value, the allowed range and the remedy."""
+
+    def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
+        shown = json.dumps(value, default=str)
+        shown = shown if len(shown) <= 60 else shown[:57] + "..."
+        super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
+        self.name = name
+
+
+@dataclass(frozen=True)
+class About:
+    """What a front needs to know of a setting beyond its value.
+
+    Attributes
+    ----------
+    group
+        Heading under which it stands.
+    title
+        What a widget calls it.
+    unit
+        SI unit, empty for a pure number.
+    logarithmic
+        Whether a slider over it should be logarithmic.
+    applies
+        Whether it does anything, given all the settings.
+    essential
+        Whether it stands in the open on the page, not behind "more".
+    """
+
+    group: str
+    title: str
+    unit: str = ""
+    logarithmic: bool = False
+    applies: Callable[[Any], bool] = lambda settings: True
+    essential: bool = False
+
+
+class Curve(Parameter):
+    """A path given by a preset's name or by pairs (abscissa, value), linear in between."""
+
+    __slots__ = ["abscissa", "ordinate", "presets"]
+
+    def __init__(
+        self, default: str, presets: Iterable[str], abscissa: str, ordinate: str, **rest: Any
+    ) -> None:
+        super().__init__(default=default, **rest)
+        self.presets = tuple(presets)
+        self.abscissa = abscissa
+        self.ordinate = ordinate
+
+
+def about(parameter: Parameter) -> About:
+    """Give the record of a setting's definition."""
+    found: About = parameter.metadata["about"]
+    return found
+
+
+def quantity(
+    default: float,
+    bounds: tuple[float, float],
+    slider: tuple[float, float],
+    doc: str,
+    **record: Any,
+) -> param.Number[float]:
+    """Define a real setting: hard `bounds`, and the range that a `slider` shows."""
+    return param.Number(
+        default=default,
+        bounds=bounds,
+        softbounds=slider,
+        doc=doc,
+        constant=True,
+        metadata={"about": About(**record)},
+    )
+
+
+def count(
+    default: int, bounds: tuple[int, int], slider: tuple[int, int], doc: str, **record: Any
+) -> param.Integer[int]:
+    """Define a whole-number setting."""
+    return param.Integer(
+        default=default,
+        bounds=bounds,
+        softbounds=slider,
+        doc=doc,
+        constant=True,
+        metadata={"about": About(**record)},
+    )
+
+
+def switch(default: bool, doc: str, **record: Any) -> param.Boolean[bool]:
+    """Define an on/off setting."""
+    return param.Boolean(
+        default=default, doc=doc, constant=True, metadata={"about": About(**record)}
+    )
+
+
+def choice(default: str, options: Iterable[str], doc: str, **record: Any) -> param.Selector[str]:
+    """Define a setting that is one of a few names."""
+    return param.Selector(
+        default=default,
+        objects=list(options),
+        doc=doc,
+        constant=True,
+        metadata={"about": About(**record)},
+    )
+
+
+def curve(
+    default: str, presets: Iterable[str], abscissa: str, ordinate: str, doc: str, **record: Any
+) -> Curve:
+    """Define a path: a preset's name or a table of points."""
+    return Curve(
+        default,
+        presets,
+        abscissa,
+        ordinate,
+        doc=doc,
+        constant=True,
+        metadata={"about": About(**record)},
+    )
+
+
+def redefined(definition: Any, default: object, **record: Any) -> Any:
+    """Define a setting again for some scenes, with another default and other entries of `About`."""
+    found = copy.copy(definition)
+    found.default = default
+    found.metadata = {"about": replace(about(definition), **record)}
+    return found
+
+
+def allowed(definition: Parameter) -> str:
+    """Describe in words which values a setting takes."""
+    unit = f" {about(definition).unit}" if about(definition).unit else ""
+    if isinstance(definition, Curve):
+        pairs = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
+        return f"{', '.join(definition.presets)}, or {pairs}"
+    if isinstance(definition, param.Boolean):
+        return "true or false"
+    if isinstance(definition, param.Selector):
+        return ", ".join(definition.objects)
+    low, high = definition.bounds
+    kind = "a whole number" if isinstance(definition, param.Integer) else "a number"
+    return f"{kind} from {low:g} to {high:g}{unit}"
+
+
+def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
+    """Make the refusal of a name that no setting has; it says which may have been meant."""
+    names = list(known)
+    near = difflib.get_close_matches(name, names, n=1)
+    remedy = f"did you mean {near[0]}?" if near else "correct the name or leave it out"
+    return SettingError(name, value, ", ".join(names), f"there is no such setting, {remedy}")
+
+
+def checked_value(definition: Parameter, name: str, value: object) -> Any:
+    """Give a setting's value in its own type.
+
+    Raises
+    ------
+    SettingError
+        For a wrong type, or a value out of range.
+    """
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError(name, value, allowed(definition), remedy)
+
+    if isinstance(definition, Curve):
+        return _checked_curve(definition, value, refuse)
+    if isinstance(definition, param.Boolean):
+        if not isinstance(value, bool):
+            raise refuse("write true or false")
+        return value
+    if isinstance(definition, param.Selector):
+        if value not in definition.objects:
+            raise refuse("choose one of these")
+        return value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise refuse("write a number")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise refuse("write a finite number")
+    low, high = definition.bounds
+    if not low <= value <= high:
+        raise refuse("choose a value inside this range")
+    if isinstance(definition, param.Integer):
+        if value != int(value):
+            raise refuse("write a whole number")
+        return int(value)
+    return float(value)
+
+
+def _checked_curve(
+    definition: Curve, value: object, refuse: Callable[[str], SettingError]
+) -> str | Pairs:
+    if isinstance(value, str):
+        if value not in definition.presets:
+            raise refuse("choose a preset, or give a table of points")
+        return value
+    if not isinstance(value, list | tuple) or not value:
+        raise refuse("give at least one pair")
+    pairs = []
+    for row, pair in enumerate(value, start=1):
+        if not isinstance(pair, list | tuple) or len(pair) != 2:
+            raise refuse(f"row {row} must be a pair of numbers")
+        if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in pair):
+            raise refuse(f"row {row} has an entry that is not a number")
+        if not all(math.isfinite(entry) for entry in pair if isinstance(entry, float)):
+            raise refuse(f"row {row} has an entry that is not finite")
+        if any(abs(entry) > 1e15 for entry in pair):
+            raise refuse(f"row {row} has an entry beyond 1e15 in size")
+        pairs.append((float(pair[0]), float(pair[1])))
+    for row, (before, after) in enumerate(pairwise(pairs), start=2):
+        if after[0] <= before[0]:
+            raise refuse(f"row {row}: {definition.abscissa} must increase from row to row")
+    return tuple(pairs)
+
+
+def read_table(text: str, definition: Curve, name: str, source: str) -> list[list[float]]:
+    """Read a table of two columns for a curve setting.
+
+    Parameters
+    ----------
+    text
+        CSV whose rows are abscissa, value; a first row of names is passed over.
+    definition, name, source
+        The setting it is for, and where the text comes from, used in messages.
+
+    Raises
+    ------
+    SettingError
+        For a row without exactly two numbers.
+    """
+    rows: list[list[float]] = []
+    for number, line in enumerate(text.rstrip().splitlines(), start=1):
+        cells = [cell.strip() for cell in line.split(",")]
+        if cells == [definition.abscissa, definition.ordinate] and not rows:
+            continue
+        try:
+            first, second = cells
+            rows.append([float(first), float(second)])
+        except ValueError:
+            remedy = f"line {number} is {line!r}, not two numbers"
+            raise SettingError(name, source, allowed(definition), remedy) from None
+    return rows
+
+
+def _read_file(path: Path, definition: Curve, name: str) -> list[list[float]]:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as problem:  # no text, or no path at all
+        remedy = f"it is no preset, and no readable CSV file ({type(problem).__name__})"
+        raise SettingError(name, str(path), allowed(definition), remedy) from None
+    return read_table(text, definition, name, str(path))
+
+
+def parse(text: str) -> object:
+    """Read a setting's value from text, as typed on a command line or in an address."""
+    try:
+        found: dict[str, object] = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):  # no TOML, digits beyond Python's limit, deep nesting
+        return text
+    return found["value"] if len(found) == 1 else text
+
+
+def resolve(definition: Parameter, name: str, value: object, folder: Path) -> object:
+    """Replace the name of a CSV file, sought in a folder, by its points.
+
+    Reading files is for fronts whose user owns the machine, so nothing else does it.
+    """
+    if not isinstance(definition, Curve) or not isinstance(value, str):
+        return value
+    return value if value in definition.presets else _read_file(folder / value, definition, name)
