@@ -15,7 +15,7 @@ from app.sidebar import Sidebar
 from app.words import start_line, status_line
 from app.worker.bench import Bench
 from app.worker.pool import Pool
-from app.worker.protocol import Begun
+from app.worker.protocol import Axes, Begun
 from solver.files import settings_from_toml
 from solver.latin.warm import StartChoice
 from solver.scenes.bar import BarSettings
@@ -25,7 +25,22 @@ NEARER, FARTHER = StartChoice(0.01, 1.0), StartChoice(0.5, 1.0)
 
 def recording(choice: StartChoice | None, **changes: Any) -> Recording:
     nothing = np.zeros(1, dtype=np.float32)
-    begun = Begun(1, *(nothing,) * 6, None, None, start=choice)
+    begun = Begun(
+        ticket=1,
+        interface="friction",
+        interfaces=("friction",),
+        positions=nothing,
+        instants=nothing,
+        cuts=nothing,
+        bound=nothing,
+        coefficient=None,
+        loop=Axes(("End displacement", "m"), ("Force", "N")),
+        load=nothing,
+        all_instants=nothing,
+        closed_form=None,
+        closed_form_end=None,
+        start=choice,
+    )
     settings = BarSettings.checked(changes)
     return Recording(1, settings, "peak 910 N", begun=begun, is_warm=True)
 
