@@ -36,7 +36,10 @@ WORDS = (
     "stands still while they are timed."
 )
 REPEATS = (3, 5, 9)
-NO_REFERENCE = "This scene has no reference yet to measure errors by; choose the bar."
+NO_REFERENCE = (
+    "The reference to measure errors by would take too long here: choose fewer bodies or elements, "
+    "or the command line."
+)
 
 
 class StudyReport(Report):
