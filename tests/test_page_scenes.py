@@ -79,6 +79,7 @@ def test_an_interface_is_chosen_only_where_there_are_several(open_page):
     page = open_page("?scene=block&max_iterations=5")
     expect(page.get_by_role("combobox", name="Stress")).to_be_visible(timeout=WAIT)
     expect(page.get_by_role("combobox", name="Interface")).to_have_count(0)
+    page.close()
     wires = open_page("?scene=strand&max_iterations=5")
     expect(wires.get_by_role("combobox", name="Interface")).to_be_visible(timeout=WAIT)
     expect(wires.get_by_role("combobox", name="Stress")).to_have_count(0)
@@ -106,6 +107,7 @@ def test_odd_settings_run_without_a_complaint(open_page, server):
     ):
         page = open_page(f"{query}&max_iterations=4")
         expect(status(page)).to_contain_text(re.compile("iteration [1-9]|after"), timeout=WAIT)
+        page.close()
     assert not re.search(OURS, server.log)
 
 

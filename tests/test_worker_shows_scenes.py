@@ -119,7 +119,7 @@ def test_another_interface_comes_with_what_it_stands_on_first() -> None:
     told = Told("layers")
     count = len(told.reports)
     told.run.obey(Watch(1, ALL, look=Look(interface="contact 2-3")))
-    assert [type(report) for report in told.reports[count:]] == [Begun, Unrivalled, Frame]
+    assert [type(report) for report in told.reports[count:]] == [Begun, Reference, Frame]
     told.run.obey(Watch(1, ALL, look=Look(interface="contact 2-3", phase=0.1)))
     assert isinstance(told.reports[-1], Frame)
     assert len(told.reports) == count + 4
@@ -214,7 +214,7 @@ def test_a_run_that_is_parked_goes_on_looking_where_it_did() -> None:
     run = WorkerRun(parked.order, again.append, lambda: False, References())
     while run.rest() is not None:
         run.advance()
-    assert [type(report) for report in again[:3]] == [Begun, Frame, Unrivalled]
+    assert [type(report) for report in again[:3]] == [Begun, Frame, Reference]
     frame = again[1]
     assert isinstance(frame, Frame)
     assert np.array_equal(frame.friction, told.frame.friction)
