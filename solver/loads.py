@@ -70,6 +70,11 @@ PULLS: dict[str, Callable[[Array, int], Array]] = {
 """Presets that never push, for what carries tension alone."""
 
 
+def instants_of(duration: float, number: int) -> Array:
+    """Spread instants evenly over a time interval, shape (number,), s; a single one ends it."""
+    return np.linspace(0.0, duration, number) if number > 1 else np.array([duration])
+
+
 def load_path(
     path: str | Pairs,
     instants: Array,

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import time
@@ -63,9 +64,14 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
 
 def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
     folder, variables = image
-    (command,) = [json.loads(rest) for rest in instructions("CMD")]
+    (port,) = instructions("EXPOSE")
+    with socket.socket() as free:
+        # Whoever runs the page while the tests run has the container's own port.
+        free.bind(("127.0.0.1", 0))
+        other = str(free.getsockname()[1])
+    (command,) = [json.loads(rest.replace(port, other)) for rest in instructions("CMD")]
     (health,) = instructions("HEALTHCHECK")
-    check = json.loads(health[health.index("CMD") + 3 :])
+    check = json.loads(health[health.index("CMD") + 3 :].replace(port, other))
     program = shutil.which(command[0], path=variables["PATH"])
     python = shutil.which(check[0], path=variables["PATH"])
     with (tmp_path / "log").open("w") as log:

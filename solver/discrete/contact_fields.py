@@ -89,10 +89,8 @@ def sums_of(law: Friction | Contact, field: Array) -> tuple[Array, ...]:
 
 def mean_by_point(law: Friction | Contact, values: Array) -> Array:
     """Give the mean of the pairs of every point, shape (n_points, ...)."""
-    total = np.zeros((len(law.positions), *values.shape[1:]))
-    np.add.at(total, law.points, values)
     counts = np.bincount(law.points, minlength=len(law.positions))
-    return np.asarray(total / counts.reshape(-1, *[1] * (values.ndim - 1)))
+    return np.asarray(law.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1)))
 
 
 def status_of(
@@ -113,8 +111,7 @@ def status_of(
     """
     position = jumps_of(law, displacement)[-1]
     slip = np.diff(position, axis=1, prepend=0.0)
-    total = np.zeros((len(law.positions), slip.shape[1]))
-    np.add.at(total, law.points, slip)
+    total = law.by_point(slip)
     largest = max(np.abs(displacement[rows]).max(initial=0.0) for rows in sliding_rows(law))
     if isinstance(law, Contact) and force is not None:
         # A stuck contact moves by rounding alone; but a scaled structure's compliance is near 1.

@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.laws.friction import Play
+from solver.laws.points import AtPoints
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class Contact:
+class Contact(AtPoints):
     """An interface that opens, sticks and slips.
 
     A pair is a point of the body above and the point below it; the pairs of one point (two, where
@@ -62,12 +63,6 @@ class Contact:
     friction: Array
     moduli: tuple[float, float] = (1.0, float("inf"))
     macro: sparse.csr_array | None = None
-
-    def by_point(self, values: Array) -> Array:
-        """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
-        found = np.zeros((len(self.positions), *values.shape[1:]))
-        np.add.at(found, self.points, values)
-        return found
 
 
 class ContactLaw:

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from solver.laws.points import AtPoints
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
@@ -21,7 +23,7 @@ WALK_FROM_POINTS = 150
 
 
 @dataclass(frozen=True)
-class Friction:
+class Friction(AtPoints):
     """A frictional interface with a known normal force, on a rigid support or between two bodies.
 
     Attributes
@@ -54,12 +56,6 @@ class Friction:
     below: Indices | None = None
     macro: sparse.csr_array | None = None
     modulus: Array | None = None
-
-    def by_point(self, values: Array) -> Array:
-        """Add up values of the rows, shape (n_rows, ...), at every point, shape (n_points, ...)."""
-        found = np.zeros((len(self.positions), *values.shape[1:]))
-        np.add.at(found, self.points, values)
-        return found
 
 
 class FrictionLaw:

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.loads import PRESETS, Array, interpolate, load_path
+from solver.loads import PRESETS, Array, instants_of, interpolate, load_path
 from solver.settings import Settings
 
 PROFILES = {
@@ -53,35 +54,9 @@ class BarSettings(Settings):
         applies=lambda settings: isinstance(settings.load, str),
         essential=True,
     )
-    seed = count(
-        1,
-        (0, 2**31 - 1),
-        (0, 50),
-        "Seed of the random walk: the same seed gives the same path.",
-        group="Load",
-        title="Seed",
-        applies=lambda settings: settings.load == "random",
-        essential=True,
-    )
-    duration = quantity(
-        1.0,
-        (1e-9, 1e9),
-        (0.1, 10.0),
-        "Length of the time interval. The answer does not depend on the rate.",
-        group="Load",
-        title="Duration T",
-        unit="s",
-        logarithmic=True,
-    )
-    instants = count(
-        101,
-        (1, 20_001),
-        (11, 401),
-        "Number of instants at which the problem is solved.",
-        group="Load",
-        title="Instants",
-        essential=True,
-    )
+    seed = shared.seed(lambda settings: settings.load == "random", essential=True)
+    duration = shared.duration()
+    instants = shared.instants(101)
     support_displacement = quantity(
         0.0,
         (-1e12, 1e12),
@@ -162,36 +137,9 @@ class BarSettings(Settings):
         title="Elements",
         essential=True,
     )
-    length = quantity(
-        1.0,
-        (1e-6, 1e4),
-        (0.1, 10.0),
-        "Length of the bar.",
-        group="Bar",
-        title="Length L",
-        unit="m",
-        logarithmic=True,
-    )
-    young = quantity(
-        210e9,
-        (1.0, 1e18),
-        (1e8, 1e12),
-        "Young's modulus.",
-        group="Bar",
-        title="Young's modulus E",
-        unit="Pa",
-        logarithmic=True,
-    )
-    section = quantity(
-        3.14e-6,
-        (1e-15, 100.0),
-        (1e-7, 1e-4),
-        "Area of the cross section.",
-        group="Bar",
-        title="Cross section S",
-        unit="m^2",
-        logarithmic=True,
-    )
+    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", "Bar")
+    young = shared.young("Bar")
+    section = shared.section("Area of the cross section.", "Bar")
     section_profile = curve(
         "uniform",
         SECTIONS,
@@ -326,11 +274,7 @@ def bar(settings: BarSettings) -> Bar:
     is at rest and free of stress before the first.
     """
     duration = settings.duration
-    instants = (
-        np.linspace(0.0, duration, settings.instants)
-        if settings.instants > 1
-        else np.array([duration])
-    )
+    instants = instants_of(duration, settings.instants)
 
     def path(curve: str | tuple[tuple[float, float], ...], peak: float) -> Array:
         return load_path(curve, instants, duration, peak, settings.seed)

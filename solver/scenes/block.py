@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, curve, quantity, redefined
 from solver.loads import PRESETS, Array, interpolate
 from solver.scenes.equilibrium import loss_of_equilibrium
@@ -40,26 +41,8 @@ class BlockSettings(SideSettings):
         applies=lambda settings: settings.gap == "parabola",
         essential=True,
     )
-    length = quantity(
-        0.1,
-        (1e-6, 1e4),
-        (0.01, 1.0),
-        "Length of the body.",
-        group="Body",
-        title="Length",
-        unit="m",
-        logarithmic=True,
-    )
-    height = quantity(
-        0.05,
-        (1e-6, 1e4),
-        (0.01, 1.0),
-        "Height of the body.",
-        group="Body",
-        title="Height",
-        unit="m",
-        logarithmic=True,
-    )
+    length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", "Body")
+    height = shared.size(0.05, (0.01, 1.0), "Height", "Height of the body.", "Body")
     body_force_x = quantity(
         0.0,
         (-1e15, 1e15),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+import solver.scenes.shared as shared
 from solver.definitions import choice, count, curve, quantity, redefined
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
@@ -104,25 +105,9 @@ class LayersSettings(PlaneSettings):
         title="Layers",
         essential=True,
     )
-    length = quantity(
-        0.5,
-        (1e-6, 1e4),
-        (0.05, 5.0),
-        "Length of the stack.",
-        group="Body",
-        title="Length",
-        unit="m",
-        logarithmic=True,
-    )
-    thickness = quantity(
-        0.01,
-        (1e-6, 1e4),
-        (0.001, 0.1),
-        "Thickness of one layer.",
-        group="Body",
-        title="Thickness of a layer",
-        unit="m",
-        logarithmic=True,
+    length = shared.size(0.5, (0.05, 5.0), "Length", "Length of the stack.", "Body")
+    thickness = shared.size(
+        0.01, (0.001, 0.1), "Thickness of a layer", "Thickness of one layer.", "Body"
     )
     contrast = quantity(
         1.0,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import param
 
+import solver.scenes.shared as shared
 from solver.definitions import Pairs, SettingError, choice, count, quantity, redefined
-from solver.loads import Array, load_path
+from solver.loads import Array, instants_of, load_path
 from solver.settings import Settings
 
 LARGEST_FIELD = 50_000_000
@@ -24,34 +24,9 @@ class PlaneSettings(Settings):
 
     across = "height"
 
-    duration = quantity(
-        1.0,
-        (1e-9, 1e9),
-        (0.1, 10.0),
-        "Length of the time interval. The answer does not depend on the rate.",
-        group="Load",
-        title="Duration T",
-        unit="s",
-        logarithmic=True,
-    )
-    instants = count(
-        81,
-        (1, 20_001),
-        (11, 401),
-        "Number of instants at which the problem is solved.",
-        group="Load",
-        title="Instants",
-        essential=True,
-    )
-    seed = count(
-        1,
-        (0, 2**31 - 1),
-        (0, 50),
-        "Seed of random load paths: the same seed gives the same path.",
-        group="Load",
-        title="Seed",
-        applies=lambda settings: settings.is_random,
-    )
+    duration = shared.duration()
+    instants = shared.instants(81)
+    seed = shared.seed(lambda settings: settings.is_random, essential=False)
     friction = quantity(
         0.3,
         (0.0, 10.0),
@@ -68,16 +43,7 @@ class PlaneSettings(Settings):
         group="Body",
         title="Plane",
     )
-    young = quantity(
-        210e9,
-        (1.0, 1e18),
-        (1e8, 1e12),
-        "Young's modulus.",
-        group="Body",
-        title="Young's modulus E",
-        unit="Pa",
-        logarithmic=True,
-    )
+    young = shared.young("Body")
     poisson = quantity(
         0.3,
         (0.0, 0.4999),
@@ -184,9 +150,7 @@ class PlaneSettings(Settings):
 
     def times(self) -> Array:
         """Give the instants, shape (n_instants,), s; a single one stands at the end."""
-        if self.instants == 1:
-            return np.array([self.duration])
-        return np.linspace(0.0, self.duration, self.instants)
+        return instants_of(self.duration, self.instants)
 
     def path(self, name: str, peak: float) -> Array:
         """Give a quantity over time from the setting of its path; a table has its own size."""

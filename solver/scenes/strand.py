@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity, redefined
-from solver.loads import PULLS, Array, load_path
+from solver.loads import PULLS, Array, instants_of, load_path
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -53,35 +54,9 @@ class StrandSettings(Settings):
         title="Grip",
         essential=True,
     )
-    seed = count(
-        1,
-        (0, 2**31 - 1),
-        (0, 50),
-        "Seed of the random walk: the same seed gives the same path.",
-        group="Load",
-        title="Seed",
-        applies=lambda settings: settings.load == "random",
-        essential=True,
-    )
-    duration = quantity(
-        1.0,
-        (1e-9, 1e9),
-        (0.1, 10.0),
-        "Length of the time interval. The answer does not depend on the rate.",
-        group="Load",
-        title="Duration T",
-        unit="s",
-        logarithmic=True,
-    )
-    instants = count(
-        101,
-        (1, 20_001),
-        (11, 401),
-        "Number of instants at which the problem is solved.",
-        group="Load",
-        title="Instants",
-        essential=True,
-    )
+    seed = shared.seed(lambda settings: settings.load == "random", essential=True)
+    duration = shared.duration()
+    instants = shared.instants(101)
     friction = quantity(
         0.3,
         (0.0, 1e6),
@@ -148,36 +123,9 @@ class StrandSettings(Settings):
         title="Substructures per wire",
         essential=True,
     )
-    length = quantity(
-        1.0,
-        (1e-6, 1e4),
-        (0.1, 10.0),
-        "Length of the wires.",
-        group="Strand",
-        title="Length L",
-        unit="m",
-        logarithmic=True,
-    )
-    young = quantity(
-        210e9,
-        (1.0, 1e18),
-        (1e8, 1e12),
-        "Young's modulus.",
-        group="Strand",
-        title="Young's modulus E",
-        unit="Pa",
-        logarithmic=True,
-    )
-    section = quantity(
-        3.14e-6,
-        (1e-15, 100.0),
-        (1e-7, 1e-4),
-        "Area of the cross section of a wire.",
-        group="Strand",
-        title="Cross section S",
-        unit="m^2",
-        logarithmic=True,
-    )
+    length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
+    young = shared.young("Strand")
+    section = shared.section("Area of the cross section of a wire.", "Strand")
 
     search_direction = redefined(Settings.param["search_direction"], "auto")
     acceleration = redefined(Settings.param["acceleration"], "anderson")
@@ -217,7 +165,7 @@ class StrandSettings(Settings):
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         self._check_sizes()
-        tension = _tension(self, _instants(self))
+        tension = _tension(self, instants_of(self.duration, self.instants))
         if tension.min() < 0.0:
             raise SettingError(
                 "load",
@@ -307,7 +255,7 @@ def strand(settings: StrandSettings) -> Strand:
     One instant stands at the end of the interval; more are spread evenly from 0 on, and the wires
     are at rest and free of stress before the first.
     """
-    instants = _instants(settings)
+    instants = instants_of(settings.duration, settings.instants)
     return Strand(
         length=settings.length,
         stiffness=settings.young * settings.section,
@@ -321,12 +269,6 @@ def strand(settings: StrandSettings) -> Strand:
         instants=instants,
         duration=settings.duration,
     )
-
-
-def _instants(settings: StrandSettings) -> Array:
-    if settings.instants == 1:
-        return np.array([settings.duration])
-    return np.linspace(0.0, settings.duration, settings.instants)
 
 
 def _tension(settings: StrandSettings, instants: Array) -> Array:

@@ -1,0 +1,88 @@
+"""Definitions of settings that several scenes have alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import param
+
+from solver.definitions import count, quantity
+
+
+def seed(applies: Callable[[Any], bool], *, essential: bool) -> param.Integer[int]:
+    """Define the seed of random load paths."""
+    return count(
+        1,
+        (0, 2**31 - 1),
+        (0, 50),
+        "Seed of random load paths: the same seed gives the same path.",
+        group="Load",
+        title="Seed",
+        applies=applies,
+        essential=essential,
+    )
+
+
+def duration() -> param.Number[float]:
+    """Define the length of the time interval."""
+    return quantity(
+        1.0,
+        (1e-9, 1e9),
+        (0.1, 10.0),
+        "Length of the time interval. The answer does not depend on the rate.",
+        group="Load",
+        title="Duration T",
+        unit="s",
+        logarithmic=True,
+    )
+
+
+def instants(default: int) -> param.Integer[int]:
+    """Define the number of instants."""
+    return count(
+        default,
+        (1, 20_001),
+        (11, 401),
+        "Number of instants at which the problem is solved.",
+        group="Load",
+        title="Instants",
+        essential=True,
+    )
+
+
+def size(
+    default: float, slider: tuple[float, float], title: str, doc: str, group: str
+) -> param.Number[float]:
+    """Define a length of a body."""
+    return quantity(
+        default, (1e-6, 1e4), slider, doc, group=group, title=title, unit="m", logarithmic=True
+    )
+
+
+def young(group: str) -> param.Number[float]:
+    """Define Young's modulus, that of steel by default."""
+    return quantity(
+        210e9,
+        (1.0, 1e18),
+        (1e8, 1e12),
+        "Young's modulus.",
+        group=group,
+        title="Young's modulus E",
+        unit="Pa",
+        logarithmic=True,
+    )
+
+
+def section(doc: str, group: str) -> param.Number[float]:
+    """Define the area of the cross section of a rod, that of Table 1 by default."""
+    return quantity(
+        3.14e-6,
+        (1e-15, 100.0),
+        (1e-7, 1e-4),
+        doc,
+        group=group,
+        title="Cross section S",
+        unit="m^2",
+        logarithmic=True,
+    )
