@@ -1,7 +1,8 @@
 """Measure the page in headless Chromium: `python tests/measure_page.py`.
 
 Prints medians, in ms, of opening the page until its first picture is painted, and of a key press
-on a slider until the first picture of the new run is painted.
+on a slider until the first picture of the new run is painted; and for every scene how many pictures
+of a run that goes on are painted in a second.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ import time
 from pathlib import Path
 
 from browser import Server, browser
-from playwright.sync_api import Page
+from playwright.sync_api import BrowserContext, Page
+
+from solver.scenes import CATALOGUE
 
 REPEATS = 15
 FIRST_PICTURE = """() => new Promise((resolve) => {
@@ -56,6 +59,19 @@ window.afterKey = (text) => new Promise((resolve) => {
   look()
 })"""
 
+# A run that goes on: no tolerance stops it, and nothing helps it to converge.
+ENDLESS = "tolerance=1e-30&max_iterations=100000&acceleration=none"
+SECONDS = 5
+WATCH = """(seconds) => new Promise((resolve) => {
+  const seen = new Set()
+  const end = performance.now() + 1e3 * seconds
+  const look = () => {
+    seen.add(window.findStatus().textContent)
+    if (performance.now() < end) { requestAnimationFrame(look) } else { resolve(seen.size) }
+  }
+  look()
+})"""
+
 
 def slider_latency(page: Page) -> list[float]:
     handle = page.get_by_role("slider", name="Substructures")
@@ -67,6 +83,16 @@ def slider_latency(page: Page) -> list[float]:
         handle.press(key)
         times.append(page.evaluate("window.waited"))
     return times
+
+
+def frames_per_second(context: BrowserContext, address: str) -> float:
+    page = context.new_page()
+    page.goto(address, wait_until="commit")
+    page.evaluate(FIRST_PICTURE)
+    page.wait_for_timeout(3000)
+    pictures = page.evaluate(WATCH, SECONDS)
+    page.close()
+    return float(pictures) / SECONDS
 
 
 def main() -> None:
@@ -87,6 +113,10 @@ def main() -> None:
                     page.wait_for_timeout(3000)
                     latency = slider_latency(page)
                 page.close()
+            pictures = {
+                name: frames_per_second(context, f"{server.address}?scene={name}&{ENDLESS}")
+                for name in CATALOGUE
+            }
         finally:
             server.stop()
     print(f"open to first picture: first {opened[0]:.0f}, then {statistics.median(opened[1:]):.0f}")
@@ -94,6 +124,7 @@ def main() -> None:
         f"slider to picture: median {statistics.median(latency):.0f}, "
         f"from {min(latency):.0f} to {max(latency):.0f} ({REPEATS} presses)"
     )
+    print("pictures a second: " + ", ".join(f"{name} {n:.1f}" for name, n in pictures.items()))
 
 
 if __name__ == "__main__":
