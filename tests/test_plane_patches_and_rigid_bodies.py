@@ -6,6 +6,10 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved, stress
 
+from solver.discrete import discretise
+from solver.latin import Ending, solve
+from solver.scenes.block import BlockSettings
+
 PRESSURE, SHEAR = 1e6, 4e5
 DECOMPOSITIONS = [(1, 1), (3, 2), (10, 7)]
 PATCH = {
@@ -106,6 +110,18 @@ def test_pressure_under_a_tilting_block_balances_force_and_moment(elements):
     lifted = x[fields.status[:, -1] == 2].max()
     assert 0.05 < lifted < 0.1
     assert np.all(fields.opening[x <= lifted, -1] > 0.0)
+
+
+@pytest.mark.parametrize("depth", [0.0, 4e-5])
+def test_a_body_that_never_touches_moves_as_a_whole_and_the_run_converges(depth):
+    settings = BlockSettings.checked(
+        {"gap": ((0.0, 1e-3), (0.1, 1e-3)), "top_normal_displacement": -depth, "elements": 16}
+    )
+    solution = solve(discretise(settings), settings)
+    assert solution.status.ending is Ending.CONVERGED
+    fields = solution.iterate.contact("support")
+    assert np.all(fields.status == 2)
+    np.testing.assert_allclose(fields.opening[:, -1], 1e-3 - depth, atol=1e-12)
 
 
 def test_a_wedge_of_gap_only_turns_the_block():

@@ -145,7 +145,7 @@ class _Behaviour:
 
 
 def _rounding(displacement: Array, force: Array) -> float:
-    """Give the displacement that rounding alone makes; a scaled structure's compliance is near 1.
+    """Give what rounding makes of W and F alike: a scaled structure has a compliance near 1.
 
     It knows no k, so that the indicator sees none.
     """
@@ -175,16 +175,16 @@ def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: fl
     gap_w, gap_f = 0.0, 0.0
     for law in problem.interfaces.values():
         if isinstance(law, Friction | Contact):
-            gap_f += sum(_squared(one) for one in sums_of(law, force))
+            gap_f += sum(_squared(_beyond(one, noise)) for one in sums_of(law, force))
         elif isinstance(law, Perfect):
             gap_w += _squared(
                 _beyond(displacement[law.first] - displacement[law.second], 2.0 * noise)
             )
-            gap_f += _squared(force[law.first] + force[law.second])
+            gap_f += _squared(_beyond(force[law.first] + force[law.second], noise))
         elif isinstance(law, Dirichlet):
             gap_w += _squared(_beyond(displacement[law.rows] - law.displacement, noise))
         elif isinstance(law, Neumann):
-            gap_f += _squared(force[law.rows] - law.force)
+            gap_f += _squared(_beyond(force[law.rows] - law.force, noise))
     return float(
         np.sqrt(ratio(gap_w, _squared(displacement))) + np.sqrt(ratio(gap_f, _squared(force)))
     )
