@@ -6,18 +6,22 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from solver.discrete.plane import Condensed, Kept, Rectangle, both, elastic_matrix
+from solver.discrete.elements import edge_mass, elastic_matrix
+from solver.discrete.plane import Condensed, Kept, Rectangle, both
 
 STATES = ["strain", "stress"]
 
 
-def rectangle(state="strain", poisson=0.3, columns=4, rows=3, width=0.5, height=0.25):
-    return Rectangle(columns, rows, width, height, elastic_matrix(1.0, poisson, state))
+ORDERS = [1, 2]
+
+
+def rectangle(state="strain", poisson=0.3, columns=4, rows=3, width=0.5, height=0.25, order=1):
+    return Rectangle(columns, rows, width, height, elastic_matrix(1.0, poisson, state), order)
 
 
 def places(mesh):
-    row, column = np.divmod(np.arange(mesh.n_nodes), mesh.columns + 1)
-    return np.stack([column * mesh.width, row * mesh.height], axis=1)
+    row, column = np.divmod(np.arange(mesh.n_nodes), mesh.order * mesh.columns + 1)
+    return np.stack([column * mesh.width, row * mesh.height], axis=1) / mesh.order
 
 
 def solved(mesh, held, values, force):
@@ -30,59 +34,77 @@ def solved(mesh, held, values, force):
     return found
 
 
+@pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("state", STATES)
-def test_uniform_strain_has_no_forces_inside_and_its_own_stress(state):
-    mesh = rectangle(state)
+def test_uniform_strain_has_no_forces_inside_and_its_own_stress(state, order):
+    mesh = rectangle(state, order=order)
     gradient = np.array([[0.3, -0.7], [0.2, 0.5]])
     displacement = places(mesh) @ gradient.T
     force = (mesh.stiffness @ displacement.ravel()).reshape(-1, 2)
     inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline)
     np.testing.assert_allclose(force[inner], 0.0, atol=1e-14)
     strain = [gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]]
-    expected = np.broadcast_to(mesh.elastic @ strain, (len(mesh.elements), 3))
+    expected = np.broadcast_to(mesh.elastic @ strain, (len(mesh.cells), 3))
     np.testing.assert_allclose(mesh.stress(displacement), expected, atol=1e-14)
 
 
+@pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize("state", STATES)
-def test_only_rigid_motions_cost_nothing(state):
-    sizes = np.linalg.eigvalsh(rectangle(state).stiffness.toarray())
+def test_only_rigid_motions_cost_nothing(state, order):
+    sizes = np.linalg.eigvalsh(rectangle(state, order=order).stiffness.toarray())
     assert np.all(np.abs(sizes[:3]) < 1e-14)
     assert sizes[3] > 1e-4
 
 
+@pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(("state", "factor"), [("stress", 1.0), ("strain", 1.0 / (1.0 - 0.09))])
-def test_one_thin_row_of_elements_bends_as_a_beam(state, factor):
+def test_one_thin_row_of_elements_bends_as_a_beam(state, factor, order):
     length, height, columns = 10.0, 0.1, 20
-    mesh = rectangle(state, 0.3, columns, 1, length / columns, height)
+    mesh = rectangle(state, 0.3, columns, 1, length / columns, height, order)
     left, right = mesh.edge("left"), mesh.edge("right")
     force = np.zeros((mesh.n_nodes, 2))
     moment = 1e-3
-    force[right, 0] = np.array([moment, -moment]) / height
-    found = solved(mesh, both(left), np.zeros(4), force.ravel()).reshape(-1, 2)
+    stress = np.linspace(6.0, -6.0, order + 1) * moment / height**2
+    force[right, 0] = height * edge_mass(order) @ stress
+    found = solved(mesh, both(left), np.zeros(2 * len(left)), force.ravel()).reshape(-1, 2)
     inertia = height**3 / 12.0
     assert found[right, 1].mean() == pytest.approx(
         moment * length**2 / (2.0 * factor * inertia), rel=2e-3
     )
 
 
-def test_a_nearly_incompressible_bent_beam_does_not_lock():
+@pytest.mark.parametrize("order", ORDERS)
+def test_a_nearly_incompressible_bent_beam_does_not_lock(order):
     ends = []
     for poisson in (0.3, 0.4999):
-        mesh = rectangle("strain", poisson, 20, 2, 0.5, 0.05)
-        right = mesh.edge("right")
+        mesh = rectangle("strain", poisson, 20, 2, 0.5, 0.05, order)
+        left, right = mesh.edge("left"), mesh.edge("right")
         force = np.zeros((mesh.n_nodes, 2))
-        force[right, 0] = [1.0, 0.0, -1.0]
-        found = solved(mesh, both(mesh.edge("left")), np.zeros(6), force.ravel()).reshape(-1, 2)
+        force[right[[0, -1]], 0] = [1.0, -1.0]
+        held = both(left)
+        found = solved(mesh, held, np.zeros(len(held)), force.ravel()).reshape(-1, 2)
         ends.append(found[right, 1].mean() / (1.0 - poisson**2))
     # The clamp holds the width, which stiffens a little; locking would cost more than half.
     assert ends[1] == pytest.approx(ends[0], rel=0.05)
 
 
+def test_biquadratic_elements_hold_a_linear_stress_exactly():
+    mesh = rectangle("stress", 0.3, 3, 2, order=2)
+    x, y = places(mesh).T
+    displacement = np.stack([x * y, -0.5 * (x**2 + 0.3 * y**2)], axis=1)
+    force = (mesh.stiffness @ displacement.ravel()).reshape(-1, 2)
+    inner = np.setdiff1d(np.arange(mesh.n_nodes), mesh.outline)
+    np.testing.assert_allclose(force[inner], 0.0, atol=1e-14)
+    height = y[mesh.cells].mean(axis=1)
+    np.testing.assert_allclose(mesh.stress(displacement)[:, 0], height, atol=1e-14)
+
+
+@pytest.mark.parametrize("order", ORDERS)
 @pytest.mark.parametrize(
     "sides", [("bottom",), ("left", "top"), ("left", "right", "bottom", "top")]
 )
-def test_what_is_condensed_comes_back(sides):
-    mesh = rectangle()
+def test_what_is_condensed_comes_back(sides, order):
+    mesh = rectangle(order=order)
     random = np.random.default_rng(7)
     force = random.normal(size=(2 * mesh.n_nodes, 3))
     nodes = np.unique(np.concatenate([mesh.edge(side) for side in sides]))
@@ -96,6 +118,17 @@ def test_what_is_condensed_comes_back(sides):
     np.testing.assert_allclose(
         kept.stiffness @ values - kept.condense(force), reaction[kept.dofs], atol=1e-10
     )
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_the_lengths_of_an_edge_s_nodes_integrate_as_their_rule_says(order):
+    mesh = rectangle(order=order)
+    x = places(mesh)[mesh.edge("bottom"), 0]
+    weights, end = mesh.edge_weights("bottom"), x[-1]
+    assert weights.sum() == pytest.approx(end, rel=1e-14)
+    assert weights @ x == pytest.approx(end**2 / 2.0, rel=1e-14)
+    if order == 2:
+        assert weights @ x**3 == pytest.approx(end**4 / 4.0, rel=1e-14)
 
 
 def test_a_rectangle_that_is_not_held_is_refused():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from plane import LOOK, solved
+from plane import LOOK, lengths, solved
 
 SMALL = {"elements": 16, "elements_up": 8, "instants": 11}
 
@@ -54,3 +54,24 @@ def test_near_incompressible_and_rough_blocks_are_solved():
         iterate = solved("block", violation=1e-5, **SMALL, **values)
         fields = iterate.contact("support")
         assert fields.normal_force.min() > -1e-3 * fields.normal_force.max()
+
+
+def test_tractions_of_a_nearly_incompressible_rough_block_do_not_alternate_from_node_to_node():
+    sizes = []
+    for elements in (24, 48):
+        iterate = solved(
+            "block",
+            violation=1e-7,
+            gap="flat",
+            poisson=0.4999,
+            friction=10.0,
+            interpolation="biquadratic",
+            elements=elements,
+            elements_up=elements // 2,
+            instants=1,
+        )
+        fields, along = iterate.contact("support"), lengths(iterate)[:, 0]
+        tractions = np.stack([fields.normal_force[:, -1], fields.tangential_force[:, -1]]) / along
+        alternating = np.diff(tractions, 4)[:, elements // 3 : -elements // 3] / 16.0
+        sizes.append(np.abs(alternating).max() / np.median(tractions[0]))
+    assert sizes[1] < 0.5 * sizes[0] < 1e-3

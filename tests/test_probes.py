@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from solver.discrete import Problem, discretise
+from solver.discrete.elements import von_mises
 from solver.discrete.loops import loop_of
-from solver.discrete.plane import von_mises
 from solver.discrete.probes import AxialForce, end_rotation, reaction, side_mean
 from solver.latin import Iterate, iterations
 from solver.reference.broken_wire import broken_wire

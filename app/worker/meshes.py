@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.worker.protocol import STRESSES, Mesh
-from solver.discrete.plane import von_mises
+from solver.discrete.elements import von_mises
 from solver.discrete.problem import Inside
 from solver.scenes.plane import PlaneSettings
 

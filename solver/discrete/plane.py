@@ -10,63 +10,13 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
+from solver.discrete.elements import (
+    element_stiffness,
+    projected_strain_matrix,
+    shares,
+    strain_matrix,
+)
 from solver.discrete.problem import Array, Indices
-
-GAUSS = 1.0 / np.sqrt(3.0)
-CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-
-
-def elastic_matrix(young: float, poisson: float, state: str) -> Array:
-    """Give the matrix from strains (xx, yy, 2 xy) to stresses, shape (3, 3).
-
-    `state` is "strain" or "stress" (Timoshenko and Goodier, Theory of Elasticity, 1970, ch. 2).
-    """
-    if state == "strain":
-        young, poisson = young / (1.0 - poisson**2), poisson / (1.0 - poisson)
-    factor = young / (1.0 - poisson**2)
-    shear = 0.5 * (1.0 - poisson)
-    return factor * np.array([[1.0, poisson, 0.0], [poisson, 1.0, 0.0], [0.0, 0.0, shear]])
-
-
-def von_mises(stress: Array, poisson: float, state: str) -> Array:
-    """Give von Mises' equivalent of stresses (xx, yy, xy), shape (n, 3), as shape (n,).
-
-    In plane strain the stress across the plane is Poisson's ratio times the sum of the other two.
-    """
-    xx, yy, xy = stress.T
-    zz = poisson * (xx + yy) if state == "strain" else np.zeros_like(xx)
-    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.asarray(np.sqrt(0.5 * squares + 3.0 * xy**2))
-
-
-def strain_matrix(xi: float, eta: float, width: float, height: float) -> Array:
-    """Give the matrix from nodal displacements to strains at a point, shape (3, 8)."""
-    along = 0.25 * CORNERS[:, 0] * (1.0 + eta * CORNERS[:, 1]) * 2.0 / width
-    across = 0.25 * CORNERS[:, 1] * (1.0 + xi * CORNERS[:, 0]) * 2.0 / height
-    matrix = np.zeros((3, 8))
-    matrix[0, 0::2], matrix[1, 1::2] = along, across
-    matrix[2, 0::2], matrix[2, 1::2] = across, along
-    return matrix
-
-
-def element_stiffness(width: float, height: float, elastic: Array) -> Array:
-    """Give the stiffness of a rectangular element per unit thickness, shape (8, 8).
-
-    Bilinear, with the two incompatible bending modes of each component condensed, so that thin
-    layers bend and nearly incompressible ones deform without locking (Taylor, Beresford and
-    Wilson, Int. J. Numer. Meth. Eng. 10, 1976; on rectangles it passes the patch test). Two by
-    two Gauss points. Nodes run counter-clockwise from the lower left one.
-    """
-    area = 0.25 * width * height
-    whole = np.zeros((12, 12))
-    for xi, eta in GAUSS * CORNERS:
-        bending = np.zeros((3, 4))
-        bending[0, 0] = bending[2, 1] = -2.0 * xi * 2.0 / width
-        bending[2, 2] = bending[1, 3] = -2.0 * eta * 2.0 / height
-        strain = np.hstack([strain_matrix(xi, eta, width, height), bending])
-        whole += area * strain.T @ elastic @ strain
-    stiffness = whole[:8, :8] - whole[:8, 8:] @ np.linalg.solve(whole[8:, 8:], whole[8:, :8])
-    return np.asarray(0.5 * (stiffness + stiffness.T))
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +31,8 @@ class Rectangle:
         Size of an element, scaled.
     elastic
         As of `elastic_matrix`, scaled.
+    order
+        Of the elements: 1 bilinear, 2 biquadratic.
     """
 
     columns: int
@@ -88,20 +40,32 @@ class Rectangle:
     width: float
     height: float
     elastic: Array
+    order: int = 1
 
     @property
     def n_nodes(self) -> int:
         """Number of nodes."""
-        return (self.columns + 1) * (self.rows + 1)
+        return (self.order * self.columns + 1) * (self.order * self.rows + 1)
 
     @cached_property
     def nodes(self) -> Indices:
-        """Number of every node, shape (rows + 1, columns + 1), from below."""
-        return np.arange(self.n_nodes, dtype=np.intp).reshape(self.rows + 1, self.columns + 1)
+        """Number of every node, shape (order rows + 1, order columns + 1), from below."""
+        shape = self.order * self.rows + 1, self.order * self.columns + 1
+        return np.arange(self.n_nodes, dtype=np.intp).reshape(shape)
 
     @cached_property
     def elements(self) -> Indices:
-        """Nodes of every element, counter-clockwise, shape (n_elements, 4)."""
+        """Nodes of every element, row by row, shape (n_elements, (order + 1)^2)."""
+        size = self.order + 1
+        windows = np.lib.stride_tricks.sliding_window_view(self.nodes, (size, size))
+        return np.asarray(windows[:: self.order, :: self.order].reshape(-1, size * size))
+
+    @cached_property
+    def cells(self) -> Indices:
+        """Quadrilaterals between neighbouring nodes, counter-clockwise, shape (n_cells, 4).
+
+        An element, or a quarter of a biquadratic one; row by row over the whole rectangle.
+        """
         n = self.nodes
         corners = n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]
         return np.stack([corner.ravel() for corner in corners], axis=1)
@@ -116,9 +80,9 @@ class Rectangle:
     @cached_property
     def stiffness(self) -> sparse.csc_array:
         """Stiffness of all nodes, two degrees of freedom each, shape (2 n_nodes, 2 n_nodes)."""
-        own = element_stiffness(self.width, self.height, self.elastic)
+        own = element_stiffness(self.order, self.width, self.height, self.elastic)
         dofs = both(self.elements)
-        rows, columns = np.repeat(dofs, 8, axis=1), np.tile(dofs, 8)
+        rows, columns = np.repeat(dofs, len(own), axis=1), np.tile(dofs, len(own))
         values = np.tile(own.ravel(), len(dofs))
         size = 2 * self.n_nodes
         return sparse.csc_array((values, (rows.ravel(), columns.ravel())), shape=(size, size))
@@ -134,8 +98,17 @@ class Rectangle:
         }
         return sides[side]
 
+    def edge_weights(self, side: str) -> Array:
+        """Give the length of a side that belongs to each of its nodes, scaled."""
+        upright = side in ("left", "right")
+        count, step = (self.rows, self.height) if upright else (self.columns, self.width)
+        found = np.zeros(self.order * count + 1)
+        for place, share in enumerate(shares(self.order)):
+            found[place : place + self.order * count : self.order] += step * share
+        return found
+
     def stress(self, displacement: Array) -> Array:
-        """Give stresses (xx, yy, xy) at the centres of the elements.
+        """Give stresses (xx, yy, xy) at the centres of the cells.
 
         Parameters
         ----------
@@ -144,10 +117,17 @@ class Rectangle:
 
         Returns
         -------
-        Shape (n_elements, 3), scaled. The incompatible modes have no strain at the centre.
+        Shape (n_cells, 3), scaled. The incompatible modes have no strain at the centre.
         """
-        at_centre = self.elastic @ strain_matrix(0.0, 0.0, self.width, self.height)
-        return np.asarray(displacement[self.elements].reshape(-1, 8) @ at_centre.T)
+        own = displacement[self.elements].reshape(self.rows, self.columns, -1)
+        found = np.empty((self.rows, self.order, self.columns, self.order, 3))
+        centres = (np.arange(self.order) + 0.5) * 2.0 / self.order - 1.0
+        for up, eta in enumerate(centres):
+            for along, xi in enumerate(centres):
+                at = float(xi), float(eta), self.width, self.height
+                strain = strain_matrix(1, *at) if self.order == 1 else projected_strain_matrix(*at)
+                found[:, up, :, along] = own @ (self.elastic @ strain).T
+        return found.reshape(-1, 3)
 
 
 def both(nodes: Indices) -> Indices:

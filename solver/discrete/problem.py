@@ -94,7 +94,8 @@ class Inside(Protocol):
     nodes
         Coordinates of all nodes, shape (n_nodes, 2), m.
     elements
-        Nodes of every element, counter-clockwise, shape (n_elements, 4).
+        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
+        as its four quarters.
     bodies
         Body of every element, shape (n_elements,).
     components

@@ -10,16 +10,13 @@ from numpy.polynomial.legendre import legvander
 from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
-from solver.discrete.plane import Condensed, Kept, Rectangle, both, elastic_matrix
+from solver.discrete.elements import elastic_matrix
+from solver.discrete.plane import Condensed, Kept, Rectangle, both
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
-from solver.discrete.rod import tributary
+from solver.discrete.sides import Corner, Place, along, neighbour, nodal_force
 from solver.laws import Contact, Dirichlet, Interface, Perfect
-from solver.scenes.stack import Given, Side, Stack
+from solver.scenes.stack import Side, Stack
 
-Place = tuple[int, int, int]
-"""Column and row of a substructure in its body, and the body."""
-Corner = tuple[int, int]
-"""First column and row of its elements in its body."""
 OPPOSITE = {"right": "left", "top": "bottom"}
 
 
@@ -67,11 +64,11 @@ class StackInside:
         self._length = scene.length
         self.nodes: Array = grid.positions * scene.length
         self.elements: Indices = np.concatenate(
-            [part.nodes.ravel()[part.rectangle.elements] for part in parts]
+            [part.nodes.ravel()[part.rectangle.cells] for part in parts]
         )
         self.bodies: Indices = np.repeat(
             [part.place[2] for part in parts],
-            [len(part.rectangle.elements) for part in parts],
+            [len(part.rectangle.cells) for part in parts],
         )
         self.components: Indices = skeleton % 2
         self._places = [np.searchsorted(skeleton, part.dofs) for part in parts]
@@ -114,7 +111,8 @@ class _Grid:
     """Nodes of all bodies, and where they are cut."""
 
     def __init__(self, scene: Stack) -> None:
-        (columns, rows), bodies = scene.elements, scene.bodies
+        columns, rows = (scene.order * number for number in scene.elements)
+        bodies = scene.bodies
         self.nodes = np.arange(bodies * (rows + 1) * (columns + 1)).reshape(
             bodies, rows + 1, columns + 1
         )
@@ -124,7 +122,7 @@ class _Grid:
         everywhere = np.broadcast_arrays(x, y[:, :, None])
         self.positions = np.stack(everywhere, axis=-1).reshape(-1, 2)
         across, up = (
-            np.concatenate([[0], np.cumsum(substructure_sizes(number, cuts))])
+            scene.order * np.concatenate([[0], np.cumsum(substructure_sizes(number, cuts))])
             for number, cuts in zip(scene.elements, scene.substructures, strict=True)
         )
         self.cuts = across, up
@@ -170,12 +168,14 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
         for row in range(scene.substructures[1]):
             for column in range(scene.substructures[0]):
                 x, y = across[column], up[row]
-                size = int(across[column + 1] - x), int(up[row + 1] - y)
-                shape = *size, float(scene.stiffness[body])
+                span = int(across[column + 1] - x), int(up[row + 1] - y)
+                shape = *span, float(scene.stiffness[body])
                 if shape not in shapes:
                     elastic = elastic_matrix(shape[2], scene.poisson, scene.state)
-                    shapes[shape] = Condensed(Rectangle(*size, width, height, elastic))
-                nodes = grid.nodes[body, y : y + size[1] + 1, x : x + size[0] + 1]
+                    size = span[0] // scene.order, span[1] // scene.order
+                    rectangle = Rectangle(*size, width, height, elastic, scene.order)
+                    shapes[shape] = Condensed(rectangle)
+                nodes = grid.nodes[body, y : y + span[1] + 1, x : x + span[0] + 1]
                 place = column, row, body
                 held = {
                     side: found
@@ -185,7 +185,7 @@ def _parts(scene: Stack, grid: _Grid) -> list[_Part]:
                 kind = shape, *held.items()
                 if kind not in kinds:
                     kinds[kind] = _kept(shapes[shape], held)
-                force = _nodal_force(scene, shapes[shape].rectangle, place, (int(x), int(y)))
+                force = nodal_force(scene, shapes[shape].rectangle, place, (int(x), int(y)))
                 parts.append(_Part(kinds[kind], place, (int(x), int(y)), nodes, held, {}, force))
     return parts
 
@@ -198,28 +198,13 @@ def _kept(condensed: Condensed, held: dict[str, _Held]) -> Kept:
     return Kept(condensed, np.unique(np.concatenate(edges)))
 
 
-def _neighbour(scene: Stack, place: Place, side: str) -> str | Place:
-    """Tell what lies beyond a side: a substructure, "support", or the name of an outer side."""
-    column, row, body = place
-    columns, rows = scene.substructures
-    if side in ("left", "right"):
-        beyond = column + (1 if side == "right" else -1)
-        return (beyond, row, body) if 0 <= beyond < columns else side
-    step = 1 if side == "top" else -1
-    if 0 <= row + step < rows:
-        return column, row + step, body
-    if 0 <= body + step < scene.bodies:
-        return column, 0 if step > 0 else rows - 1, body + step
-    return "support" if side == "bottom" and scene.support is not None else side
-
-
 def _held(scene: Stack, place: Place, side: str) -> _Held:
     """Tell which rows a side has: all at an interface, or those of prescribed components.
 
     A contact has none at an end where the left or right side prescribes the normal displacement:
     any pressing force would be a solution there, and so would any friction up to it.
     """
-    beyond = _neighbour(scene, place, side)
+    beyond = neighbour(scene, place, side)
     if beyond == "support" or (not isinstance(beyond, str) and beyond[2] != place[2]):
         first = place[0] == 0 and scene.sides["left"].y.prescribed
         last = place[0] == scene.substructures[0] - 1 and scene.sides["right"].y.prescribed
@@ -242,11 +227,11 @@ def _substructure(
     for side, held in part.held.items():
         dofs = 2 * rectangle.edge(side)[held.span, None] + np.array(held.components)
         trace.append(np.searchsorted(part.kept.dofs, dofs.ravel()))
-        weights = _edge_weights(rectangle, side)[held.span]
+        weights = rectangle.edge_weights(side)[held.span]
         direction.append(density * np.repeat(weights, len(held.components)))
     found = Elasticity(part.kept.stiffness, np.concatenate(trace), np.concatenate(direction))
     # Members of a group have body forces on all or on none, and see the same macro forces.
-    macro = [not isinstance(_neighbour(scene, part.place, side), str) for side in part.held]
+    macro = [not isinstance(neighbour(scene, part.place, side), str) for side in part.held]
     key = id(part.kept), part.force is not None, *macro
     return Substructure(
         elasticity=shared.setdefault(key, found),
@@ -256,17 +241,11 @@ def _substructure(
     )
 
 
-def _edge_weights(rectangle: Rectangle, side: str) -> Array:
-    if side in ("left", "right"):
-        return tributary(rectangle.rows, rectangle.height)
-    return tributary(rectangle.columns, rectangle.width)
-
-
 def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Interface]]:
     yield from _contacts(scene, parts)
     for place, part in parts.items():
         for side, opposite in OPPOSITE.items():
-            beyond = _neighbour(scene, place, side)
+            beyond = neighbour(scene, place, side)
             if isinstance(beyond, str) or beyond[2] != place[2]:
                 continue
             other = parts[beyond]
@@ -292,14 +271,15 @@ def _macro_basis(scene: Stack, n_points: int) -> Array:
 
 def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Contact]]:
     columns, rows = scene.substructures
+    x = np.linspace(0.0, scene.length, scene.order * scene.elements[0] + 1)
     for body in range(scene.bodies):
         if body == 0 and scene.support is None:
             continue
         above = [parts[column, 0, body] for column in range(columns)]
         under = [parts[column, rows - 1, body - 1] for column in range(columns)] if body else None
         spans = [part.held["bottom"].span for part in above]
-        places = [part.corner[0] + np.arange(part.rectangle.columns + 1) for part in above]
-        weights = [_edge_weights(part.rectangle, "bottom") for part in above]
+        places = [part.corner[0] + np.arange(part.nodes.shape[1]) for part in above]
+        weights = [part.rectangle.edge_weights("bottom") for part in above]
         node = np.concatenate([own[span] for own, span in zip(places, spans, strict=True)])
         found, points = np.unique(node, return_inverse=True)
         if body == 0 and scene.support is not None:
@@ -316,7 +296,7 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                 tangent=upper[:, 0],
                 below=None if lower is None else (lower[:, 1], lower[:, 0]),
                 points=points,
-                positions=np.linspace(0.0, scene.length, scene.elements[0] + 1)[found],
+                positions=x[found],
                 weights=scene.length
                 * np.concatenate([own[span] for own, span in zip(weights, spans, strict=True)]),
                 gap=gap,
@@ -335,13 +315,13 @@ def _prescribed(
 ) -> Iterable[tuple[str, Dirichlet]]:
     rows, values = [], []
     for place, part in parts.items():
-        if _neighbour(scene, place, side) != side or side not in part.held:
+        if neighbour(scene, place, side) != side or side not in part.held:
             continue
         for number, component in enumerate(part.held[side].components):
             one = (given.x, given.y)[component]
             rows.append(part.rows[side][:, number])
-            along = _along(scene, part.rectangle, place, part.corner, side, one)
-            found = one.mean + along * one.slope
+            where = along(scene, part.rectangle, place, part.corner, side, one)
+            found = one.mean + where * one.slope
             if side in ("left", "right"):
                 _settle_corners(scene, place, side, component, found)
             values.append(found / scene.length)
@@ -352,48 +332,9 @@ def _prescribed(
 def _settle_corners(scene: Stack, place: Place, side: str, component: int, found: Array) -> None:
     """Let a corner have one displacement, that of the top or bottom, if both sides prescribe it."""
     for level, node in (("bottom", 0), ("top", -1)):
-        if _neighbour(scene, place, level) != level:
+        if neighbour(scene, place, level) != level:
             continue
         other = (scene.sides[level].x, scene.sides[level].y)[component]
         if other.prescribed:
             sign = 1.0 if side == "right" else -1.0
             found[node] = other.mean + sign * other.slope
-
-
-def _along(
-    scene: Stack, rectangle: Rectangle, place: Place, corner: Corner, side: str, given: Given
-) -> Array:
-    """Give 2 s / length - 1 at the nodes of a substructure on an outer side, (n_nodes, 1)."""
-    if side in ("left", "right"):
-        body, bodies = (0, 1) if given.each_body else (place[2], scene.bodies)
-        whole = bodies * scene.elements[1]
-        first, size = body * scene.elements[1] + corner[1], rectangle.rows
-    else:
-        whole, first, size = scene.elements[0], corner[0], rectangle.columns
-    return np.asarray(2.0 * (first + np.arange(size + 1)[:, None]) / whole - 1.0)
-
-
-def _nodal_force(scene: Stack, rectangle: Rectangle, place: Place, corner: Corner) -> Array | None:
-    """Give nodal forces of tractions and body forces, scaled, (2 n_nodes, n), None without any.
-
-    Tractions vary linearly over the edge of an element, body forces are constant; both are work
-    equivalent.
-    """
-    total = np.zeros((rectangle.n_nodes, 2, len(scene.instants)))
-    for side in ("left", "right", "bottom", "top"):
-        if _neighbour(scene, place, side) != side:
-            continue
-        nodes = rectangle.edge(side)
-        step = rectangle.height if side in ("left", "right") else rectangle.width
-        for component, given in enumerate((scene.sides[side].x, scene.sides[side].y)):
-            if given.prescribed:
-                continue
-            along = _along(scene, rectangle, place, corner, side, given)
-            traction = (given.mean + along * given.slope) / scene.young
-            total[nodes[:-1], component] += step / 6.0 * (2.0 * traction[:-1] + traction[1:])
-            total[nodes[1:], component] += step / 6.0 * (traction[:-1] + 2.0 * traction[1:])
-    if scene.body_force is not None:
-        share = 0.25 * rectangle.width * rectangle.height * scene.length / scene.young
-        counts = np.bincount(rectangle.elements.ravel(), minlength=rectangle.n_nodes)
-        total += share * counts[:, None, None] * scene.body_force
-    return total.reshape(-1, len(scene.instants)) if total.any() else None

@@ -98,6 +98,7 @@ def block(settings: BlockSettings) -> Stack:
         bodies=1,
         elements=(settings.elements, settings.elements_up),
         substructures=(settings.substructures, settings.substructures_up),
+        order=settings.order,
         macro_degree=settings.macro_degree,
         young=settings.young,
         poisson=settings.poisson,
@@ -114,7 +115,7 @@ def block(settings: BlockSettings) -> Stack:
 
 def _gap(settings: BlockSettings) -> Array:
     """Give the gap at the nodes of the lowest side, m."""
-    x = np.linspace(0.0, settings.length, settings.elements + 1)
+    x = np.linspace(0.0, settings.length, settings.nodes[0])
     if not isinstance(settings.gap, str):
         return interpolate(settings.gap, x)
     if settings.gap == "flat":

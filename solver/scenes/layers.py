@@ -148,6 +148,7 @@ def layers(settings: LayersSettings) -> Stack:
         bodies=settings.layers,
         elements=(settings.elements, settings.elements_up),
         substructures=(settings.substructures, settings.substructures_up),
+        order=settings.order,
         macro_degree=settings.macro_degree,
         young=settings.young,
         poisson=settings.poisson,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import param
 
 import solver.scenes.shared as shared
@@ -56,7 +58,7 @@ class PlaneSettings(Settings):
         48,
         (2, 5000),
         (8, 192),
-        "Number of bilinear elements along a body, equal in size.",
+        "Number of elements along a body, equal in size.",
         group="Body",
         title="Elements along",
         essential=True,
@@ -68,6 +70,14 @@ class PlaneSettings(Settings):
         "Number of elements over the height of a body.",
         group="Body",
         title="Elements up",
+    )
+    interpolation = choice(
+        "bilinear",
+        ["bilinear", "biquadratic"],
+        "Bilinear elements with incompatible modes, or biquadratic ones, with twice as many nodes "
+        "each way: for smooth tractions of nearly incompressible bodies.",
+        group="Body",
+        title="Elements",
     )
     substructures: param.Integer[int] = redefined(
         Settings.param["substructures"],
@@ -127,9 +137,19 @@ class PlaneSettings(Settings):
         return 1
 
     @property
+    def order(self) -> int:
+        """Order of the elements: 1 bilinear, 2 biquadratic."""
+        return 2 if self.interpolation == "biquadratic" else 1
+
+    @property
+    def nodes(self) -> tuple[int, int]:
+        """Number of nodes of one body, along and up."""
+        return self.order * self.elements + 1, self.order * self.elements_up + 1
+
+    @property
     def n_jumps(self) -> int:
         """Components of all contacts, which a reference condenses."""
-        return 2 * max(self.n_bodies - 1, 1) * (self.elements + 1)
+        return 2 * max(self.n_bodies - 1, 1) * self.nodes[0]
 
     @property
     def n_substructures(self) -> int:
@@ -188,7 +208,7 @@ class PlaneSettings(Settings):
                     f"give fewer substructures or raise {elements}",
                 )
         self._check_shape()
-        unknowns = 2 * self.n_bodies * (self.elements + 1) * (self.elements_up + 1)
+        unknowns = 2 * self.n_bodies * math.prod(self.nodes)
         if unknowns * self.instants > LARGEST_FIELD:
             raise SettingError(
                 "instants",
@@ -198,7 +218,7 @@ class PlaneSettings(Settings):
             )
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)
-        if 8 * columns * rows * (columns + rows) > LARGEST_MATRIX:
+        if 8 * self.order**3 * columns * rows * (columns + rows) > LARGEST_MATRIX:
             raise SettingError(
                 "substructures",
                 self.substructures,

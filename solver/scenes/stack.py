@@ -44,7 +44,7 @@ class Support:
     Attributes
     ----------
     gap
-        Opening at the nodes of the lowest side, shape (elements along + 1,), m.
+        Opening at the nodes of the lowest side, shape (nodes along,), m.
     friction
         Coefficient mu.
     """
@@ -65,6 +65,8 @@ class Stack:
         Their number.
     elements, substructures
         Of one body, along and up.
+    order
+        Of the elements: 1 bilinear, 2 biquadratic.
     macro_degree
         Of the macro basis on each side of a substructure.
     young, poisson, state
@@ -89,6 +91,7 @@ class Stack:
     bodies: int
     elements: tuple[int, int]
     substructures: tuple[int, int]
+    order: int
     macro_degree: int
     young: float
     poisson: float

@@ -54,6 +54,12 @@ def _block() -> list[Case]:
     return [
         case("block", "as it is", {}, quick=True),
         case("poisson", "0.4999", {"poisson": 0.4999}, TOLD),
+        case(
+            "poisson",
+            "0.4999, biquadratic",
+            {"poisson": 0.4999, "interpolation": "biquadratic", "elements": 12, "elements_up": 6},
+            TOLD,
+        ),
         *(
             case("friction", f"{mu:g}", {"friction": mu}, UNCLEAR if mu >= 3.0 else RIGHT, mu == 10)
             for mu in (0.0, 1.0, 3.0, 10.0)
