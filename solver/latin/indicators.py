@@ -77,7 +77,7 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> Behavio
     """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     noise = _rounding(displacement, force)
     found = [_Behaviour(law, displacement, force, noise) for law in problem.rubbing.values()]
-    energy = _elastic_energy(problem, displacement, force) + sum(
+    energy = _elastic_energy(problem, displacement, _beyond(force, noise)) + sum(
         float(one.dissipated.sum()) for one in found
     )
     allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
