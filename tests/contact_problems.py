@@ -123,6 +123,7 @@ def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, s
         elements=elements,
         substructures=cuts,
         macro_degree=1,
+        order=1,
         young=1e9,
         poisson=0.3,
         state="strain",

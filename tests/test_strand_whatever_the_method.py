@@ -22,6 +22,7 @@ from solver.scenes.strand import LARGEST_FIELD, StrandSettings, strand
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 PLAIN = {"search_direction": "paper", "acceleration": "none", "start": "zero"}
 TIGHT = {"tolerance": 1e-16, "max_iterations": 4000}
+PGD = {"linear_stage": "pgd", "pgd_enrichment": 0.0}
 FAST = {"search_direction": "auto", "acceleration": "anderson"}
 
 
@@ -56,7 +57,7 @@ def apart(one, other):
         {"relaxation": 0.6, "k_scale": 2.0},
         {**FAST, "start": "nested"},
         {"search_direction": "auto", "start": "nested"},
-        {"linear_stage": "pgd", "pgd_modes": 60, "pgd_tolerance": 1e-14, "pgd_enrichment": 0.0},
+        {**PGD, "pgd_modes": 60, "pgd_tolerance": 1e-14, "tolerance": 1e-14},
         {"substructures": 1, "acceleration": "anderson"},
         {"substructures": 2, **FAST},
         {"substructures": 7, **FAST},

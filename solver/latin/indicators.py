@@ -34,6 +34,9 @@ def latin_indicator(iterate: Iterate) -> float:
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 """Share of the largest displacement, or of that under the largest force, that rounding blurs."""
 
+STILL = 1e-6
+"""Share of what the largest force does to one element, below which a structure does not move."""
+
 
 @dataclass(frozen=True)
 class BehaviourIndicator:
@@ -42,10 +45,11 @@ class BehaviourIndicator:
     Attributes
     ----------
     total
-        Violation of friction as a share of the energy in play, plus the relative gap of
-        displacements and of forces at all other interfaces; over the share of the largest force
-        that friction can carry, if below one, so that a small friction force is held to the same
-        standard. Zero if and only if all laws hold, up to the rounding of the fields.
+        Violation of friction at the interface where it is worst, as a share of the energy in play
+        per interface with friction, plus the relative gap of displacements and of forces at all
+        other interfaces; over the share of the largest force that friction can carry, if below
+        one, so that a small friction force is held to the same standard. Zero if and only if all
+        laws hold, up to the rounding of the fields.
     map
         Local violation of friction, shape (n_points, n_instants), a share of the energy in play
         for each point and instant, times their number: 1 means as much as the mean energy.
@@ -84,7 +88,8 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> Behavio
     mean_slip = ratio(energy, allowance)
     maps = [one.violation(mean_slip) for one in found]
     map_ = np.concatenate(maps)
-    total = ratio(float(map_.sum()), energy)
+    # Against the mean energy per interface, so that many that hold do not hide one that does not.
+    total = ratio(len(maps) * max(float(one.sum()) for one in maps), energy)
     map_ *= ratio(map_.size, energy) if energy else 0.0
     total += _gap_of_bonds(problem, displacement, force, noise)
     return BehaviourIndicator(total / _share_of_friction(problem, force), map_)
@@ -147,9 +152,13 @@ class _Behaviour:
 def _rounding(displacement: Array, force: Array) -> float:
     """Give what rounding makes of W and F alike: a scaled structure has a compliance near 1.
 
-    It knows no k, so that the indicator sees none.
+    It knows no k, so that the indicator sees none. Where friction holds every point that is loaded
+    nothing moves at all, and what little the iterate still moves is none either.
     """
-    return ROUNDING * float(np.abs(displacement).max() + np.abs(force).max())
+    moved, pulled = float(np.abs(displacement).max()), float(np.abs(force).max())
+    if moved <= STILL * pulled / len(force):
+        return max(moved, ROUNDING * pulled)
+    return ROUNDING * (moved + pulled)
 
 
 def _beyond(field: Array, noise: float) -> Array:
