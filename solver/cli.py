@@ -12,12 +12,19 @@ from pathlib import Path
 
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem, discretise
-from solver.files import save_result, scene_settings, settings_from_command, summary
-from solver.latin import Ending, solve
+from solver.files import (
+    remarks,
+    save_result,
+    scene_settings,
+    settings_from_command,
+    summary,
+)
+from solver.latin import Ending, Solution, solve
 from solver.reference.choice import reference_of
-from solver.reference.condensation import NotHeldError
+from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE
+from solver.settings import Settings
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
 from solver.study.iteration_cost import print_iteration_cost
@@ -40,6 +47,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SettingError as refusal:
         print(f"slipfront: {refusal}", file=sys.stderr)
         return REFUSED
+    except NoReferenceError as refusal:
+        print(f"slipfront: there is nothing to compare with: {refusal}", file=sys.stderr)
+        return REFUSED
     except BrokenPipeError:
         # Whoever reads has enough (as with "| head"); Python must not complain at its own end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -55,6 +65,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     run.add_argument("--out", type=Path, metavar="FILE.npz", help="write the result here")
     run.add_argument("--json", action="store_true", help="print the key figures as JSON")
+    run.add_argument(
+        "--no-reference",
+        action="store_false",
+        dest="reference",
+        help="do without errors, and without the time of the incremental solver",
+    )
     run.set_defaults(command=_run)
     scenes = commands.add_parser("scenes", help="list the scenes")
     scenes.set_defaults(command=_scenes)
@@ -89,14 +105,42 @@ def _parser() -> argparse.ArgumentParser:
 
 def _run(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
-    if chosen.out is not None and (chosen.out.is_dir() or not chosen.out.parent.is_dir()):
-        raise SettingError("--out", str(chosen.out), "a file in an existing folder", "make it")
-    problem = discretise(settings)
-    solution = solve(problem, settings, distance=_distance(problem))
-    figures = summary(settings, solution)
     if chosen.out is not None:
-        save_result(chosen.out, settings, solution)
-    if chosen.json:
+        _check_file(chosen.out)
+    for remark in remarks(settings, chosen.changes):
+        print(f"slipfront: {remark}", file=sys.stderr)
+    problem = discretise(settings)
+    distance = _distance(problem) if chosen.reference else None
+    solution = solve(problem, settings, distance=distance)
+    _print_figures(settings, solution, chosen.json)
+    if chosen.out is not None:
+        try:
+            save_result(chosen.out, settings, solution)
+        except OSError as problem_there:
+            raise _refused_file(chosen.out, problem_there) from None
+    return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _check_file(path: Path) -> None:
+    """Refuse a file that cannot be written, before the run and not after it."""
+    existed = path.exists()
+    try:
+        path.open("ab").close()
+    except OSError as problem:
+        raise _refused_file(path, problem) from None
+    if not existed:
+        path.unlink()
+
+
+def _refused_file(path: Path, problem: OSError) -> SettingError:
+    reason = problem.strerror or type(problem).__name__
+    allowed_file = "a file in an existing folder that can be written"
+    return SettingError("--out", str(path), allowed_file, reason)
+
+
+def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> None:
+    figures = summary(settings, solution)
+    if as_json:
         plain = {
             name: None if isinstance(value, float) and not math.isfinite(value) else value
             for name, value in figures.items()
@@ -105,14 +149,13 @@ def _run(chosen: argparse.Namespace) -> int:
     else:
         for name, value in figures.items():
             print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
-    return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
 def _distance(problem: Problem) -> Distance | None:
-    """Give the distance to the reference, or None where contact alone cannot hold the bodies."""
+    """Give the distance to the reference, or None where there is none."""
     try:
         return distance_to(reference_of(problem), problem)
-    except NotHeldError as refusal:
+    except NoReferenceError as refusal:
         print(f"slipfront: no errors are known: {refusal}", file=sys.stderr)
         return None
 
@@ -134,7 +177,13 @@ def _settings(chosen: argparse.Namespace) -> int:
     return 0
 
 
+def _check_repeats(chosen: argparse.Namespace) -> None:
+    if chosen.repeats < 1:
+        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+
+
 def _benchmark(chosen: argparse.Namespace) -> int:
+    _check_repeats(chosen)
     measure = print_reduction_cost if chosen.reduction else print_iteration_cost
     measure(chosen.repeats)
     return 0
@@ -167,8 +216,7 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 def _study(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
-    if chosen.repeats < 1:
-        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+    _check_repeats(chosen)
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
         found = error_against_time(settings, chosen.repeats)

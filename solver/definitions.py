@@ -6,6 +6,7 @@ Widgets, address, command line and saved files all derive from these definitions
 from __future__ import annotations
 
 import copy
+import csv
 import difflib
 import json
 import math
@@ -244,7 +245,8 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
     Parameters
     ----------
     text
-        CSV whose rows are abscissa, value; a first row of names is passed over.
+        CSV whose rows are abscissa, value; a first row of their names and empty lines are passed
+        over.
     definition, name, source
         The setting it is for, and where the text comes from, used in messages.
 
@@ -254,16 +256,23 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
         For a row without exactly two numbers.
     """
     rows: list[list[float]] = []
-    for number, line in enumerate(text.rstrip().splitlines(), start=1):
-        cells = [cell.strip() for cell in line.split(",")]
-        if cells == [definition.abscissa, definition.ordinate] and not rows:
+    lines = text.splitlines()
+    try:
+        table = list(csv.reader(lines))
+    except csv.Error as problem:
+        raise SettingError(name, source, allowed(definition), str(problem)) from None
+    for number, cells in enumerate(table, start=1):
+        names = [cell.strip().lower() for cell in cells]
+        if not any(names) or (not rows and names == [definition.abscissa, definition.ordinate]):
             continue
         try:
             first, second = cells
             rows.append([float(first), float(second)])
         except ValueError:
-            remedy = f"line {number} is {line!r}, not two numbers"
+            remedy = f"line {number} is {lines[number - 1]!r}, not two numbers"
             raise SettingError(name, source, allowed(definition), remedy) from None
+    if not rows:
+        raise SettingError(name, source, allowed(definition), "it has no points")
     return rows
 
 
@@ -290,6 +299,6 @@ def resolve(definition: Parameter, name: str, value: object, folder: Path) -> ob
 
     Reading files is for fronts whose user owns the machine, so nothing else does it.
     """
-    if not isinstance(definition, Curve) or not isinstance(value, str):
+    if not isinstance(definition, Curve) or not isinstance(value, str) or not value:
         return value
     return value if value in definition.presets else _read_file(folder / value, definition, name)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.definitions import SettingError, parse, resolve
+from solver.definitions import Curve, SettingError, parse, resolve
 from solver.discrete.problem import Inside
 from solver.latin import Iterate, Solution
 from solver.laws import Friction
@@ -19,7 +19,9 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 
-def settings_from_toml(text: str, folder: Path | None = None) -> Settings:
+def settings_from_toml(
+    text: str, folder: Path | None = None, source: str = "settings file"
+) -> Settings:
     """Read a saved settings file.
 
     Parameters
@@ -28,6 +30,8 @@ def settings_from_toml(text: str, folder: Path | None = None) -> Settings:
         TOML: a scene's name under `scene`, and settings by name.
     folder
         Where CSV files named by a curve are sought; without it files are not read.
+    source
+        Where the text comes from, used in messages.
 
     Raises
     ------
@@ -37,7 +41,7 @@ def settings_from_toml(text: str, folder: Path | None = None) -> Settings:
     try:
         values = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
-        raise SettingError("settings file", text, "TOML", f"mend it: {problem}") from None
+        raise SettingError(source, text, "TOML", f"mend it: {problem}") from None
     values = dict(values)
     kind = scene_settings(values.pop("scene", None))
     if folder is not None:
@@ -54,7 +58,8 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
     if scene.endswith(".toml"):
         path = Path(scene)
         try:
-            base = settings_from_toml(path.read_text(encoding="utf-8"), path.parent)
+            text = path.read_text(encoding="utf-8")
+            base = settings_from_toml(text, path.parent, f"settings file {scene}")
         except (OSError, UnicodeDecodeError) as problem:
             raise SettingError(
                 "settings file", scene, "a readable TOML file", f"{type(problem).__name__}"
@@ -73,11 +78,35 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
     return kind.checked(values)
 
 
+def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
+    """Say what of these settings a run does not heed: idle ones, and load tables that go on."""
+    definitions = settings.definitions()
+    found = [
+        f"{name} does nothing with the other settings as they are"
+        for name in dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
+        if not settings.applies(name) and getattr(settings, name) != definitions[name].default
+    ]
+    duration = settings.values().get("duration")
+    for name, value in settings.values().items():
+        definition = definitions[name]
+        if not isinstance(definition, Curve) or definition.abscissa != "time":
+            continue
+        if isinstance(value, tuple) and settings.applies(name) and value[-1][0] > duration:
+            found.append(
+                f"{name} goes on to {value[-1][0]:g} s, but the run ends at {duration:g} s: "
+                f"set duration={value[-1][0]:g} to run all of it"
+            )
+    return found
+
+
 def scene_settings(scene: object) -> type[Settings]:
     """Find the settings of a scene by its name in the catalogue."""
     if not isinstance(scene, str) or scene not in CATALOGUE:
         raise SettingError(
-            "scene", scene, ", ".join(CATALOGUE), "choose one of these, or a saved .toml file"
+            "scene",
+            scene,
+            ", ".join(CATALOGUE),
+            "choose one of these (run and study also take a saved .toml file)",
         )
     return CATALOGUE[scene].settings
 

@@ -12,6 +12,8 @@ from solver.definitions import Pairs
 Array = NDArray[np.float64]
 
 RANDOM_POINTS = 12
+ROUNDING = 1e-14
+"""What rounding makes of a whole number of half waves, where a load vanishes."""
 DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
 HELD = 0.25
 """Share of the interval after which "hold" stays where it is and "delayed" begins its sine."""
@@ -38,19 +40,24 @@ def _random_walk(phase: Array, seed: int) -> Array:
     return _polyline(walk / np.max(np.abs(walk)))(phase, seed)
 
 
+def _sine(phase: Array) -> Array:
+    found = np.sin(2.0 * np.pi * phase)
+    return np.where(np.abs(found) < ROUNDING, 0.0, found)
+
+
 def _delayed(phase: Array, seed: int) -> Array:
-    return np.where(phase > HELD, np.sin(2.0 * np.pi * (phase - HELD) / (1.0 - HELD)), 0.0)
+    return np.where(phase > HELD, _sine((phase - HELD) / (1.0 - HELD)), 0.0)
 
 
 def _pulsating(phase: Array) -> Array:
-    return 0.5 - 0.5 * np.cos(4.0 * np.pi * phase)
+    return _sine(phase) ** 2
 
 
 PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "ramp": _polyline(np.array([0.0, 1.0])),
     "triangle": _polyline(np.array([0.0, 1.0, 0.0])),
     "cycle": _polyline(np.array([0.0, 1.0, 0.0, -1.0, 0.0, 1.0])),
-    "sine": lambda phase, seed: np.sin(2.0 * np.pi * phase),
+    "sine": lambda phase, seed: _sine(phase),
     "decaying": _polyline(np.concatenate([[0.0], DECAY, [0.0]])),
     "random": _random_walk,
     "hold": lambda phase, seed: np.minimum(phase / HELD, 1.0),

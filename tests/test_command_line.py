@@ -235,6 +235,44 @@ def test_a_file_saved_by_one_front_is_run_by_the_other(tmp_path, capsys):
     assert query_of(again) == query_of(chosen)
 
 
+@pytest.mark.parametrize(
+    ("assignments", "words"),
+    [
+        (["linear_stage=pgd", "acceleration=anderson"], "acceleration does nothing"),
+        (["load=[[0,0],[5,900]]"], "set duration=5"),
+        (["load=[[0,0],[5,900]]", "duration=5"], ""),
+        (["acceleration=none", "peak=10"], ""),
+    ],
+)
+def test_what_a_run_does_not_heed_is_said(capsys, assignments, words):
+    changes = [text for assignment in assignments for text in ("--set", assignment)]
+    main(["run", "bar", *SMALL, "--set", "max_iterations=2", *changes])
+    printed = capsys.readouterr()
+    assert words in printed.err
+    assert bool(printed.err) == bool(words)
+    assert "iterations" in printed.out
+
+
+def test_a_file_that_cannot_take_the_result_costs_no_more_than_the_file(capsys):
+    assert main(["run", "bar", *SMALL, "--out", "/dev/full"]) == 2
+    printed = capsys.readouterr()
+    assert "iterations" in printed.out
+    assert "--out" in printed.err
+
+
+def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys):
+    assert main(["run", "bar", *SMALL, "--no-reference", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["error_force"] is None
+    many = ["wires=120", "elements=50", "instants=2", "max_iterations=1"]
+    changes = [text for assignment in many for text in ("--set", assignment)]
+    assert main(["run", "strand", *changes, "--json"]) == 1
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["error_force"] is None
+    assert "at most 5000" in printed.err
+    assert main(["study", "strand", *changes]) == 2
+    assert "nothing to compare with" in capsys.readouterr().err
+
+
 def test_the_module_runs_as_a_program(tmp_path):
     done = subprocess.run(
         [sys.executable, "-m", "solver", "run", "bar", "--json", "--out", tmp_path / "bar.npz"],

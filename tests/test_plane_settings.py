@@ -14,6 +14,7 @@ from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import iterations
 from solver.latin.direction import pressing_rows, search_direction, sliding_rows
+from solver.loads import PRESETS, PULLS, load_path
 from solver.scenes import CATALOGUE
 from solver.scenes.block import BlockSettings, block
 from solver.scenes.equilibrium import wrench
@@ -22,6 +23,13 @@ from solver.scenes.sides import PRESCRIBED
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
 SMALL = {"elements": 8, "elements_up": 4, "instants": 11}
+DRAGGED = {
+    "gap": "flat",
+    "height": 0.3,
+    "top": "dragged",
+    "top_normal_traction": -1e6,
+    "top_tangential_displacement": 0.0,
+}
 
 
 def refusal(kind, **values):
@@ -81,6 +89,7 @@ def test_a_table_has_its_own_size():
         ({**PRESSED, "top_tangential_traction": 3e7}, "friction cannot hold"),
         ({**PRESSED, "top_normal_slope": 3.1}, "tips over"),
         ({**PRESSED, "top_normal_slope": -3.1}, "tips over"),
+        ({**DRAGGED, "body_force_x": 4e6, "friction": 0.1}, "tips over"),
         ({"top": "pushed", "friction": 0.0, "top_tangential_traction": 1e6}, "no friction"),
         ({"top": "free", "body_force_x": 1.0, "body_force_y": -2.0}, "friction cannot hold"),
     ],
@@ -95,11 +104,18 @@ def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
         {**PRESSED, "top_tangential_traction": 1e7},
         {**PRESSED, "top_tangential_traction": 3e7, "left": "clamped"},
         {**PRESSED, "top_normal_slope": 2.9},
+        {**DRAGGED, "body_force_x": 4e6, "friction": 1.0},
         {"top": "free", "body_force_x": 1.0, "body_force_y": -2.0, "friction": 0.6},
     ],
 )
 def test_loads_that_can_be_held_are_taken(values):
     BlockSettings.checked(values)
+
+
+@pytest.mark.parametrize("presets", [PRESETS, PULLS])
+def test_waves_vanish_exactly_where_they_end(presets):
+    for name in ("sine", "delayed"):
+        assert load_path(name, np.array([0.0, 3.0]), 3.0, 900.0, 1, presets).tolist() == [0.0, 0.0]
 
 
 def test_the_wrench_is_that_of_forces_at_their_lever_arms():

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from solver.definitions import Curve, SettingError, allowed, parse
+from solver.definitions import Curve, SettingError, allowed, parse, resolve
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import LARGEST_FIELD, BarSettings
@@ -213,12 +213,19 @@ def test_bad_tables_are_refused_with_their_row(name, value, remedy):
     assert remedy in text
 
 
+def test_a_csv_may_have_quoted_names_in_capitals_and_empty_lines(tmp_path):
+    file = tmp_path / "load.csv"
+    file.write_text('"Time", Force\n\n0,0\n , \n1,"700"\n\n', encoding="utf-8")
+    found = resolve(DEFINITIONS["load"], "load", "load.csv", tmp_path)
+    assert found == [[0.0, 0.0], [1.0, 700.0]]
+
+
 @pytest.mark.parametrize(
     ("rows", "remedy"),
     [
-        ("", "at least one pair"),
-        ("time,force\n", "at least one pair"),
-        ("0,0\n\n1,1\n", "line 2"),
+        ("", "no points"),
+        ("time,force\n", "no points"),
+        ("0,0\n\n1\n", "line 3"),
         ("0,0\n1\n", "line 2"),
         ("0,0\n1,\n", "line 2"),
         ("0,0\n1,2,3\n", "line 2"),

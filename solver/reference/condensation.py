@@ -35,8 +35,16 @@ TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
 
 
-class NotHeldError(ValueError):
+class NoReferenceError(ValueError):
+    """No reference can be found; the message says why."""
+
+
+class NotHeldError(NoReferenceError):
     """The structure can move even where all its contacts are closed and stick."""
+
+
+class TooLargeError(NoReferenceError):
+    """There are more jumps than dense matrices of their size squared are worth."""
 
 
 class Condensation:

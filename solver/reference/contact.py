@@ -20,14 +20,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.discrete.contact_fields import OPEN
-from solver.discrete.problem import Array, Problem
-from solver.reference.condensation import Condensation
+from solver.discrete.problem import Array, Problem, components
+from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.incremental import Interrupted, Reference
 from solver.reference.states import HELD, Response, Rules, Sides, States, rules_of
 from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
 """Newton steps from one guess of the states; more than a dozen means that they cycle."""
+MOST_JUMPS = 5000
+"""Jumps up to which there is a reference: its time grows with their cube (8 s for 1900, measured),
+and it keeps a few dense matrices of their size."""
 CONVERGED = 1e-9
 """Relative KKT residual up to which an instant counts as solved."""
 PASSES = 30
@@ -59,10 +62,18 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
     ------
     Interrupted
         As soon as `stop` gives True.
+    TooLargeError
+        If there are more than `MOST_JUMPS` jumps.
     NotHeldError
         If the structure can move with all contacts closed and stuck.
     """
     start = time.perf_counter()
+    n_jumps = sum(len(rows) for law in problem.rubbing.values() for rows in components(law))
+    if n_jumps > MOST_JUMPS:
+        raise TooLargeError(
+            f"a reference would condense {n_jumps} components of contact (at most {MOST_JUMPS}); "
+            "take fewer elements, layers or wires to have one"
+        )
     condensed, rules = Condensation(problem), rules_of(problem)
     newton = _Newton(condensed, rules.kept(condensed.moving))
     jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))

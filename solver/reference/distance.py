@@ -16,7 +16,7 @@ from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 
 Array = NDArray[np.float64]
-ROUNDING = 1e-10
+ROUNDING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
 
 
@@ -103,9 +103,8 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
     but rounding, because nothing resists, those that such displacements would cost elements.
     """
     forces = [law.force for law in problem.of_law(Neumann) if isinstance(law, Neumann)]
-    if not forces:
-        forces = [part.body_force for part in problem.substructures if part.body_force is not None]
-    if not forces:
+    forces += [part.body_force for part in problem.substructures if part.body_force is not None]
+    if not any(force.any() for force in forces):
         dofs, prescribed = problem.prescribed
         stiffness = assembled_stiffness(problem)
         moved = stiffness[dofs[prescribed.any(axis=1)]]

@@ -81,6 +81,10 @@ def loss_of_equilibrium(scene: Stack) -> Loss | None:
         checks.append((np.abs(x) > slack, "there is no friction, and no side holds it"))
     if not upright and not held_y:
         beyond = np.maximum(moment, scene.length * y - moment)
+        if sides["top"].x.prescribed:
+            # The top is dragged with any force that friction can answer, which may hold it upright.
+            middle, reach = moment + scene.height * x, mu * scene.height * np.maximum(-y, 0.0)
+            beyond = np.maximum(middle - reach, scene.length * y - middle - reach)
         checks.append((beyond > slack * scene.length, "it tips over an end of its base"))
     for lost, reason in checks:
         if lost.any():

@@ -299,7 +299,9 @@ def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
             name,
             getattr(settings, name),
             f"tensions below {capacity:g} N, all that friction can hold of the broken wire beyond "
-            "its break",
+            "its break"
+            if capacity > 0.0
+            else "no tension where no friction can hold the broken wire beyond its break",
             "pull less, raise friction or pressure, move the break to the left, or take the grip "
             "of given displacement",
         )
