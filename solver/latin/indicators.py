@@ -34,6 +34,8 @@ def latin_indicator(iterate: Iterate) -> float:
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 """Share of the largest displacement, or of that under the largest force, that rounding blurs."""
 
+SMALL_CONTACT = 1e3
+"""A contact force this many times smaller than the largest force still counts as one as large."""
 STILL = 1e-6
 """Share of what the largest force does to one element, below which a structure does not move."""
 
@@ -169,12 +171,15 @@ def _beyond(field: Array, noise: float) -> Array:
 def _share_of_friction(problem: Problem, force: Array) -> float:
     """Give the share of the largest force that friction can carry beside the supports, at most 1.
 
-    It is 1 where there is no friction, and where friction grows with the load.
+    It is 1 where there is no friction. Where friction grows with the load it is the share of what
+    contact carries, unless that is a thousandth or more.
     """
     capacity, largest = 0.0, float(np.abs(force).max())
     for law in problem.rubbing.values():
         if isinstance(law, Contact):
-            return 1.0
+            carried = max(float(np.abs(force[rows]).max()) for rows in components(law))
+            capacity = max(capacity, SMALL_CONTACT * carried)
+            continue
         held = np.isin(problem.row_dofs[law.rows], problem.prescribed[0])
         capacity += float(law.bound[~held].sum())
     return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0
