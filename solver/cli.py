@@ -10,6 +10,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem, discretise
 from solver.files import (
@@ -154,10 +156,19 @@ def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> Non
 def _distance(problem: Problem) -> Distance | None:
     """Give the distance to the reference, or None where there is none."""
     try:
-        return distance_to(reference_of(problem), problem)
+        reference = reference_of(problem)
     except NoReferenceError as refusal:
         print(f"slipfront: no errors are known: {refusal}", file=sys.stderr)
         return None
+    lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
+    if lost:
+        found = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+        print(f"slipfront: no errors are known: {found}", file=sys.stderr)
+        return None
+    if several:
+        found = f"there are several solutions at {several} instants; errors are to one of them"
+        print(f"slipfront: {found}", file=sys.stderr)
+    return distance_to(reference, problem)
 
 
 def _scenes(chosen: argparse.Namespace) -> int:

@@ -8,7 +8,9 @@ from plane import lengths, reaction, solved, stress
 
 from solver.discrete import discretise
 from solver.latin import Ending, solve
-from solver.scenes.block import BlockSettings
+from solver.reference.choice import reference_of
+from solver.scenes.block import BlockSettings, block
+from solver.scenes.rest import rigid_rest
 
 PRESSURE, SHEAR = 1e6, 4e5
 DECOMPOSITIONS = [(1, 1), (3, 2), (10, 7)]
@@ -127,6 +129,52 @@ def test_a_body_that_never_touches_moves_as_a_whole_and_the_run_converges(depth)
     fields = solution.iterate.contact("support")
     assert np.all(fields.status == 2)
     np.testing.assert_allclose(fields.opening[:, -1], 1e-3 - depth, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "gap",
+    [
+        [[0.0, 1e-2]],
+        [[0.0, 1e-3], [0.1, 5e-3]],
+        [[0.0, 8e-3], [0.1, 0.0]],
+    ],
+)
+def test_a_body_falls_on_its_support_and_stands_there_as_if_it_had_been_there(gap):
+    values = {"top": "traction", "top_normal_traction": -PRESSURE, "elements": 16}
+    flat, fallen = (
+        BlockSettings.checked({**values, "instants": 21, "gap": one}) for one in ("flat", gap)
+    )
+    solution = solve(discretise(fallen), fallen)
+    assert solution.status.ending is Ending.CONVERGED
+    assert len(solution.records) < 40
+    wanted = solve(discretise(flat), flat).iterate.contact("support").normal_force
+    found = solution.iterate.contact("support").normal_force
+    np.testing.assert_allclose(found, wanted, atol=1e-3 * wanted.max())
+
+
+def test_before_anything_acts_a_body_hovers_where_it_was():
+    settings = BlockSettings.checked(
+        {"gap": ((0.0, 1e-2),), "top": "traction", "top_normal_traction": -PRESSURE, "instants": 5}
+    )
+    problem = discretise(settings)
+    for field in (solve(problem, settings).iterate, reference_of(problem)):
+        openings = field.contact("support").opening
+        np.testing.assert_allclose(openings[:, 0], 1e-2, atol=1e-12)
+        assert np.abs(openings[:, 1:]).min() < 1e-9
+
+
+def test_a_rigid_body_rests_under_its_load_and_a_roller_keeps_it_upright():
+    values = {"gap": "parabola", "top": "traction", "top_normal_traction": -PRESSURE}
+    level, tilted, held = (
+        rigid_rest(block(BlockSettings.checked(values | change)))
+        for change in ({}, {"top_normal_slope": 0.6}, {"top_normal_slope": 0.6, "left": "roller"})
+    )
+    assert abs(level[1, -1]) < 1e-9
+    # The resultant acts a tenth of the length beside the middle, where the parabola has this slope.
+    assert tilted[1, -1] == pytest.approx(-0.01 / 5.0, rel=0.05)
+    assert held[0, -1] < 0.0
+    assert not held[1].any()
+    assert rigid_rest(block(BlockSettings.checked({"gap": ((0.0, 1e-3),)}))) is None
 
 
 def test_a_wedge_of_gap_only_turns_the_block():

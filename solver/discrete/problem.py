@@ -158,6 +158,9 @@ class Problem:
         What one scaled unit is in SI.
     inside
         What the degrees of freedom do not show, where substructures are condensed; else None.
+    rest
+        Displacement that the method may start from, scaled, shape (n_dofs, n_instants): that of a
+        body which falls onto its support as if it were rigid. None is no displacement.
     """
 
     substructures: tuple[Substructure, ...]
@@ -166,6 +169,7 @@ class Problem:
     instants: Array
     scales: Scales
     inside: Inside | None = None
+    rest: Array | None = None
 
     @cached_property
     def n_rows(self) -> int:

@@ -15,6 +15,7 @@ from solver.discrete.plane import Condensed, Kept, Rectangle, both
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
 from solver.discrete.sides import Corner, Place, along, neighbour, nodal_force
 from solver.laws import Contact, Dirichlet, Interface, Perfect
+from solver.scenes.rest import rigid_rest
 from solver.scenes.stack import Side, Stack
 
 OPPOSITE = {"right": "left", "top": "bottom"}
@@ -154,7 +155,18 @@ def discretise_stack(scene: Stack) -> Problem:
         instants=scene.instants,
         scales=Scales(scene.length, scene.young * scene.length, scene.duration),
         inside=StackInside(scene, parts, grid, skeleton),
+        rest=_rest(scene, grid.positions[skeleton // 2], skeleton % 2),
     )
+
+
+def _rest(scene: Stack, positions: Array, components: Indices) -> Array | None:
+    """Give the displacement of degrees of freedom where the body rests, (n_dofs, n_instants)."""
+    rigid = rigid_rest(scene)
+    if rigid is None:
+        return None
+    x, y = positions.T
+    modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
+    return np.asarray(modes @ (rigid / np.array([[scene.length], [1.0]])))
 
 
 def _parts(scene: Stack, grid: _Grid) -> list[_Part]:

@@ -34,7 +34,8 @@ def iterations(
     problem, settings
         What to solve, and the options of the method.
     start
-        Where to go on from; zero fields without one.
+        Where to go on from; without one the settings say where to start, and a body that contact
+        alone holds where it comes to rest.
 
     Yields
     ------
@@ -74,6 +75,15 @@ def iterations(
         read = given
 
 
+def _start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
+    """Give the start of the settings' own choice; None is zero fields."""
+    if problem.rest is not None:
+        return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
+    if settings.start == "nested":
+        return nested_start(coarser_problems(settings), settings, problem, k)
+    return None
+
+
 class _Engine:
     """Both stages at work, with what the options add to them."""
 
@@ -94,8 +104,8 @@ class _Engine:
                 "a k that holds every substructure in the digits of a number",
                 "bring the factors on k nearer to 1, or the sides of the elements to each other",
             ) from None
-        if start is None and settings.start == "nested":
-            start = nested_start(coarser_problems(settings), settings, problem, self.k)
+        if start is None:
+            start = _start(problem, settings, self.k)
         stage: LinearStage[Any] = self._linear_stage
         self._state = stage.start(start)
         self.incoming = space_time(problem.n_rows, problem.n_instants)

@@ -75,7 +75,7 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
             "take fewer elements, layers or wires to have one"
         )
     condensed, rules = Condensation(problem), rules_of(problem)
-    newton = _Newton(condensed, rules.kept(condensed.moving))
+    newton = _Newton(condensed, rules.kept(condensed.moving), problem.rest)
     jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))
     ambiguous = np.zeros(problem.n_instants, dtype=bool)
     for instant in range(problem.n_instants):
@@ -105,11 +105,14 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
 class _Newton:
     """Finds jumps and forces of one instant after the other."""
 
-    def __init__(self, condensed: Condensation, rules: Rules) -> None:
+    def __init__(self, condensed: Condensation, rules: Rules, rest: Array | None) -> None:
         self.response = Response(condensed.stiffness, rules)
         self._condensed, self._rules = condensed, rules
         self._position, self._self_stress = np.zeros((2, len(rules.gap)))
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self._overlap: Array | None = None
+        if rest is not None:
+            self._overlap = condensed.jump(rest)[condensed.moving] + rules.gap[:, None]
         self._largest = float(np.abs(condensed.load).max(initial=0.0))
 
     def __call__(self, instant: int) -> tuple[Array, Array]:
@@ -120,8 +123,10 @@ class _Newton:
         """
         condensed = self._condensed
         stresses, load = condensed.stresses, condensed.load[:, instant]
+        if self._is_at_rest(instant):
+            return self._position, np.zeros_like(self._position)
         for _ in range(PASSES):
-            solved = self._solved(load - self._self_stress)
+            solved = self._solved(load - self._self_stress, instant)
             if solved is None:
                 force = condensed.stiffness @ self._position - load + self._self_stress
                 return self._position, force
@@ -135,14 +140,23 @@ class _Newton:
         self._position = jump
         return jump, force
 
+    def _is_at_rest(self, instant: int) -> bool:
+        """Tell whether nothing has acted yet: then nothing moves, though a free body might."""
+        gap = self._rules.gap[self._rules.normal]
+        return not self._condensed.load[:, : instant + 1].any() and bool(np.all(gap >= 0.0))
+
     def _sides(self, load: Array) -> Sides:
         rules = self._rules
         return Sides(load, rules.bound, np.where(rules.normal, -rules.gap, self._position))
 
-    def _solved(self, load: Array) -> States | None:
+    def _solved(self, load: Array, instant: int) -> States | None:
         """Find the states under a load, or None."""
         sides = self._sides(load)
         states, done = self._iterate(self._states, sides)
+        if not done and self._overlap is not None:
+            # A body that falls or rolls a long way touches elsewhere than one instant before.
+            closed = (self._overlap[:, instant] < 0.0)[self._rules.partner]
+            states, done = self._iterate(np.where(closed, HELD, OPEN).astype(np.int8), sides)
         if not done:
             found = unload(self.response, self._rules, sides, self._position)
             if found is None:

@@ -133,7 +133,7 @@ class Response:
         self._factors: Array
         self._pivots: Indices
         self.solutions = 0
-        self.unbalanced = 0.0
+        self.unbalanced, self.turned = 0.0, False
 
     def __call__(self, states: States, sides: Sides) -> tuple[Array, Array]:
         """Give jump and force, shape (n, ...) each."""

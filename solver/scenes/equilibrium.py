@@ -56,6 +56,17 @@ def _resultant(given: Given, size: float) -> tuple[Array, Array]:
     return total, 0.5 * size * total + size**2 / 6.0 * given.slope
 
 
+def is_held_up(scene: Stack) -> bool:
+    """Tell whether a side prescribes a displacement upwards."""
+    return any(side.y.prescribed for side in scene.sides.values())
+
+
+def is_upright(scene: Stack) -> bool:
+    """Tell whether a side keeps the body from turning."""
+    sides = scene.sides
+    return sides["top"].y.prescribed or any(sides[name].x.prescribed for name in ("left", "right"))
+
+
 def loss_of_equilibrium(scene: Stack) -> Loss | None:
     """Find why a body on a support cannot rest under its loads, or None if nothing forbids it.
 
@@ -66,10 +77,7 @@ def loss_of_equilibrium(scene: Stack) -> Loss | None:
     x, y, moment = wrench(scene)
     sides = scene.sides
     held_x = any(side.x.prescribed for side in sides.values())
-    held_y = any(side.y.prescribed for side in sides.values())
-    upright = sides["top"].y.prescribed or any(
-        sides[name].x.prescribed for name in ("left", "right")
-    )
+    held_y, upright = is_held_up(scene), is_upright(scene)
     mu, size = scene.support.friction, np.abs([x, y]).max() + np.abs(moment).max() / scene.length
     slack = SLACK * size
     checks = []
