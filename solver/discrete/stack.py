@@ -303,6 +303,7 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                     float(scene.stiffness[body]),
                     np.inf if lower is None else float(scene.stiffness[body - 1]),
                 ),
+                depth=scene.height,
                 macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
             ),
         )
