@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.legendre import legvander
 from scipy import sparse
 
 from solver.discrete.bar import substructure_sizes
 from solver.discrete.elements import elastic_matrix
+from solver.discrete.macro import side_basis
 from solver.discrete.plane import Condensed, Kept, Rectangle, both
 from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
 from solver.discrete.sides import Corner, Place, along, neighbour, nodal_force
@@ -261,7 +261,7 @@ def _interfaces(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, 
             if isinstance(beyond, str) or beyond[2] != place[2]:
                 continue
             other = parts[beyond]
-            basis = np.asarray(np.kron(_macro_basis(scene, len(part.rows[side])), np.eye(2)))
+            basis = np.asarray(np.kron(_macro_basis(scene, part, side), np.eye(2)))
             yield (
                 f"cut {_name(place)} to {_name(beyond)}",
                 Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
@@ -275,10 +275,8 @@ def _name(place: Place) -> str:
     return f"{column + 1}.{row + 1}" + (f" of {body + 1}" if body else "")
 
 
-def _macro_basis(scene: Stack, n_points: int) -> Array:
-    """Give polynomials over the side of a substructure, shape (n_points, n_macro)."""
-    size = min(scene.macro_degree + 1, n_points)
-    return np.asarray(legvander(np.linspace(-1.0, 1.0, n_points), size - 1))
+def _macro_basis(scene: Stack, part: _Part, side: str) -> Array:
+    return side_basis(part.rectangle, side, len(part.rows[side]), scene.macro_degree)
 
 
 def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Contact]]:
@@ -300,7 +298,7 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
             friction, gap = scene.friction, np.zeros(len(node))
         upper = np.concatenate([part.rows["bottom"] for part in above])
         lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
-        bases = [_macro_basis(scene, len(part.rows["bottom"])) for part in above]
+        bases = [_macro_basis(scene, part, "bottom") for part in above]
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
             Contact(
@@ -317,6 +315,7 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
                     float(scene.stiffness[body]),
                     np.inf if lower is None else float(scene.stiffness[body - 1]),
                 ),
+                depth=scene.height,
                 macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
             ),
         )

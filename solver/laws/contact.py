@@ -48,6 +48,8 @@ class Contact(AtPoints):
         Coefficient mu of each pair, shape (n_pairs,), non-negative.
     moduli
         Young's moduli of the body above and of that below, scaled; infinite for a rigid support.
+    depth
+        Of the bodies, across the interface, m; infinite where nothing limits it.
     macro
         Macro basis of each component, shape (n_pairs, n_macro): what one body takes from the
         other is in equilibrium in the coarse problem, as on a cut. None on a rigid support.
@@ -62,6 +64,7 @@ class Contact(AtPoints):
     gap: Array
     friction: Array
     moduli: tuple[float, float] = (1.0, float("inf"))
+    depth: float = float("inf")
     macro: sparse.csr_array | None = None
 
 

@@ -98,7 +98,8 @@ class PlaneSettings(Settings):
         (0, 10),
         (0, 4),
         "Degree of the macro basis on each side of a substructure: 0 resultants alone, 1 also "
-        "moments and linear extension.",
+        "moments and linear extension. A side more than three times as long as the substructure "
+        "is deep behind it gets more, as the root of that ratio.",
         group="Decomposition",
         title="Macro degree",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,

@@ -68,7 +68,7 @@ class Stack:
     order
         Of the elements: 1 bilinear, 2 biquadratic.
     macro_degree
-        Of the macro basis on each side of a substructure.
+        Of the macro basis on each side of a substructure; long sides get more in proportion.
     young, poisson, state
         Elasticity, Pa; `state` is "strain" or "stress".
     stiffness
