@@ -6,7 +6,7 @@ import csv
 import os
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from browser import Server
 from playwright.sync_api import Page, expect
+from processes import is_alive, wait_for
 
 from app.errand import KEPT, Errand
 from app.session import Session
@@ -29,7 +30,6 @@ from solver.study.stability import Row, Verdict, judge, run_case
 from solver.study.stability_cases import Case
 
 WAIT = 60_000
-PATIENCE = 60.0
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 QUERY = "?elements=8&substructures=2&instants=5"
 
@@ -52,21 +52,6 @@ def refuse(send: Send) -> None:
 
 def vanish(send: Send) -> None:
     os._exit(1)
-
-
-def wait_for(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
-def is_alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 @pytest.fixture
