@@ -45,16 +45,16 @@ def test_parked_run_goes_on_in_another_process_to_the_bit(
 
 
 def test_every_record_comes_once_however_often_a_run_is_parked(lines: list[Line]) -> None:
-    order: Run = Run(1, "bar", STALLING, pace=400.0)
+    order: Run = Run(1, "bar", STALLING, pace=200.0)
     for turn in range(12):
         line = lines[turn % 2]
         line.send(order)
         line.until(Begun)
-        time.sleep(0.02 * turn)
+        time.sleep(0.01 * turn)
         line.send(Park(1))
         order = line.until(Parked).order
     lines[0].send(replace(order, pace=None))
-    lines[0].until(End)
+    lines[0].until(Waiting)
     records = sorted(lines[0].records() + lines[1].records(), key=lambda entry: entry.iteration)
     assert timeless(records) == timeless(direct(STALLING).records)
 

@@ -23,7 +23,7 @@ from solver.latin import Iterate, Record
 from solver.scenes.bar import BarSettings
 
 SHORT = {"tolerance": 1e-8, "max_iterations": 50}
-STALLING = {"tolerance": 1e-30, "elements": 20, "substructures": 4}
+STALLING = {"tolerance": 1e-30, "elements": 20, "substructures": 4, "max_iterations": 150}
 
 
 class Line:
