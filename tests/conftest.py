@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, closing
 
 import pytest
 from browser import Server, browser
-from playwright.sync_api import BrowserContext, Page
+from pages import Visit, visits
+from playwright.sync_api import Browser, expect
 from pool_sessions import Session
+from processes import PATIENCE
 from worker_line import Line
 
 from app.worker.pool import Pool
-
-IGNORED = ("Failed to load resource", "favicon")
-OURS = re.compile(r'File ".*/(app|solver)/')
-"""In a traceback; a page that is closed leaves those of the web server."""
 
 
 @pytest.fixture(scope="session")
@@ -28,40 +25,16 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="session")
-def chrome() -> Iterator[BrowserContext]:
-    """Give one browser, which keeps what every page of the server loads alike."""
-    with browser() as opened, closing(opened.new_context()) as context:
-        yield context
+def chrome() -> Iterator[Browser]:
+    expect.set_options(timeout=1e3 * PATIENCE)
+    with browser() as opened:
+        yield opened
 
 
 @pytest.fixture
-def open_page(server: Server, chrome: BrowserContext) -> Iterator[Callable[..., Page]]:
-    """Open pages; neither they nor the server may complain meanwhile."""
-    pages: list[Page] = []
-    complaints: list[str] = []
-    told_before = len(server.log)
-
-    def visit(query: str = "", width: int = 1280, height: int = 720) -> Page:
-        page = chrome.new_page()
-        pages.append(page)
-        page.set_viewport_size({"width": width, "height": height})
-        page.on(
-            "console",
-            lambda message: (
-                complaints.append(message.text)
-                if message.type == "error" and not message.text.startswith(IGNORED)
-                else None
-            ),
-        )
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.goto(server.address + query)
-        return page
-
-    yield visit
-    for page in pages:
-        page.close()
-    assert complaints == []
-    assert not OURS.search(server.log[told_before:])
+def open_page(server: Server, chrome: Browser) -> Iterator[Visit]:
+    with visits(server, chrome) as visit:
+        yield visit
 
 
 @pytest.fixture
