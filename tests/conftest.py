@@ -14,6 +14,7 @@ from processes import PATIENCE
 from worker_line import Line
 
 from app.worker.pool import Pool
+from solver.study.paper_runs import PaperRuns
 
 
 @pytest.fixture(scope="session")
@@ -29,6 +30,12 @@ def chrome() -> Iterator[Browser]:
     expect.set_options(timeout=1e3 * PATIENCE)
     with browser() as opened:
         yield opened
+
+
+@pytest.fixture(scope="session")
+def paper_runs() -> PaperRuns:
+    """Give the runs behind the paper's figures, each solved when it is first asked for."""
+    return PaperRuns()
 
 
 @pytest.fixture
