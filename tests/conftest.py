@@ -1,46 +1,68 @@
-"""A served page and a browser, shared by the tests of a module."""
+"""What tests of several files hold: a served page and a browser, a pool, worker processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack, closing
 
 import pytest
 from browser import Server, browser
-from playwright.sync_api import Page
+from pages import Visit, visits
+from playwright.sync_api import Browser, expect
+from pool_sessions import Session
+from processes import PATIENCE
+from worker_line import Line
 
-IGNORED = ("Failed to load resource", "favicon")
+from app.worker.pool import Pool
+from solver.study.paper_runs import PaperRuns
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     made = Server(tmp_path_factory.mktemp("server") / "log")
     made.wait()
     yield made
     made.stop()
 
 
-@pytest.fixture(scope="module")
-def chrome():
+@pytest.fixture(scope="session")
+def chrome() -> Iterator[Browser]:
+    expect.set_options(timeout=1e3 * PATIENCE)
     with browser() as opened:
         yield opened
 
 
+@pytest.fixture(scope="session")
+def paper_runs() -> PaperRuns:
+    """Give the runs behind the paper's figures, each solved when it is first asked for."""
+    return PaperRuns()
+
+
 @pytest.fixture
-def open_page(server, chrome):
-    pages, complaints = [], []
+def open_page(server: Server, chrome: Browser) -> Iterator[Visit]:
+    with visits(server, chrome) as visit:
+        yield visit
 
-    def visit(query: str = "", width: int = 1280, height: int = 720) -> Page:
-        page = chrome.new_page(viewport={"width": width, "height": height})
-        page.on(
-            "console",
-            lambda message: (
-                complaints.append(message.text)
-                if message.type == "error" and not message.text.startswith(IGNORED)
-                else None
-            ),
-        )
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.goto(server.address + query)
-        pages.append(page)
-        return page
 
-    yield visit
-    for page in pages:
-        page.close()
-    assert complaints == []
+@pytest.fixture
+def pool() -> Iterator[Pool]:
+    with closing(Pool(2)) as opened:
+        yield opened
+
+
+@pytest.fixture
+def session(pool: Pool) -> Session:
+    return Session(pool)
+
+
+@pytest.fixture
+def lines() -> Iterator[list[Line]]:
+    """Give two worker processes."""
+    with ExitStack() as stack:
+        yield [stack.enter_context(closing(Line())) for _ in range(2)]
+
+
+@pytest.fixture
+def line() -> Iterator[Line]:
+    with closing(Line()) as opened:
+        yield opened

@@ -1,4 +1,8 @@
-"""The Dockerfile's steps without a container engine: install, serve, ask the health check."""
+"""The Dockerfile's steps without a container engine: install, serve, ask the health check.
+
+The clean environment is lent what the project declares that it needs, and nothing else: pip checks
+the versions, but unpacks no packages that these tests run on already.
+"""
 
 import json
 import os
@@ -8,9 +12,12 @@ import socket
 import subprocess
 import sys
 import time
+import tomllib
+from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -27,6 +34,34 @@ def instructions(name: str) -> list[str]:
     return [rest for word, rest in dockerfile() if word == name]
 
 
+def declared():
+    """Give the distributions that the project needs, directly or not, extras left out."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines, found = list(project["dependencies"]), {}
+    for line in lines:
+        needed = Requirement(line)
+        if needed.name not in found and (
+            not needed.marker or needed.marker.evaluate({"extra": ""})
+        ):
+            found[needed.name] = distribution(needed.name)
+            lines += found[needed.name].requires or []
+    return list(found.values())
+
+
+def lend(found, environment):
+    """Link the modules of a distribution into an environment, and write its programs there."""
+    (packages,) = environment.glob("lib/python*/site-packages")
+    for file in found.files:
+        if file.parts[0] == "..":
+            if file.parent.name == "bin":
+                text = Path(found.locate_file(file)).read_text(encoding="utf-8")
+                program = environment / "bin" / file.name
+                program.write_text(f"#!{environment / 'bin' / 'python'}\n{text.split(None, 1)[1]}")
+                program.chmod(0o755)
+        elif not (packages / file.parts[0]).exists():
+            (packages / file.parts[0]).symlink_to(found.locate_file(file.parts[0]))
+
+
 @pytest.fixture(scope="module")
 def image(tmp_path_factory):
     """Copy what the Dockerfile copies, and run its installation in a clean environment."""
@@ -41,6 +76,8 @@ def image(tmp_path_factory):
                 shutil.copy(ROOT / source, folder / target)
     environment = folder.parent / "environment"
     subprocess.run([sys.executable, "-m", "venv", environment], check=True)
+    for found in declared():
+        lend(found, environment)
     variables = dict(os.environ, PATH=f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}")
     variables.pop("PYTHONPATH", None)
     for pair in re.findall(r"(\w+)=(\S+)", " ".join(instructions("ENV"))):

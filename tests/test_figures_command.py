@@ -29,8 +29,8 @@ SMALL = PaperFigure(
 
 
 @pytest.fixture(scope="module")
-def figures():
-    return paper_figures()
+def figures(paper_runs):
+    return paper_figures(paper_runs)
 
 
 @pytest.fixture(scope="module")

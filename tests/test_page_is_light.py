@@ -1,31 +1,40 @@
-"""What the server does for a page costs little, whatever the page holds."""
+"""A page holds what applies to its run and no more, and costs the server little."""
 
 from __future__ import annotations
 
-import urllib.request
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing
 
 import panel as pn
 import pytest
-from browser import Server
 from panel.util import edit_readonly
 
+from app.address import settings_from_query
 from app.dashboard import Dashboard
 from app.session import Session
 from app.worker.bench import Bench
 from app.worker.pool import Pool
-from solver.files import scene_settings
 
 
 @pytest.fixture
-def dashboard() -> Iterator[Dashboard]:
+def make() -> Iterator[Callable[[str], Dashboard]]:
+    """Give what makes the page of an address."""
     pn.extension(notifications=True)
-    pool = Pool(1)
-    made = Dashboard(Session(pool, Bench(), scene_settings("bar").checked({})))
-    yield made
-    made.session.close()
-    pool.close()
+    with ExitStack() as stack:
+        pool = stack.enter_context(closing(Pool(1)))
+        bench = stack.enter_context(closing(Bench()))
+
+        def made(query: str) -> Dashboard:
+            settings, complaint = settings_from_query(query)
+            assert not complaint
+            return Dashboard(stack.enter_context(closing(Session(pool, bench, settings))))
+
+        yield made
+
+
+@pytest.fixture
+def dashboard(make: Callable[[str], Dashboard]) -> Dashboard:
+    return make("")
 
 
 def test_a_busy_server_changes_nothing_on_the_page(dashboard: Dashboard) -> None:
@@ -54,13 +63,23 @@ def test_the_first_picture_is_in_the_page_and_the_controls_are_not_yet(
     assert dashboard._sidebar.view.objects
 
 
-def test_the_server_starts_without_complaint_and_with_a_worker_at_hand(tmp_path: Path) -> None:
-    server = Server(tmp_path / "log")
-    try:
-        server.wait()
-        urllib.request.urlopen(server.address, timeout=30).close()
-        assert len(server.processes()) > 1
-        for word in ("Error", "WARNING", "Traceback"):
-            assert word not in server.log, server.log
-    finally:
-        server.stop()
+@pytest.mark.filterwarnings("ignore:Both 'variant' and 'button_style'")
+@pytest.mark.parametrize(
+    ("query", "views", "substructures"),
+    [
+        ("?instants=1", 4, False),
+        ("?linear_stage=pgd", 9, True),
+        ("?linear_stage=pgd&substructures=1", 9, False),
+        ("?linear_stage=pgd&instants=1", 6, True),
+        ("?scene=strand&wires=20&broken=0&elements=2&substructures=1", 7, False),
+    ],
+)
+def test_views_and_sliders_are_those_that_apply(
+    make: Callable[[str], Dashboard], query: str, views: int, substructures: bool
+) -> None:
+    dashboard = make(query)
+    dashboard.prepare()
+    dashboard.loaded()
+    transport = dashboard.transport
+    assert len(dashboard._plots) == views
+    assert (transport._substructure in transport._sliders.objects) == substructures

@@ -6,14 +6,10 @@ import sys
 
 import numpy as np
 import pytest
-from browser import Server, browser
-from playwright.sync_api import expect
 
 from app.views import paper_figures
 from app.views.panels import overlay
 from app.views.paper_figures import PaperFigures, compute
-
-WAIT = 60_000
 
 
 @pytest.fixture(scope="module")
@@ -60,24 +56,3 @@ def test_a_failure_is_told_and_not_kept(monkeypatch, figures):
     view._show(failed)
     assert "could not be computed" in view.view[0].object
     assert compute() is not failed
-
-
-def test_the_page_shows_them_on_its_second_tab_and_comes_back(tmp_path):
-    complaints = []
-    with browser() as chrome:
-        server = Server(tmp_path / "log")
-        try:
-            server.wait()
-            page = chrome.new_page(viewport={"width": 1280, "height": 720})
-            page.on("pageerror", lambda error: complaints.append(str(error)))
-            page.goto(server.address)
-            expect(page.locator(".status").first).to_contain_text("iteration", timeout=WAIT)
-            page.get_by_role("button", name="Figures", exact=True).click()
-            expect(page.get_by_text("Fig. 8").first).to_be_visible(timeout=WAIT)
-            expect(page.locator(".plots").first).to_be_hidden()
-            page.get_by_role("button", name="Live", exact=True).click()
-            expect(page.locator(".plots").first).to_be_visible(timeout=WAIT)
-            expect(page.get_by_text("Fig. 8").first).to_be_hidden()
-        finally:
-            server.stop()
-    assert complaints == []

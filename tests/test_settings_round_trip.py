@@ -344,6 +344,23 @@ def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
     assert not opened
 
 
+@pytest.mark.parametrize(
+    ("query", "words", "scene"),
+    [
+        ("?friction=-3", "friction = -3 is refused", "bar"),
+        ("?scene=strand&broken=9", "broken = 9 is refused", "strand"),
+        ("?scene=bridge", 'scene = "bridge" is refused', "bar"),
+    ],
+)
+def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(query, words, scene):
+    from app.address import settings_from_query
+
+    chosen, complaint = settings_from_query(query)
+    assert words in complaint
+    assert chosen.scene == scene
+    assert not chosen.changed()
+
+
 def test_an_uploaded_file_never_names_another():
     text = 'scene = "bar"\nload = "/etc/passwd"\n'
     assert "choose a preset" in refusal(lambda: settings_from_toml(text))

@@ -20,6 +20,7 @@ from app.views.modes import SpaceModes, TimeFunctions
 from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
 from app.views.tractions import Tractions
+from app.words import status_line
 from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.protocol import (
     STATUS_OPEN,
@@ -266,6 +267,15 @@ def test_views_that_apply_draw_every_scene(scene: str, stage: str) -> None:
     assert ("Deformed bodies" in names) == ("Contact tractions" in names)
     assert ("Friction force" in names) != ("Contact tractions" in names)
     assert ("Force in the wires" in names) == (scene == "strand")
+
+
+def test_a_run_without_a_reference_says_nothing_of_errors() -> None:
+    for layers, known in ((3, True), (20, False)):
+        told = Told("layers", {"layers": layers, "elements": 48, "max_iterations": 2})
+        recording = Recording(1, told.run._settings, "")
+        for report in told.reports:
+            recording.take(report)
+        assert ("error" in status_line(recording, True, None)) == known
 
 
 def test_a_recording_forgets_the_fields_of_another_interface() -> None:

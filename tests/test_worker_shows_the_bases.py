@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from direct_runs import direct, iterate_number, timeless
 
 from app.recording import Recording
 from app.views.basis_size import MOST_COLUMNS, BasisSize
@@ -31,10 +32,7 @@ from app.worker.protocol import (
 from app.worker.recording import Recording as Checkpoints
 from app.worker.recording import References
 from app.worker.run import WorkerRun
-from solver.discrete import discretise
-from solver.latin import Iterate, Record, iterations, solve
-from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
+from solver.latin import Record
 from solver.scenes.bar import BarSettings
 
 SMALL: dict[str, Any] = {
@@ -101,24 +99,6 @@ def shown_modes(frame: Frame) -> ShownModes:
     modes = shown(frame).modes
     assert modes is not None
     return modes
-
-
-def direct(values: dict[str, Any]) -> list[Record]:
-    settings = BarSettings.checked(values)
-    problem = discretise(settings)
-    return solve(problem, settings, distance=distance_to(incremental(problem), problem)).records
-
-
-def iterate_number(number: int, values: dict[str, Any]) -> Iterate:
-    settings = BarSettings.checked(values)
-    for iterate in iterations(discretise(settings), settings):
-        if iterate.number == number:
-            return iterate
-    raise AssertionError
-
-
-def timeless(records: list[Record]) -> list[Record]:
-    return [replace(entry, seconds=0.0, reduction=()) for entry in records]
 
 
 def test_the_full_linear_stage_sends_nothing_of_bases() -> None:
@@ -196,8 +176,8 @@ def test_full_stage_beside_the_bases_is_a_run_of_its_own(change: dict[str, Any])
     values = {**SMALL, **change}
     found = told(values)
     full = direct({**values, "linear_stage": "full"})
-    assert timeless(found.beside) == timeless(full)[: len(found.records)]
-    assert timeless(found.records) == timeless(direct(values))
+    assert timeless(found.beside) == timeless(full.records)[: len(found.records)]
+    assert timeless(found.records) == timeless(direct(values).records)
 
 
 @pytest.mark.parametrize("parked_at", [1, 2, 17])

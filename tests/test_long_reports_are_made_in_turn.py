@@ -1,72 +1,32 @@
-"""Long reports are asked for on the page, made elsewhere in turn, and leave nothing behind."""
+"""Long reports are made in turn, in a process of their own that ends with whoever asked."""
 
 from __future__ import annotations
 
 import csv
-import os
-import re
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing
 from functools import partial
 from typing import Any
 
 import pytest
-from browser import Server
-from playwright.sync_api import Page, expect
+from jobs import count_to, refuse, sleep, vanish
+from processes import is_alive, wait_for
 
 from app.errand import KEPT, Errand
 from app.session import Session
 from app.views.report import progress
 from app.views.stability import matrix
-from app.views.study import company, title_of
+from app.views.study import StudyReport, company, title_of
 from app.worker.bench import Bench
-from app.worker.job import Doing, Done, Part, Send, Started
+from app.worker.job import Doing, Done, Part, Started
 from app.worker.pool import Pool
 from app.worker.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
+from solver.scenes.layers import LayersSettings
 from solver.study.stability import Row, Verdict, judge, run_case
 from solver.study.stability_cases import Case
 
-WAIT = 60_000
-PATIENCE = 60.0
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
-QUERY = "?elements=8&substructures=2&instants=5"
-
-
-def count_to(number: int, send: Send) -> int:
-    for done in range(number):
-        send(Doing(f"{done} done", done / number))
-        send(Part(done))
-    return number
-
-
-def sleep(send: Send) -> None:
-    send(Doing("asleep", 0.5))
-    time.sleep(600.0)
-
-
-def refuse(send: Send) -> None:
-    raise ValueError("no such thing")
-
-
-def vanish(send: Send) -> None:
-    os._exit(1)
-
-
-def wait_for(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
-def is_alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 @pytest.fixture
@@ -272,93 +232,10 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
     assert "3 runs of other pages were" in company(3)
 
 
-def open_tab(page: Page, name: str) -> None:
-    expect(page.locator(".status").first).to_contain_text("iteration", timeout=WAIT)
-    page.get_by_role("button", name=name, exact=True).click()
-
-
-def press(page: Page, name: str) -> None:
-    page.get_by_role("button", name=name, exact=True).locator("visible=true").click()
-
-
-def test_the_page_makes_a_study_of_its_settings_when_asked(open_page) -> None:
-    page = open_page(QUERY)
-    open_tab(page, "Study")
-    expect(page.get_by_text("How it was measured")).to_have_count(0)
-    press(page, "Start")
-    expect(page.get_by_text("How it was measured")).to_be_visible(timeout=WAIT)
-    expect(page.get_by_text("Study: substructures 2")).to_be_visible()
-    expect(page.get_by_text("incremental solver").first).to_be_visible()
-    with page.expect_download() as caught:
-        page.get_by_text("levels.csv").click()
-    assert caught.value.suggested_filename == "levels.csv"
-    page.get_by_role("button", name="Live", exact=True).click()
-    expect(page.get_by_text("How it was measured")).to_be_hidden()
-    page.get_by_role("button", name="Study", exact=True).click()
-    expect(page.get_by_text("How it was measured")).to_be_visible()
-
-
-def test_the_live_tab_says_that_its_run_waits_and_a_cancelled_study_lets_it_go_on(
-    open_page,
-) -> None:
-    page = open_page("?tolerance=1e-30&max_iterations=100000")
-    open_tab(page, "Study")
-    page.get_by_text("Growth with the size").click()
-    press(page, "Start")
-    expect(page.get_by_text(re.compile("Errors of LATIN")).first).to_be_visible(timeout=WAIT)
-    page.get_by_role("button", name="Live", exact=True).click()
-    expect(page.locator(".status").first).to_contain_text("waits for the study", timeout=WAIT)
-    page.get_by_role("button", name="Study", exact=True).click()
-    press(page, "Cancel")
-    expect(page.get_by_text("Cancelled.")).to_be_visible(timeout=WAIT)
-    page.get_by_role("button", name="Live", exact=True).click()
-    expect(page.locator(".status").first).to_contain_text("running", timeout=WAIT)
-
-
-def test_the_stability_table_fills_row_by_row_and_can_be_filtered(open_page) -> None:
-    page = open_page()
-    open_tab(page, "Stability")
-    press(page, "Start")
-    cells = page.locator("td.verdict")
-    expect(cells.nth(5)).to_be_visible(timeout=WAIT)
-    press(page, "Not right")
-    expect(page.locator("td.verdict", has_text="right")).to_have_count(0, timeout=WAIT)
-    expect(cells.first).to_have_text("told")
-    press(page, "Cancel")
-    expect(page.get_by_text(re.compile("runs pass"))).to_be_visible()
-
-
-def test_a_phone_has_all_tabs_in_reach(open_page) -> None:
-    page = open_page(width=390, height=844)
-    open_tab(page, "Stability")
-    expect(page.get_by_text("Stiff and extreme cases of every scene")).to_be_visible(timeout=WAIT)
-    open_tab_again = page.get_by_role("button", name="Study", exact=True)
-    box = open_tab_again.bounding_box()
-    assert box is not None
-    assert 0.0 <= box["x"] <= 390.0 - box["width"]
-
-
-def test_neither_a_closed_page_nor_an_ended_server_leaves_a_study_behind(tmp_path, chrome) -> None:
-    server = Server(tmp_path / "log")
-    server.wait()
-    page = chrome.new_page()
-    page.goto(server.address)
-    open_tab(page, "Study")
-    page.get_by_text("Growth with the size").click()
-    press(page, "Start")
-    expect(page.get_by_text(re.compile("Errors of LATIN")).first).to_be_visible(timeout=WAIT)
-    server.stop()
-    page.close()
-    wait_for(lambda: server.processes() == [])
-
-
-def test_a_changed_setting_starts_from_the_run_before_and_says_so(open_page) -> None:
-    page = open_page()
-    status = page.locator(".status").first
-    expect(status).to_contain_text("converged", timeout=WAIT)
-    page.get_by_role("switch", name="Start from the run before").click()
-    page.get_by_role("slider", name="Peak load").press("ArrowRight")
-    expect(status).to_contain_text("Started from the run before it", timeout=WAIT)
-    expect(status).to_contain_text("from zero")
-    page.locator("body").press("r")
-    expect(status).not_to_contain_text("Started from", timeout=WAIT)
+def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
+    for layers, refused in ((3, False), (20, True)):
+        settings = LayersSettings.checked({"layers": layers, "instants": 11})
+        report = StudyReport(errand, "", lambda chosen=settings: chosen, lambda: 0)
+        report.open()
+        assert report._start.disabled == refused
+        assert ("would take too long here" in report._progress.object) == refused

@@ -1,0 +1,49 @@
+"""Bars that several tests run, with what they compare."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+
+from solver.discrete import discretise
+from solver.latin import iterations
+from solver.scenes.bar import BarSettings
+
+SMALL = {"elements": 30, "instants": 41, "substructures": 6}
+
+
+def options(**values):
+    return BarSettings.checked({"tolerance": 1e-26, "max_iterations": 20_000, **values})
+
+
+def table(forces):
+    times = np.linspace(0.0, 1.0, len(forces))
+    return [[float(t), float(f)] for t, f in zip(times, forces, strict=True)]
+
+
+def sample(chosen, number):
+    """Give the iterate of some number."""
+    return next(islice(iterations(discretise(chosen), chosen), number - 1, None))
+
+
+def relative(found, expected):
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+def boundary_of(problem, reference):
+    """Give W and F of a reference on every row, scaled: what elasticity leaves goes to the ends."""
+    law = problem.friction
+    displacement = reference.displacement / problem.scales.displacement
+    friction = reference.friction_force / problem.scales.force
+    share = law.bound / np.bincount(law.points, weights=law.bound)[law.points]
+    force = np.zeros((problem.n_rows, problem.n_instants))
+    force[law.rows] = share[:, None] * friction[law.points]
+    for part in problem.substructures:
+        own = np.isin(part.rows, law.rows)
+        rest = part.elasticity.stiffness @ displacement[part.dofs]
+        if part.body_force is not None:
+            rest -= part.body_force
+        rest[part.elasticity.trace[own]] -= force[part.rows[own]]
+        force[part.rows[~own]] = rest[part.elasticity.trace[~own]]
+    return displacement[problem.row_dofs], force

@@ -1,0 +1,101 @@
+"""Pages as tests open them, and what is found there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from browser import Server
+from playwright.sync_api import Browser, Locator, Page, expect
+
+ENDLESS = "max_iterations=100000&tolerance=1e-30"
+IGNORED = ("Failed to load resource", "favicon")
+OURS = re.compile(r'File ".*/(app|solver)/')
+"""In a traceback; a page that is closed leaves those of the web server."""
+REPORTS = {
+    "Study": "Every form of LATIN, the incremental solver and the public QP solvers",
+    "Stability": "Stiff and extreme cases of every scene",
+}
+"""What stands on the tabs that have a button to start."""
+Visit = Callable[..., Page]
+
+
+@contextmanager
+def visits(server: Server, chrome: Browser) -> Iterator[Visit]:
+    """Open pages, and close them; neither they nor the server may complain meanwhile."""
+    pages: list[Page] = []
+    complaints: list[str] = []
+    said_before = len(server.log)
+
+    def visit(query: str = "", width: int = 1280, height: int = 720) -> Page:
+        page = chrome.new_page(viewport={"width": width, "height": height})
+        page.on(
+            "console",
+            lambda message: (
+                complaints.append(message.text)
+                if message.type == "error" and not message.text.startswith(IGNORED)
+                else None
+            ),
+        )
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        pages.append(page)
+        page.goto(server.address + query)
+        return page
+
+    yield visit
+    for page in pages:
+        page.close()
+    assert complaints == []
+    assert not OURS.search(server.log[said_before:])
+
+
+def status(page: Page) -> Locator:
+    return page.locator(".status").first
+
+
+def iteration(page: Page) -> int:
+    words = page.locator(".status div").first.inner_text()
+    found = re.search(r"(?:iteration|after) (\d+)", words)
+    assert found, words
+    return int(found[1])
+
+
+def slider(page: Page, name: str) -> Locator:
+    return page.get_by_role("slider", name=re.compile(rf"^{name}\b"))
+
+
+def card(page: Page, name: str) -> Locator:
+    return page.locator(".card").filter(has_text=name)
+
+
+def choose(box: Locator, option: str) -> None:
+    box.click()
+    box.page.get_by_role("menuitem", name=option).click()
+
+
+def press(page: Page, name: str) -> None:
+    page.get_by_role("button", name=name, exact=True).locator("visible=true").click()
+
+
+def open_report(page: Page, name: str) -> None:
+    """Go to a tab, and wait until it alone is there: its buttons are called as those of others."""
+    press(page, name)
+    for tab, words in REPORTS.items():
+        expect(page.get_by_text(words).first).to_be_visible(visible=tab == name)
+
+
+def bodies_drawn(page: Page, number: str) -> None:
+    """Wait until the number of quadrilaterals that the browser draws is as an expression says."""
+    page.wait_for_function(
+        f"""() => {{
+          const documents = window.Bokeh ? Bokeh.documents : []
+          const models = documents.length ? documents[0]._all_models.values() : []
+          for (const {{type, data}} of models) {{
+            if (type === "ColumnDataSource" && data.xs && data.ys && data.value) {{
+              return (data.xs.length && data.xs[0].length === 4 ? data.xs.length : 0) {number}
+            }}
+          }}
+          return false
+        }}"""
+    )

@@ -1,0 +1,78 @@
+"""The tabs beside the live run: nothing is in them before one asks, and all of it can be left."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from browser import Server
+from pages import ENDLESS, Visit, open_report, press, status, visits
+from playwright.sync_api import Browser, Page, expect
+
+TINY = "?elements=8&substructures=2&instants=5"
+
+
+@pytest.fixture(scope="module")
+def page(server: Server, chrome: Browser) -> Iterator[Page]:
+    """Give one page: every test below has a tab of its own on it."""
+    with visits(server, chrome) as visit:
+        opened = visit(TINY)
+        expect(status(opened)).to_contain_text("iteration")
+        yield opened
+
+
+def test_the_page_makes_a_study_of_its_settings_when_asked(page: Page) -> None:
+    open_report(page, "Study")
+    measured = page.get_by_text("How it was measured")
+    expect(measured).to_have_count(0)
+    press(page, "Start")
+    expect(measured).to_be_visible()
+    expect(page.get_by_text("Study: substructures 2")).to_be_visible()
+    expect(page.get_by_text("incremental solver").first).to_be_visible()
+    with page.expect_download() as caught:
+        page.get_by_text("levels.csv").click()
+    assert caught.value.suggested_filename == "levels.csv"
+    press(page, "Live")
+    expect(measured).to_be_hidden()
+    open_report(page, "Study")
+    expect(measured).to_be_visible()
+
+
+def test_the_stability_table_fills_row_by_row_and_can_be_filtered(page: Page) -> None:
+    open_report(page, "Stability")
+    press(page, "Start")
+    cells = page.locator("td.verdict")
+    expect(cells.nth(5)).to_be_visible()
+    press(page, "Not right")
+    expect(page.locator("td.verdict", has_text="right")).to_have_count(0)
+    expect(cells.first).to_have_text("told")
+    press(page, "Cancel")
+    expect(page.get_by_text(re.compile("runs pass"))).to_be_visible()
+
+
+def test_the_papers_figures_are_shown_and_the_live_run_comes_back(page: Page) -> None:
+    press(page, "Figures")
+    expect(page.get_by_text("Fig. 8").first).to_be_visible()
+    expect(page.locator(".plots").first).to_be_hidden()
+    press(page, "Live")
+    expect(page.locator(".plots").first).to_be_visible()
+    expect(page.get_by_text("Fig. 8").first).to_be_hidden()
+
+
+def test_the_live_tab_says_that_its_run_waits_and_a_cancelled_study_lets_it_go_on(
+    open_page: Visit,
+) -> None:
+    page = open_page(f"?{ENDLESS}")
+    expect(status(page)).to_contain_text("iteration")
+    open_report(page, "Study")
+    page.get_by_text("Growth with the size").click()
+    press(page, "Start")
+    expect(page.get_by_text(re.compile("Errors of LATIN")).first).to_be_visible()
+    press(page, "Live")
+    expect(status(page)).to_contain_text("waits for the study")
+    open_report(page, "Study")
+    press(page, "Cancel")
+    expect(page.get_by_text("Cancelled.")).to_be_visible()
+    press(page, "Live")
+    expect(status(page)).to_contain_text("running")

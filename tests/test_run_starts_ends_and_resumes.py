@@ -1,0 +1,156 @@
+"""A run ends where it should, resumes to the bit, and its iterates are snapshots."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+from dataclasses import replace
+from itertools import islice, pairwise
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from bars import SMALL, boundary_of, options, sample
+
+from solver.discrete import discretise
+from solver.latin import Checkpoint, Ending, iterations, solve
+from solver.latin.direction import search_direction
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+
+
+@pytest.mark.parametrize("multiscale", [True, False])
+def test_without_load_the_run_stops_at_once(multiscale):
+    chosen = options(peak=0.0, multiscale=multiscale)
+    solution = solve(discretise(chosen), chosen)
+    assert solution.status.ending is Ending.CONVERGED
+    assert solution.iterate.number == 1
+    assert solution.records[-1].indicator == 0.0
+    assert solution.records[-1].behaviour == 0.0
+    assert not solution.iterate.displacement.any()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"multiscale": False},
+        {"substructures": 1},
+        {"elements": 53, "substructures": 7},
+        {"load": "random", "peak": 2400.0},
+        {"body_force": 1000.0, "support_displacement": 5e-4, "friction_profile": "rising"},
+    ],
+    ids=str,
+)
+def test_started_at_the_reference_the_run_stops_at_once(change):
+    chosen = options(**change, k_scale=2.0)
+    problem = discretise(chosen)
+    reference = incremental(problem)
+    displacement, force = boundary_of(problem, reference)
+    k = search_direction(problem, chosen)
+    start = Checkpoint(0, 0.0, displacement + force / k[:, None])
+    solution = solve(
+        problem,
+        chosen.replace(tolerance=1e-20),
+        start=start,
+        distance=distance_to(reference, problem),
+    )
+    assert solution.status.ending is Ending.CONVERGED
+    assert solution.iterate.number == 1
+    assert solution.records[-1].error_displacement < 1e-10
+    assert solution.records[-1].error_force < 1e-8
+
+
+def test_started_where_it_ended_the_run_stops_at_once():
+    chosen = options(**SMALL)
+    problem = discretise(chosen)
+    ended = solve(problem, chosen).iterate
+    again = solve(problem, chosen, start=ended.checkpoint)
+    assert again.status.ending is Ending.CONVERGED
+    assert again.iterate.number == ended.number + 1
+    assert again.iterate.seconds > ended.seconds
+
+
+@pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 500.0}], ids=str)
+@pytest.mark.parametrize("elements", [30, 32])
+def test_resuming_from_a_checkpoint_continues_bit_by_bit(change, elements):
+    chosen = options(**{**SMALL, "elements": elements}, **change)
+    problem = discretise(chosen)
+    straight = list(islice(iterations(problem, chosen), 12))
+    resumed = list(islice(iterations(problem, chosen, straight[6].checkpoint), 5))
+    for one, other in zip(straight[7:], resumed, strict=True):
+        assert one.number == other.number
+        for name in ("outgoing", "incoming", "local_displacement", "local_incoming"):
+            assert np.array_equal(getattr(one, name), getattr(other, name))
+
+
+def test_the_clock_stands_still_while_the_consumer_looks(monkeypatch):
+    now = 0.0
+
+    def clock():
+        nonlocal now
+        now += 1.0
+        return now
+
+    module = importlib.import_module("solver.latin.iterations")
+    monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=clock))
+    chosen = options(**SMALL)
+    seconds = []
+    for iterate in islice(iterations(discretise(chosen), chosen), 5):
+        seconds.append(iterate.seconds)
+        now += 1e6
+    assert seconds == [2.0, 3.0, 4.0, 5.0, 6.0]
+
+
+def test_iterates_are_read_only():
+    iterate = sample(options(**SMALL), 3)
+    for name in ("outgoing", "incoming", "local_displacement", "local_incoming", "k"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(iterate, name)[...] = 1.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        iterate.number = 7
+    with pytest.raises(ValueError, match="read-only"):
+        iterate.checkpoint.outgoing[0, 0] = 1.0
+
+
+def test_iterates_stay_as_they_are_when_the_iteration_goes_on():
+    chosen = options(**SMALL)
+    problem = discretise(chosen)
+    kept, copies = [], []
+    for iterate in islice(iterations(problem, chosen), 6):
+        kept.append(iterate)
+        copies.append(
+            [iterate.outgoing.copy(), iterate.incoming.copy(), iterate.local_displacement.copy()]
+        )
+    for iterate, copy in zip(kept, copies, strict=True):
+        fields = [iterate.outgoing, iterate.incoming, iterate.local_displacement]
+        assert all(np.array_equal(one, other) for one, other in zip(fields, copy, strict=True))
+    for before, after in pairwise(kept):
+        assert np.array_equal(before.incoming, after.local_incoming)
+        assert not np.array_equal(before.outgoing, after.outgoing)
+
+
+def test_a_cancelled_and_an_exhausted_run_keep_their_last_iterate():
+    chosen = options(**SMALL)
+    problem = discretise(chosen)
+    answers = iter([False, False, True])
+    cancelled = solve(problem, chosen, cancelled=lambda: next(answers))
+    exhausted = solve(problem, chosen.replace(max_iterations=3))
+    assert cancelled.status.ending is Ending.CANCELLED
+    assert exhausted.status.ending is Ending.EXHAUSTED
+    for solution in (cancelled, exhausted):
+        assert solution.iterate.number == 3
+        assert [entry.iteration for entry in solution.records] == [1, 2, 3]
+        assert solution.status.advice
+    assert np.array_equal(cancelled.iterate.outgoing, exhausted.iterate.outgoing)
+
+
+def test_a_run_whose_numbers_overflow_says_where_and_keeps_the_last_good_iterate():
+    chosen = options(**SMALL)
+    problem = discretise(chosen)
+    start = next(iterations(problem, chosen)).checkpoint
+    huge = replace(start, outgoing=start.outgoing * 1e160)
+    with np.errstate(over="ignore", invalid="ignore"):
+        solution = solve(problem, chosen, start=huge)
+    assert solution.status.ending is Ending.DIVERGED
+    assert "at iteration 2" in solution.status.advice
