@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from solver.discrete import discretise
-from solver.discrete.strand import axial_forces
 from solver.latin import Ending, solve
 from solver.reference.broken_wire import broken_wire
 from solver.scenes.strand import StrandSettings, strand
@@ -29,6 +28,19 @@ def solved(**changes):
     solution = solve(discretise(settings), settings)
     assert solution.status.ending is Ending.CONVERGED
     return strand(settings), solution.iterate
+
+
+def axial_forces(scene, displacement):
+    """Give the axial force of every element, shape (n_wires, n_elements, n_instants), N."""
+    elongation = np.diff(displacement, axis=0)
+    between = (scene.elements + 1) * np.arange(1, scene.wires) - 1
+    if scene.broken is not None:
+        wire, node = scene.broken
+        between += np.arange(1, scene.wires) >= wire
+        between = np.append(between, (wire - 1) * (scene.elements + 1) + node)
+    stiffness = scene.stiffness * scene.elements / scene.length
+    inside = np.delete(elongation, between, axis=0)
+    return stiffness * inside.reshape(scene.wires, scene.elements, -1)
 
 
 def wire_forces(**changes):

@@ -45,9 +45,9 @@ SMALL = {
     "pgd_fixed_point_steps": 10,
     "anderson_memory": 30,
 }
+"""Upper bounds that keep a run short; all other settings go over their whole range."""
 SECTION = (1e-4, 1e4)
 """Range of the factors on the section: their contrast is bounded, so most tables are refused."""
-"""Upper bounds that keep a run short; all other settings go over their whole range."""
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
 DECADES = 12.0
 """Decades below one that a value may be small by, where its range begins at zero."""

@@ -45,22 +45,6 @@ def discretise_strand(scene: Strand) -> Problem:
     )
 
 
-def axial_forces(scene: Strand, displacement: Array) -> Array:
-    """Give the axial force of every element, shape (n_wires, n_elements, n_instants), N.
-
-    `displacement` is that of the problem's degrees of freedom, shape (n_dofs, n_instants), m.
-    """
-    elongation = np.diff(displacement, axis=0)
-    between = (scene.elements + 1) * np.arange(1, scene.wires) - 1
-    if scene.broken is not None:
-        wire, node = scene.broken
-        between += np.arange(1, scene.wires) >= wire
-        between = np.append(between, (wire - 1) * (scene.elements + 1) + node)
-    stiffness = scene.stiffness * scene.elements / scene.length
-    inside = np.delete(elongation, between, axis=0)
-    return np.asarray(stiffness * inside.reshape(scene.wires, scene.elements, -1))
-
-
 class _Pieces:
     """How the wires are cut, and the numbers of degrees of freedom and rows.
 

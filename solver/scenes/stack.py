@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from solver.loads import Array
 
-SIDES = ("left", "right", "top", "bottom")
-
 
 @dataclass(frozen=True, eq=False)
 class Given:

@@ -41,9 +41,3 @@ def strand_cases() -> tuple[Case, ...]:
         case("substructures", "as many as elements", {"substructures": 24}, TOLD),
         case("instants", "1", {"instants": 1, "load": "ramp"}),
     )
-
-
-def _of_strand(
-    group: str, name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
-) -> Case:
-    return Case(group, name, {**SMALL, **changes}, expected, quick, "strand")
