@@ -16,7 +16,6 @@ from test_random_settings import RANDOM, RUNS, WRONG, values_of
 from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import Ending, solve
-from solver.latin.solve import agreement
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import distance_to
@@ -109,8 +108,6 @@ def assert_ends(scene, raw):
 
 def assert_right(chosen, reference, solution):
     last = solution.records[-1]
-    assert last.indicator <= chosen.tolerance
-    assert last.behaviour <= agreement(chosen.tolerance)
     if chosen.tolerance > 1e-16 or not reference.contact_force.any():
         return
     if reference.ambiguous.any() or not reference.converged.all():
