@@ -32,6 +32,8 @@ CURVES = (
     ("error_force", BLUE, "error f", "solid"),
 )
 FLOOR = 1e-18
+LEAST_SPAN = (1e-2, 10.0)
+"""What is shown at least; a curve beyond it widens it by whole decades."""
 ERRORS = 2
 """First of them that is an error, and needs a reference."""
 
@@ -65,7 +67,7 @@ class Convergence:
         self._ticket = -1
         self._count = 0
         self._count_beside = 0
-        self._lowest = 1.0
+        self._lowest, self._highest = LEAST_SPAN
         made = self.figure
         for name, color, _, dash in CURVES:
             if dash == "solid":
@@ -115,7 +117,8 @@ class Convergence:
 
     def _begin(self, picture: Picture) -> None:
         """Put all records at once: rows streamed behind new data would be sent twice."""
-        self._ticket, self._lowest = picture.run.ticket, 1e-2
+        self._ticket = picture.run.ticket
+        self._lowest, self._highest = LEAST_SPAN
         now = picture.run.history()
         self._now.data = {name: now[name] for name in self._now.data}
         self._fit(now)
@@ -129,9 +132,8 @@ class Convergence:
 
     def _fit(self, new: dict[str, np.ndarray]) -> None:
         values = [value for name, *_ in CURVES for value in new[name]]
-        lowest, _ = decades([self._lowest, *values], FLOOR)
-        self._lowest = min(self._lowest, lowest)
-        set_range(self.figure.y_range, self._lowest, 10.0)
+        self._lowest, self._highest = decades([self._lowest, self._highest, *values], FLOOR)
+        set_range(self.figure.y_range, self._lowest, self._highest)
         mark_decades(self.figure.yaxis[0], self.figure.y_range)
 
 
