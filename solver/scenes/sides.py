@@ -87,6 +87,7 @@ def _of_component(side: str, component: str) -> dict[str, Parameter]:
             PRESETS,
             "time",
             "value",
+            ("s", "Pa or m"),
             f"{title} value over time: a preset that reaches the mean, or points (s, Pa or m).",
             group=group,
             title=f"{title} path",
