@@ -48,14 +48,25 @@ LOST_AFTER = 2.0
 class Dashboard:
     """One page over one session: what is done is told to the session, what it holds is drawn.
 
+    Parameters
+    ----------
+    session
+        What the page shows.
+    complaint
+        What was refused in the page's address; it is shown until a setting changes.
+    on_phone
+        Whether the run comes first, with the settings out of the way and the tabs above it.
+
     Attributes
     ----------
     page
         What is served.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, *, complaint: str = "", on_phone: bool = False) -> None:
         self.session = session
+        self._complaint = complaint
+        self._asked_for = session.wanted
         self._sent_at = 0.0
         self._dirty = False
         self._alone = True
@@ -78,8 +89,11 @@ class Dashboard:
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
         self._live = self._make_live()
-        self._tabs = Tabs(session, self._live, self._style, self._mark)
+        self._tabs = Tabs(session, self._live, self._style, self._on_tab)
         self.page = self._make_page()
+        if on_phone:
+            self.page.sidebar_open = False
+            self._clear_the_header()
         self._sidebar.show(session.wanted)
         self._arrange()
 
@@ -281,7 +295,11 @@ class Dashboard:
             self._titles[view.name].object = card_title(view.name, view.keys)
         sought = frame.iteration if frame is not None and not session.follows else None
         self._status.object = status_line(
-            session.run, session.running, sought, held=session.is_held
+            session.run,
+            session.running,
+            sought,
+            held=session.is_held,
+            complaint=self._complaint if session.wanted is self._asked_for else "",
         )
         if at_once:
             return
@@ -320,8 +338,15 @@ class Dashboard:
         if self._loaded and self._pulse.narrow:
             self.page.sidebar_open = False
         if self._loaded and self._pulse.phone:
-            self.page.header = []
-            self._tabs.leave_the_header()
+            self._clear_the_header()
+
+    def _clear_the_header(self) -> None:
+        self.page.header = []
+        self._tabs.leave_the_header()
+
+    def _on_tab(self) -> None:
+        self._pulse.hears = self._tabs.shows_the_run
+        self._mark()
 
     def _on_key(self, event: Any) -> None:
         action = {

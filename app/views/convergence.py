@@ -27,9 +27,9 @@ from solver.settings import Settings
 
 CURVES = (
     ("indicator", GREY, "indicator η", "dashed"),
-    ("behaviour", PURPLE, "k-free", "dashed"),
-    ("error_displacement", GREEN, "error u", "solid"),
-    ("error_force", BLUE, "error f", "solid"),
+    ("behaviour", PURPLE, "k-free indicator", "dashed"),
+    ("error_displacement", GREEN, "displacement error", "solid"),
+    ("error_force", BLUE, "friction force error", "solid"),
 )
 FLOOR = 1e-18
 LEAST_SPAN = (1e-2, 10.0)
