@@ -180,6 +180,8 @@ class Dashboard:
             self._figures,
             self._plots,
             self._pulse,
+            css_classes=["live"],
+            stylesheets=[self._style],
             sizing_mode="stretch_width",
             margin=(4, 10),
         )

@@ -26,10 +26,10 @@ from solver.latin import Record
 from solver.settings import Settings
 
 CURVES = (
-    ("indicator", GREY, "indicator η", "dashed"),
+    ("indicator", GREY, "η", "dashed"),
     ("behaviour", PURPLE, "k-free indicator", "dashed"),
     ("error_displacement", GREEN, "displacement error", "solid"),
-    ("error_force", BLUE, "friction force error", "solid"),
+    ("error_force", BLUE, "force error", "solid"),
 )
 FLOOR = 1e-18
 LEAST_SPAN = (1e-2, 10.0)
@@ -56,7 +56,7 @@ class Convergence:
     def __init__(self) -> None:
         self.figure = make_figure(
             "Iteration",
-            "Indicator, relative error",
+            "Indicator, error",
             x_range=Range1d(0, 20),
             y_range=Range1d(1e-4, 10),
             y_axis_type="log",
