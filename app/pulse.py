@@ -41,9 +41,10 @@ class Pulse(JSComponent):
           typed.tagName === "TEXTAREA" || typed.isContentEditable
         if (writes || event.ctrlKey || event.metaKey || event.altKey) { return }
         if (!model.hears || event.repeat || ![" ", "s", "r"].includes(event.key)) { return }
-        // In a list letters choose, and so does the space bar, which presses what has the focus.
-        const lists = "[role=option], [role=menuitem], [role=combobox]"
-        const keeps = event.key === " " ? lists + ", button, [role=switch]" : lists
+        // In an open list letters choose; the space bar presses what has the focus.
+        const lists = "[role=option], [role=menuitem], [role=listbox], [role=menu]"
+        const presses = ", button, [role=combobox], [role=switch]"
+        const keeps = event.key === " " ? lists + presses : lists
         if (typed.closest && typed.closest(keeps)) { return }
         event.preventDefault()
         count += 1

@@ -176,10 +176,10 @@ def number(value: float) -> str:
         return "–"
     if value == 0.0:
         return "0"
-    exponent = math.floor(math.log10(abs(value)))
-    if -3 <= exponent < 3:
+    if 1e-3 <= value < 1e3:
         return f"{value:.3g}"
-    return f"{value / 10.0**exponent:.1f}·10<sup>{exponent}</sup>"
+    digits, exponent = f"{value:.1e}".split("e")
+    return f"{digits}·10<sup>{int(exponent)}</sup>"
 
 
 def percent(value: float) -> str:

@@ -1,4 +1,4 @@
-"""A refused address says why, and what is valid in it holds."""
+"""The page says what holds: of its address, of a run, in numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from app.address import settings_from_query
 from app.recording import Recording
 from app.serve import is_phone
-from app.words import status_line
+from app.words import number, status_line
 from solver.scenes.bar import BarSettings
 
 PHONE = "Mozilla/5.0 (Linux; Android 14; Pixel 8) AppleWebKit/537.36 Chrome/130.0 Mobile Safari"
@@ -63,3 +63,18 @@ def test_a_phone_is_known_by_what_it_asks_with() -> None:
     assert is_phone({"User-Agent": DESK, "Sec-Ch-Ua-Mobile": "?1"})
     assert not is_phone({"User-Agent": DESK, "Sec-Ch-Ua-Mobile": "?0"})
     assert not is_phone({})
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (9.98e-11, "1.0·10<sup>-10</sup>"),
+        (2.3e-4, "2.3·10<sup>-4</sup>"),
+        (0.0164, "0.0164"),
+        (4e6, "4.0·10<sup>6</sup>"),
+        (0.0, "0"),
+        (float("nan"), "–"),
+    ],
+)
+def test_numbers_have_one_digit_before_the_point_of_a_power(value: float, text: str) -> None:
+    assert number(value) == text
