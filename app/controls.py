@@ -16,11 +16,16 @@ from solver.definitions import Curve, about
 from solver.settings import Settings
 
 POINTS = "table of points"
-LOGARITHMIC = "const v = 10 ** tick; return Number(v.toPrecision(3)).toString()"
-LINEAR = "return Number(tick.toPrecision(4)).toString()"
-PLAIN = "0[.]000"
-PLAIN_FROM = 0.1
-"""Largest value of a slider from which three places behind the point are enough."""
+WRITTEN = """
+const rounded = Number(value.toPrecision(PLACES)), size = Math.abs(rounded)
+if (size === 0 || (size >= 1e-3 && size < 1e5)) { return rounded.toString() }
+const [digits, power] = rounded.toExponential().split("e")
+const raised = [...power.replace("+", "")].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[one] ?? "⁻").join("")
+return (digits === "1" ? "" : digits + "·") + "10" + raised
+"""
+LOGARITHMIC = "const value = 10 ** tick" + WRITTEN.replace("PLACES", "3")
+LINEAR = "const value = tick" + WRITTEN.replace("PLACES", "4")
+"""Numbers that are very large or small have a power of ten, and no row of noughts."""
 
 Report = Callable[[str, Any], None]
 
@@ -114,10 +119,13 @@ class SliderControl(Control):
         if whole:
             return pmui.IntSlider(start=low, end=high, **self._common())
         step = 10.0 ** math.floor(math.log10((high - low) / 80))
-        form = (
-            PLAIN if max(abs(low), abs(high)) >= PLAIN_FROM else CustomJSTickFormatter(code=LINEAR)
+        return pmui.FloatSlider(
+            start=low,
+            end=high,
+            step=step,
+            format=CustomJSTickFormatter(code=LINEAR),
+            **self._common(),
         )
-        return pmui.FloatSlider(start=low, end=high, step=step, format=form, **self._common())
 
     @property
     def _logarithmic(self) -> bool:
@@ -178,16 +186,28 @@ class CurveControl(Control):
         self.widget.value = POINTS
         rows = [list(pair) for pair in value]
         if self._table is None:
-            headings = [self.definition.abscissa, self.definition.ordinate]
-            self._table = PointsTable(
-                columns=headings, shown=rows, sizing_mode="stretch_width", margin=(4, 10)
-            )
-            self._table.param.watch(
-                lambda event: self._report(self.name, [tuple(row) for row in event.new]), "wanted"
-            )
+            self._table = self._make_table(rows)
             self.view[1:] = [self._table]
         else:
-            self._table.shown = rows
+            self._table.show(rows)
+
+    def _make_table(self, rows: list[list[float]]) -> PointsTable:
+        names = (self.definition.abscissa, self.definition.ordinate)
+        made = PointsTable(
+            columns=[
+                f"{name} ({unit})" if unit else name
+                for name, unit in zip(names, self.definition.units, strict=True)
+            ],
+            shown=rows,
+            sizing_mode="stretch_width",
+            margin=(4, 10),
+        )
+        made.param.watch(self._on_points, "wanted")
+        return made
+
+    def _on_points(self, event: param.parameterized.Event) -> None:
+        if event.new:
+            self._report(self.name, [tuple(row) for row in event.new])
 
 
 def make_control(

@@ -11,42 +11,34 @@ import panel as pn
 import panel_material_ui as pmui
 from panel.util import edit_readonly
 
+from app.cards import Cards
 from app.looks import Looks
+from app.painter import Painter
 from app.pulse import Pulse, send_without_delay
 from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
-from app.views.axial import Axial
-from app.views.basis_size import BasisSize
-from app.views.convergence import Convergence
-from app.views.deformed import Deformed
 from app.views.drawing import Picture, View
-from app.views.error_time import ErrorTime
-from app.views.friction import FrictionForce
-from app.views.loop import Loop
-from app.views.modes import SpaceModes, TimeFunctions
-from app.views.spectra import Spectra
-from app.views.status_map import StatusMap
-from app.views.tractions import Tractions
-from app.words import card_title, key_figures, status_line
-from solver.scenes.plane import PlaneSettings
-from solver.scenes.strand import StrandSettings
-from solver.settings import Settings
+from app.words import key_figures, status_line
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
-IN_FLIGHT = 1
 FIRST_PATIENCE = 0.4
-REST = 2.0
-VIEWS_AT_ONCE = 3
-VIEWS_AT_FIRST = 1
 FIRST_ROW = 3
-LOST_AFTER = 2.0
 
 
 class Dashboard:
     """One page over one session: what is done is told to the session, what it holds is drawn.
+
+    Parameters
+    ----------
+    session
+        What the page shows.
+    complaint
+        What was refused in the page's address; it is shown until a setting changes.
+    on_phone
+        Whether the run comes first, with the settings out of the way and the tabs above it.
 
     Attributes
     ----------
@@ -54,23 +46,24 @@ class Dashboard:
         What is served.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, *, complaint: str = "", on_phone: bool = False) -> None:
         self.session = session
-        self._sent_at = 0.0
-        self._dirty = False
+        self._complaint = complaint
+        self._asked_for = session.wanted
         self._alone = True
         self._loaded = False
-        self._rest_until = 0.0
-        self._owed: list[View] = []
-        self._drawn_ticket = -1
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
-        self._pulse = self._make_pulse()
-        self.transport = Transport(session, self._mark)
-        self._looks = Looks(session, self._mark)
-        self._views = self._make_views()
-        self._made_for: set[type[Settings]] = set()
-        self._titles: dict[str, Any] = {}
-        self._cards: dict[str, Any] = {}
+        self._pulse = Pulse()
+        self._painter = Painter(self._pulse)
+        self._listen()
+        self.transport = Transport(session, self._painter.mark)
+        self._looks = Looks(session, self._painter.mark)
+        self._cards = Cards(
+            self._style,
+            self.transport.choose_time,
+            self.transport.choose_substructure,
+            lambda: self._looks.magnification,
+        )
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
         self._status = self._html("status")
         self._figures = self._html("figures")
@@ -78,8 +71,11 @@ class Dashboard:
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
         self._live = self._make_live()
-        self._tabs = Tabs(session, self._live, self._style, self._mark)
+        self._tabs = Tabs(session, self._live, self._style, self._on_tab)
         self.page = self._make_page()
+        if on_phone:
+            self.page.sidebar_open = False
+            self._clear_the_header()
         self._sidebar.show(session.wanted)
         self._arrange()
 
@@ -95,7 +91,6 @@ class Dashboard:
             time.sleep(0.002)
             self.session.collect()
         if self.session.shown is not None:
-            self._owed = []
             self._draw(self._shown[:FIRST_ROW])
 
     def loaded(self) -> None:
@@ -115,7 +110,7 @@ class Dashboard:
             self.session.rest(alone)
         if self.session.attend():
             self._tabs.refresh()
-            self._mark()
+            self._painter.mark()
         self._collect()
 
     def end(self, context: Any) -> None:
@@ -127,37 +122,10 @@ class Dashboard:
         if pn.state.notifications is not None:
             pn.state.notifications.error(text, duration=8000)
 
-    def _make_pulse(self) -> Pulse:
-        pulse = Pulse()
-        pulse.param.watch(self._on_painted, "painted")
-        pulse.param.watch(self._on_key, "key")
-        pulse.param.watch(lambda event: self._on_narrow(), "narrow")
-        return pulse
-
-    def _make_views(self) -> list[View]:
-        return [
-            FrictionForce(),
-            StatusMap(self.transport.choose_time),
-            Loop(),
-            Convergence(),
-            Spectra(),
-            ErrorTime(),
-            SpaceModes(),
-            TimeFunctions(),
-            BasisSize(self.transport.choose_substructure),
-        ]
-
-    def _add_views(self, settings: Settings) -> None:
-        """Make the views that only some scenes have, when the first of those comes."""
-        if type(settings) in self._made_for:
-            return
-        self._made_for.add(type(settings))
-        names = [view.name for view in self._views]
-        place = names.index(StatusMap.name)
-        if isinstance(settings, PlaneSettings) and Deformed.name not in names:
-            self._views[:0] = [Deformed(lambda: self._looks.magnification), Tractions()]
-        if isinstance(settings, StrandSettings):
-            self._views.insert(place, Axial())
+    def _listen(self) -> None:
+        self._pulse.param.watch(self._on_painted, "painted")
+        self._pulse.param.watch(self._on_key, "key")
+        self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
 
     def _make_live(self) -> pn.Column:
         return pn.Column(
@@ -166,6 +134,8 @@ class Dashboard:
             self._figures,
             self._plots,
             self._pulse,
+            css_classes=["live"],
+            stylesheets=[self._style],
             sizing_mode="stretch_width",
             margin=(4, 10),
         )
@@ -188,31 +158,6 @@ class Dashboard:
             page.busy = False
         return page
 
-    def _card_of(self, view: View) -> Any:
-        """Give a view's card, made when it is first shown."""
-        if view.name not in self._cards:
-            self._cards[view.name] = self._card(view)
-        return self._cards[view.name]
-
-    def _card(self, view: View) -> Any:
-        title = pn.pane.HTML(
-            card_title(view.name, view.keys),
-            css_classes=["title"],
-            stylesheets=[self._style],
-            sizing_mode="stretch_width",
-            margin=(4, 6, 0, 12),
-        )
-        self._titles[view.name] = title
-        plot = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=(0, 4))
-        return pn.Column(
-            title,
-            plot,
-            sizing_mode="stretch_both",
-            css_classes=["card"],
-            stylesheets=[self._style],
-            margin=0,
-        )
-
     def _html(self, role: str) -> Any:
         return pn.pane.HTML(
             "",
@@ -229,47 +174,35 @@ class Dashboard:
     def _arrange(self) -> None:
         """Show the views that are chosen and apply; frames carry what they need."""
         settings = self.session.wanted
-        self._add_views(settings)
-        fitting = [view for view in self._views if view.applies(settings)]
+        fitting = self._cards.fitting(settings)
         wanted = self._sidebar.offer([view.name for view in fitting])
         shown = [view for view in fitting if view.name in wanted]
         self.transport.arrange(settings)
-        cards = [self._card_of(view) for view in shown[: None if self._loaded else FIRST_ROW]]
+        cards = [self._cards.card_of(view) for view in shown[: None if self._loaded else FIRST_ROW]]
         if list(self._plots) != cards:
             self._plots[:] = cards
         self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
         self._shown = shown
         self._offer_looks()
         self._tabs.refresh()
-        self._mark()
+        self._painter.mark()
 
     def _offer_looks(self) -> None:
         bodies = any(view.watches == "mesh" for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
 
-    def _mark(self) -> None:
-        self._dirty = True
-
     def _collect(self) -> None:
         """Take what the worker sent and draw it, if the page has painted what it has."""
         if self.session.collect():
-            self._dirty = True
-        now = time.monotonic()
-        in_flight = self._pulse.frame - self._pulse.painted
-        looked_at = self._loaded and self._tabs.shows_the_run
-        waiting = looked_at and (self._dirty or bool(self._owed))
-        # The first picture of a run overtakes what is still on its way.
-        first = self.session.shown is not None and self.session.run.ticket != self._drawn_ticket
-        free = in_flight < IN_FLIGHT and now >= self._rest_until
-        free = free or now - self._sent_at > LOST_AFTER
-        if waiting and (first or free):
-            self._sent_at = now
-            if self._dirty:
-                self._owed += [view for view in self._shown if view not in self._owed]
-                self._dirty = False
+            self._painter.mark()
+        if not (self._loaded and self._tabs.shows_the_run):
+            return
+        ticket = self.session.run.ticket if self.session.shown is not None else None
+        turn = self._painter.turn(self._shown, ticket)
+        if turn is not None:
             with pn.io.hold():
-                self._draw(self._next_views(), at_once=first)
-                self._pulse.frame += 1
+                self._draw(turn.views, at_once=turn.is_first)
+                self._painter.send()
 
     def _draw(self, views: Sequence[View], *, at_once: bool = False) -> None:
         """Draw some views and the words about the run; `at_once` leaves the rest for the next."""
@@ -277,11 +210,14 @@ class Dashboard:
         frame = session.shown
         picture = Picture(session.run, session.before, tuple(session.past), frame, session.instant)
         for view in views:
-            view.draw(picture)
-            self._titles[view.name].object = card_title(view.name, view.keys)
+            self._cards.draw(view, picture)
         sought = frame.iteration if frame is not None and not session.follows else None
         self._status.object = status_line(
-            session.run, session.running, sought, held=session.is_held
+            session.run,
+            session.running,
+            sought,
+            held=session.is_held,
+            complaint=self._complaint if session.wanted is self._asked_for else "",
         )
         if at_once:
             return
@@ -290,38 +226,27 @@ class Dashboard:
         entry = session.run.record_of(frame) if frame is not None else None
         self._figures.object = key_figures(session.run, session.before, entry)
 
-    def _next_views(self) -> list[View]:
-        """Give the views whose turn it is: a browser paints few at once sooner than all.
-
-        A new run shows the first views first; then all take turns.
-        """
-        if self.session.shown is not None and self.session.run.ticket != self._drawn_ticket:
-            self._drawn_ticket = self.session.run.ticket
-            self._owed = list(self._shown)
-            count = VIEWS_AT_FIRST
-        else:
-            count = VIEWS_AT_ONCE
-        turn, self._owed = self._owed[:count], self._owed[count:]
-        return [view for view in turn if view in self._shown]
-
     def _connections(self) -> int:
         context = pn.state.curdoc.session_context if pn.state.curdoc else None
         return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
-        """Leave the browser twice as long as it painted to listen to its user."""
-        now = time.monotonic()
-        if event.new == self._pulse.frame:
-            self._rest_until = now + REST * (now - self._sent_at)
-        if self.session.run.ticket == self._drawn_ticket:
+        if self._painter.has_drawn(self.session.run.ticket):
             self._sidebar.catch_up()
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:
             self.page.sidebar_open = False
         if self._loaded and self._pulse.phone:
-            self.page.header = []
-            self._tabs.leave_the_header()
+            self._clear_the_header()
+
+    def _clear_the_header(self) -> None:
+        self.page.header = []
+        self._tabs.leave_the_header()
+
+    def _on_tab(self) -> None:
+        self._pulse.hears = self._tabs.shows_the_run
+        self._painter.mark()
 
     def _on_key(self, event: Any) -> None:
         action = {

@@ -30,7 +30,8 @@ class PointsTable(JSComponent):
     shown
         The rows that hold.
     wanted
-        The rows as the user left them, whole numbers and all; sent after every edit.
+        The rows as the user left them, whole numbers and all; sent after every edit, and emptied
+        where other rows hold, which has the browser show those again.
     """
 
     columns = param.List(default=["", ""])
@@ -90,6 +91,7 @@ class PointsTable(JSComponent):
         })
       }
       model.on("shown", show)
+      model.on("wanted", () => { if (!model.wanted.length) { show() } })
       show()
       return box
     }
@@ -97,3 +99,9 @@ class PointsTable(JSComponent):
 
     def __init__(self, **params: Any) -> None:
         super().__init__(stylesheets=[STYLE], **params)
+
+    def show(self, rows: list[list[float]]) -> None:
+        """Show the rows that hold, also in place of others that the user wanted."""
+        self.shown = rows
+        if self.wanted and self.wanted != rows:
+            self.wanted = []

@@ -15,6 +15,7 @@ class Pulse(JSComponent):
 
     frame = param.Integer(default=0, doc="Number of the newest frame sent.")
     painted = param.Integer(default=0, doc="Number of the newest frame painted.")
+    hears = param.Boolean(default=True, doc="Whether keys move the run.")
     key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
@@ -39,9 +40,12 @@ class Pulse(JSComponent):
         const writes = typed.tagName === "INPUT" && typed.type !== "range" ||
           typed.tagName === "TEXTAREA" || typed.isContentEditable
         if (writes || event.ctrlKey || event.metaKey || event.altKey) { return }
-        if (![" ", "s", "r"].includes(event.key)) { return }
-        const presses = "button, [role=option], [role=combobox], [role=switch]"
-        if (event.key === " " && typed.closest && typed.closest(presses)) { return }
+        if (!model.hears || event.repeat || ![" ", "s", "r"].includes(event.key)) { return }
+        // In an open list letters choose; the space bar presses what has the focus.
+        const lists = "[role=option], [role=menuitem], [role=listbox], [role=menu]"
+        const presses = ", button, [role=combobox], [role=switch]"
+        const keeps = event.key === " " ? lists + presses : lists
+        if (typed.closest && typed.closest(keeps)) { return }
         event.preventDefault()
         count += 1
         model.key = event.key + count

@@ -107,7 +107,8 @@ class Recording:
     def title(self) -> str:
         """What is new in it, and whether it started from the run before it."""
         warm = self.choice is not None and self.choice.is_previous
-        return f"{self.label or 'before'}{', from the run before it' if warm else ''}"
+        label = self.label or ("first settings" if self.settings.changed() else "defaults")
+        return f"{label}{', from the run before it' if warm else ''}"
 
     @property
     def iteration(self) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import panel as pn
 import panel_material_ui as pmui
 from bokeh.document import Document
@@ -18,9 +20,8 @@ def open_page() -> pmui.Page:
     """Make the page of one session; its run starts when the browser is there."""
     _configure()
     settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
-    dashboard = Dashboard(Session(shared_pool(), shared_bench(), settings))
-    if complaint:
-        pn.state.onload(lambda: dashboard.complain(complaint))
+    session = Session(shared_pool(), shared_bench(), settings)
+    dashboard = Dashboard(session, complaint=complaint, on_phone=is_phone(pn.state.headers))
     dashboard.prepare()
     pn.state.onload(dashboard.loaded)
     document = pn.state.curdoc
@@ -28,6 +29,11 @@ def open_page() -> pmui.Page:
     dashboard.session.wake = lambda: document.add_next_tick_callback(dashboard.tick)
     pn.state.on_session_destroyed(dashboard.end)
     return dashboard.page
+
+
+def is_phone(headers: Mapping[str, str]) -> bool:
+    """Tell from a request whether a phone asks, which has room for the run alone."""
+    return headers.get("Sec-Ch-Ua-Mobile") == "?1" or "Mobi" in headers.get("User-Agent", "")
 
 
 def rehearse() -> None:

@@ -112,7 +112,8 @@ class Session:
             name: value for name, value in settings.values().items() if value != before.get(name)
         }
         self.settings = settings
-        label = _label(self.settings, changed) if before and changed else self.run.label
+        label = self.run.label if before else ""
+        label = _label(self.settings, changed) if before and changed else label
         self.run = Recording(self.run.ticket + 1, self.settings, label, is_warm=warm)
         self.follows = True
         self._pending = None

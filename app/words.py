@@ -25,15 +25,31 @@ HEADS = (
     "Displacement error",
     "Friction force error",
     "Run time",
-    "Iterations to 1 %",
+    "Iterations to 1 % force error",
 )
-ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
+ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 % force error")
+MEANINGS = {
+    "LATIN indicator η": "Distance between the two stages of the method, which also depends on k.",
+    "k-free indicator": "By how much the iterate breaks the laws of the interfaces, as a share of "
+    "the energy in play, whatever k is.",
+    "Run time": "Of the method alone, set-up included.",
+    "Iterations to 1 % force error": "After which the friction force is within 1 % of the "
+    "reference for the first time.",
+}
+"""What stands over a figure's name when one points at it."""
 
 
-def status_line(run: Recording, running: bool, sought: int | None, *, held: bool = False) -> str:
+def status_line(
+    run: Recording,
+    running: bool,
+    sought: int | None,
+    *,
+    held: bool = False,
+    complaint: str = "",
+) -> str:
     """Say what runs, how far it is, and how it ended with what to try (HTML).
 
-    A run that is `held` waits for a study that is timed.
+    A run that is `held` waits for a study that is timed; a complaint comes before the advice.
     """
     if run.notice and not run.records:
         return f"<b>{escape(run.notice)}</b>"
@@ -43,15 +59,18 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
         if parts == 1
         else (f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}")
     )
+    done = run.iteration or (run.newest.iteration if run.newest else 0)
     if run.status is not None:
         counted = "iteration" if run.iteration == 1 else "iterations"
         state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
     elif held:
-        state = f"<b>waits</b> for the study that is timed, at iteration {run.iteration}"
+        state = f"<b>waits</b> for the study that is timed, at iteration {done}"
     elif not running:
-        state = f"<b>paused</b> at iteration {run.iteration}"
+        state = f"<b>paused</b> at iteration {done}"
+    elif not done:
+        state = "<b>setting up</b>"
     else:
-        state = f"<b>running</b>, iteration {run.iteration}"
+        state = f"<b>running</b>, iteration {done}"
     line = f"{state} · {scale}"
     if run.newest is not None and run.newest.bases is not None:
         bases = run.newest.bases
@@ -65,7 +84,8 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
         line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
-    more = [start_line(run)] if run.is_warm else []
+    more = [f"<b>{escape(complaint)}</b>"] if complaint else []
+    more += [start_line(run)] if run.is_warm else []
     if run.status is not None:
         more.append(escape(run.status.advice))
     elif run.notice:
@@ -97,17 +117,17 @@ def key_figures(run: Recording, before: Recording | None, shown: Record | None) 
     if before is not None:
         rows.append(
             (
-                f"before ({escape(before.title)})" if before.label else "before",
+                f"before ({escape(before.title)})",
                 before,
                 before.records[-1] if before.records else None,
             )
         )
-    head = "".join(f"<th>{text}</th>" for text in ("", *heads))
+    head = "".join(f'<th title="{escape(MEANINGS.get(text, ""))}">{text}</th>' for text in heads)
     body = "".join(
         f"<tr><th>{name}</th>{''.join(f'<td>{cell}</td>' for cell in _cells(kept, entry))}</tr>"
         for name, kept, entry in rows
     )
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+    return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def _cells(run: Recording, entry: Record | None) -> Sequence[str]:
@@ -156,10 +176,10 @@ def number(value: float) -> str:
         return "–"
     if value == 0.0:
         return "0"
-    exponent = math.floor(math.log10(abs(value)))
-    if -3 <= exponent < 3:
+    if 1e-3 <= value < 1e3:
         return f"{value:.3g}"
-    return f"{value / 10.0**exponent:.1f}·10<sup>{exponent}</sup>"
+    digits, exponent = f"{value:.1e}".split("e")
+    return f"{digits}·10<sup>{int(exponent)}</sup>"
 
 
 def percent(value: float) -> str:

@@ -62,17 +62,27 @@ class About:
 
 
 class Curve(Parameter):
-    """A path given by a preset's name or by pairs (abscissa, value), linear in between."""
+    """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
-    __slots__ = ["abscissa", "ordinate", "presets"]
+    `units` are those of both, empty for a pure number.
+    """
+
+    __slots__ = ["abscissa", "ordinate", "presets", "units"]
 
     def __init__(
-        self, default: str, presets: Iterable[str], abscissa: str, ordinate: str, **rest: Any
+        self,
+        default: str,
+        presets: Iterable[str],
+        abscissa: str,
+        ordinate: str,
+        units: tuple[str, str],
+        **rest: Any,
     ) -> None:
         super().__init__(default=default, **rest)
         self.presets = tuple(presets)
         self.abscissa = abscissa
         self.ordinate = ordinate
+        self.units = units
 
 
 def about(parameter: Parameter) -> About:
@@ -132,7 +142,13 @@ def choice(default: str, options: Iterable[str], doc: str, **record: Any) -> par
 
 
 def curve(
-    default: str, presets: Iterable[str], abscissa: str, ordinate: str, doc: str, **record: Any
+    default: str,
+    presets: Iterable[str],
+    abscissa: str,
+    ordinate: str,
+    units: tuple[str, str],
+    doc: str,
+    **record: Any,
 ) -> Curve:
     """Define a path: a preset's name or a table of points."""
     return Curve(
@@ -140,6 +156,7 @@ def curve(
         presets,
         abscissa,
         ordinate,
+        units,
         doc=doc,
         constant=True,
         metadata={"about": About(**record)},

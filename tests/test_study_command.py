@@ -20,9 +20,11 @@ from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings
 from solver.study import peers
 from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, Course, Study
+from solver.study.figure_data import HUES
 from solver.study.growth import Growth, Size, growth
 from solver.study.machine import LIMITS
 from solver.study.peers import PEERS, PeerError, solve_by_peer
+from solver.study.study_panels import error_panels
 from solver.study.study_report import growth_table, table, verdicts
 
 TINY = ["study", "bar", "--set", "elements=20", "--set", "instants=21", "--set", "substructures=4"]
@@ -248,3 +250,13 @@ def test_the_report_states_the_threads_that_the_command_line_sets(tmp_path, give
         check=True,
     )
     assert f"BLAS threads: {stated};" in done.stdout
+
+
+def test_every_method_of_a_study_has_a_color_of_its_own():
+    names = [(name, "latin") for name in FORMS]
+    names += [(INCREMENTAL, "incremental"), *((peer.name, "peer") for peer in PEERS)]
+    courses = tuple(course(name, kind, [0.1, 0.2], [0.1, 0.01]) for name, kind in names)
+    for panel in error_panels(Study(BarSettings.checked({}), 1, "", courses, (), ())):
+        hues = [curve.hue for curve in panel.curves]
+        assert len(set(hues)) == len(hues) == len(names)
+        assert max(hues) <= len(HUES)

@@ -21,6 +21,7 @@ from app.views.drawing import (
     decimal_scale,
     empty,
     held,
+    length_of,
     make_figure,
     set_range,
 )
@@ -100,8 +101,7 @@ class Axial:
         if self.figure.yaxis[0].axis_label != f"Axial force ({unit})":
             self.figure.yaxis[0].axis_label = f"Axial force ({unit})"
         set_range(self.figure.y_range, *(limit / self._factor for limit in self._limits))
-        positions = picture.run.settings.values()["length"]
-        set_range(self.figure.x_range, 0.0, float(positions))
+        set_range(self.figure.x_range, 0.0, length_of(picture.run.settings))
 
 
 def _color(number: int, wires: Wires) -> str:

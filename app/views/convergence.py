@@ -26,12 +26,14 @@ from solver.latin import Record
 from solver.settings import Settings
 
 CURVES = (
-    ("indicator", GREY, "indicator η", "dashed"),
-    ("behaviour", PURPLE, "k-free", "dashed"),
-    ("error_displacement", GREEN, "error u", "solid"),
-    ("error_force", BLUE, "error f", "solid"),
+    ("indicator", GREY, "η", "dashed"),
+    ("behaviour", PURPLE, "k-free indicator", "dashed"),
+    ("error_displacement", GREEN, "displacement error", "solid"),
+    ("error_force", BLUE, "force error", "solid"),
 )
 FLOOR = 1e-18
+LEAST_SPAN = (1e-2, 10.0)
+"""What is shown at least; a curve beyond it widens it by whole decades."""
 ERRORS = 2
 """First of them that is an error, and needs a reference."""
 
@@ -54,7 +56,7 @@ class Convergence:
     def __init__(self) -> None:
         self.figure = make_figure(
             "Iteration",
-            "Indicator, relative error",
+            "Indicator, error",
             x_range=Range1d(0, 20),
             y_range=Range1d(1e-4, 10),
             y_axis_type="log",
@@ -65,7 +67,7 @@ class Convergence:
         self._ticket = -1
         self._count = 0
         self._count_beside = 0
-        self._lowest = 1.0
+        self._lowest, self._highest = LEAST_SPAN
         made = self.figure
         for name, color, _, dash in CURVES:
             if dash == "solid":
@@ -115,7 +117,8 @@ class Convergence:
 
     def _begin(self, picture: Picture) -> None:
         """Put all records at once: rows streamed behind new data would be sent twice."""
-        self._ticket, self._lowest = picture.run.ticket, 1e-2
+        self._ticket = picture.run.ticket
+        self._lowest, self._highest = LEAST_SPAN
         now = picture.run.history()
         self._now.data = {name: now[name] for name in self._now.data}
         self._fit(now)
@@ -129,9 +132,8 @@ class Convergence:
 
     def _fit(self, new: dict[str, np.ndarray]) -> None:
         values = [value for name, *_ in CURVES for value in new[name]]
-        lowest, _ = decades([self._lowest, *values], FLOOR)
-        self._lowest = min(self._lowest, lowest)
-        set_range(self.figure.y_range, self._lowest, 10.0)
+        self._lowest, self._highest = decades([self._lowest, self._highest, *values], FLOOR)
+        set_range(self.figure.y_range, self._lowest, self._highest)
         mark_decades(self.figure.yaxis[0], self.figure.y_range)
 
 

@@ -142,6 +142,11 @@ def empty(*columns: str) -> ColumnDataSource:
     return ColumnDataSource({name: [] for name in columns})
 
 
+def length_of(settings: Settings) -> float:
+    """Give the length of a scene, m, which all axes along it show from end to end."""
+    return float(settings.values()["length"])
+
+
 def set_range(axis: Range1d, low: float, high: float) -> None:
     """Move a range, only if it has to: every change is painted."""
     if not high > low:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from bokeh.models import Range1d, Span
 
-from app.recording import Recording, columns
+from app.recording import columns
 from app.views.drawing import (
     BLUE,
     GREEN,
@@ -26,6 +28,7 @@ from app.worker.rivals import has_reference
 from solver.latin import Record
 from solver.settings import Settings
 
+NOW = Key(BLUE, "line", "now")
 PAST_COLORS = (GREEN, VERMILION, PURPLE, SKY, ORANGE, GREY)
 FLOOR = 1e-14
 
@@ -38,7 +41,7 @@ class ErrorTime:
 
     name = "Error against run time"
     watches = ""
-    keys = (Key(BLUE, "line", "now"), Key(GREY, "dotted", "incremental"))
+    keys: Sequence[Key] = (NOW,)
 
     def __init__(self) -> None:
         self.figure = make_figure(
@@ -53,6 +56,7 @@ class ErrorTime:
         self._full = empty("seconds", "error_force")
         self._past = empty("xs", "ys", "color")
         self._drawn: tuple[object, ...] = ()
+        self._colors: dict[int, str] = {}
         made = self.figure
         made.multi_line("xs", "ys", source=self._past, line_color="color", line_width=2)
         made.line(
@@ -75,11 +79,15 @@ class ErrorTime:
 
     def draw(self, picture: Picture) -> None:
         """Draw the run at work, and the past ones when one was added."""
-        known = (picture.run.ticket, len(picture.past))
+        reference = picture.run.reference
+        known = (picture.run.ticket, len(picture.past), reference is None)
         if known != self._drawn:
             self._drawn = known
             self._draw_past(picture)
             self._full.data = {"seconds": [], "error_force": []}
+            self._incremental.visible = reference is not None
+            if reference is not None:
+                self._incremental.location = reference.seconds
         now = picture.run.history()
         self._now.data = {name: now[name] for name in self._now.data}
         if picture.run.beside:
@@ -89,17 +97,19 @@ class ErrorTime:
 
     def _draw_past(self, picture: Picture) -> None:
         runs = [run for run in picture.past if run.records]
+        colors = self._colors = _colors(self._colors, [run.ticket for run in runs])
         thin = [_thinned(run.records) for run in runs]
         self._past.data = {
             "xs": [xs for xs, _ in thin],
             "ys": [ys for _, ys in thin],
-            "color": [_color(run) for run in runs],
+            "color": [colors[run.ticket] for run in runs],
         }
+        reduced, reference = picture.run.settings.is_reduced, picture.run.reference
         self.keys = (
-            Key(BLUE, "line", "now"),
-            *((Key(BLUE, "dashed", "full stage"),) if picture.run.settings.is_reduced else ()),
-            *(Key(_color(run), "line", run.title) for run in reversed(runs)),
-            Key(GREY, "dotted", "incremental"),
+            NOW,
+            *((Key(BLUE, "dashed", "full stage"),) if reduced else ()),
+            *(Key(colors[run.ticket], "line", run.title) for run in reversed(runs)),
+            *((Key(GREY, "dotted", "incremental"),) if reference else ()),
         )
 
     def _fit(self, picture: Picture) -> None:
@@ -109,10 +119,8 @@ class ErrorTime:
             return
         times = [records[place].seconds for records in runs for place in (0, -1)]
         errors = [records[-1].error_force for records in runs] + [0.1]
-        reference = picture.run.reference
-        if reference is not None:
-            self._incremental.update(location=reference.seconds, visible=True)
-            times.append(reference.seconds)
+        if picture.run.reference is not None:
+            times.append(picture.run.reference.seconds)
         set_range(self.figure.x_range, *decades(times, 1e-6))
         mark_decades(self.figure.xaxis[0], self.figure.x_range)
         low, _ = decades(errors, FLOOR)
@@ -120,8 +128,12 @@ class ErrorTime:
         mark_decades(self.figure.yaxis[0], self.figure.y_range)
 
 
-def _color(run: Recording) -> str:
-    return PAST_COLORS[run.ticket % len(PAST_COLORS)]
+def _colors(given: dict[int, str], tickets: list[int]) -> dict[int, str]:
+    """Give every run a color of its own, which it keeps as long as it is drawn."""
+    found = {ticket: given[ticket] for ticket in tickets if ticket in given}
+    free = [color for color in PAST_COLORS if color not in found.values()]
+    new = [ticket for ticket in tickets if ticket not in found]
+    return found | dict(zip(new, free, strict=False))
 
 
 def _thinned(records: list[Record]) -> tuple[np.ndarray, np.ndarray]:

@@ -17,20 +17,15 @@ from app.views.drawing import (
     Picture,
     decimal_scale,
     empty,
+    length_of,
     make_figure,
     set_range,
 )
-from app.worker.rivals import has_reference
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
-KEYS = (
-    Key(BLUE, "line", "LATIN"),
-    Key(ORANGE, "line", "reference"),
-    Key(GREEN, "band", "closed form"),
-    Key(SKY, "line", "run before"),
-    Key(GREY, "dashed", "±μp"),
-)
+LATIN = Key(BLUE, "line", "LATIN")
+BOUND = Key(GREY, "dashed", "±μp")
 
 
 class FrictionForce:
@@ -38,7 +33,7 @@ class FrictionForce:
 
     name = "Friction force"
     watches = ""
-    keys: Sequence[Key] = KEYS
+    keys: Sequence[Key] = (LATIN, BOUND)
 
     def __init__(self) -> None:
         self.figure = make_figure(
@@ -77,7 +72,8 @@ class FrictionForce:
         begun = run.begun
         if begun.bound is None:
             return
-        known = (run.ticket, begun.interface, run.reference is None, picture.instant)
+        found = (run.reference is None, begun.closed_form is None)
+        known = (run.ticket, begun.interface, *found, picture.instant)
         if known != self._drawn:
             self._drawn = known
             self._draw_base(picture)
@@ -96,7 +92,7 @@ class FrictionForce:
         if self.figure.yaxis[0].axis_label != f"Friction force ({unit})":
             self.figure.yaxis[0].axis_label = f"Friction force ({unit})"
         set_range(self.figure.y_range, -1.25 * top / self._factor, 1.25 * top / self._factor)
-        set_range(self.figure.x_range, float(begun.positions[0]), float(begun.positions[-1]))
+        set_range(self.figure.x_range, 0.0, length_of(run.settings))
         self._base.data = {
             "x": begun.positions,
             "upper": begun.bound / self._factor,
@@ -108,16 +104,23 @@ class FrictionForce:
             if begun.closed_form is not None
             else nothing,
         }
-        self.keys = KEYS if has_reference(run.settings) else (KEYS[0], *KEYS[3:])
         self._cuts.data = {"x": begun.cuts}
-        self._ghost.data = self._profile_before(picture)
+        ghost = self._profile_before(picture)
+        self._ghost.data = ghost or {"x": [], "y": []}
+        self.keys = (
+            LATIN,
+            *((Key(ORANGE, "line", "reference"),) if run.reference else ()),
+            *((Key(GREEN, "band", "closed form"),) if begun.closed_form is not None else ()),
+            *((Key(SKY, "line", "run before"),) if ghost else ()),
+            BOUND,
+        )
 
-    def _profile_before(self, picture: Picture) -> dict[str, np.ndarray]:
+    def _profile_before(self, picture: Picture) -> dict[str, np.ndarray] | None:
         before = picture.before
         assert picture.run.begun is not None
         other = before is None or before.newest is None or before.begun is None
         if other or before.newest.interface != picture.run.begun.interface:
-            return {"x": np.array([]), "y": np.array([])}
+            return None
         count = before.newest.friction.shape[1]
         phase = picture.instant / max(len(picture.run.begun.instants) - 1, 1)
         instant = round(phase * (count - 1))

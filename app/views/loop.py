@@ -23,18 +23,13 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.protocol import Frame, Reference
-from app.worker.rivals import has_reference
+from app.worker.protocol import Axes, Frame, Reference
 from solver.settings import Settings
 
 Curve = tuple[np.ndarray, np.ndarray]
 
 
-KEYS = (
-    Key(BLUE, "line", "LATIN"),
-    Key(ORANGE, "line", "reference"),
-    Key(SKY, "line", "run before"),
-)
+LATIN = Key(BLUE, "line", "LATIN")
 
 
 class Loop:
@@ -42,7 +37,7 @@ class Loop:
 
     name = "Hysteresis loop"
     watches = ""
-    keys: Sequence[Key] = KEYS
+    keys: Sequence[Key] = (LATIN,)
 
     def __init__(self) -> None:
         self.figure = make_figure(
@@ -114,10 +109,15 @@ class Loop:
             _label(made.xaxis[0], made.x_range, axes.across, self._across),
             _label(made.yaxis[0], made.y_range, axes.up, self._up),
         )
-        self._reference.data = self._scaled(_settled(run) if run.reference else None)
-        self._ghost.data = self._scaled(_last(picture.before) if picture.before else None)
-
-        self.keys = KEYS if has_reference(run.settings) else (KEYS[0], KEYS[2])
+        reference = _curve(run, run.reference) if run.reference else None
+        ghost = _newest(picture.before, axes) if picture.before else None
+        self._reference.data = self._scaled(reference)
+        self._ghost.data = self._scaled(ghost)
+        self.keys = (
+            LATIN,
+            *((Key(ORANGE, "line", "reference"),) if reference else ()),
+            *((Key(SKY, "line", "run before"),) if ghost else ()),
+        )
 
     def _scaled(self, curve: Curve | None) -> dict[str, object]:
         if curve is None:
@@ -142,11 +142,10 @@ def _settled(run: Recording) -> Curve | None:
     return run.begun.closed_form_end, run.begun.load
 
 
-def _last(run: Recording) -> Curve | None:
-    """Give the loop that a run should have come to, or else the one it came to."""
-    settled = _settled(run)
-    if settled is not None or run.newest is None or run.begun is None:
-        return settled
+def _newest(run: Recording, axes: Axes) -> Curve | None:
+    """Give the loop that a run came to, where it is one of the same quantities."""
+    if run.newest is None or run.begun is None or run.begun.loop != axes:
+        return None
     return _curve(run, run.newest)
 
 

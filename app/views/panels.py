@@ -9,10 +9,10 @@ import holoviews as hv
 import numpy as np
 import panel as pn
 
-from app.views.drawing import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Key
-from solver.study.figure_data import Curve, Panel
+from app.views.drawing import GREY, Key
+from solver.study.figure_data import HUES, Curve, Panel
 
-HUES = (GREY, BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY)
+COLORS = (GREY, *HUES)
 DASHES = {"solid": "solid", "dashed": "dashed", "dotted": "dotted", "points": "solid"}
 MARKS = {"solid": "line", "dashed": "dashed", "dotted": "dotted", "points": "dot"}
 MOST_LABELS = 7
@@ -42,7 +42,7 @@ def keys(panels: Sequence[Panel]) -> list[Key]:
 
 
 def _color(curve: Curve) -> str:
-    return HUES[curve.hue % len(HUES)]
+    return COLORS[curve.hue]
 
 
 def overlay(panel: Panel, *, legend: bool = True) -> hv.Overlay:

@@ -73,7 +73,7 @@ class Spectra:
             line_width=2,
         )
         self._marks = FixedTicker(ticks=[1, 2])
-        color_bar(self.figure, self._mapper, self._marks, "sub.")
+        color_bar(self.figure, self._mapper, self._marks, "substructure")
 
     def applies(self, settings: Settings) -> bool:
         """One instant has one singular value."""

@@ -67,7 +67,7 @@ class StabilityReport(Report):
 
     def _choices(self) -> list[Any]:
         self._cases = pmui.Select(
-            label="Cases", options=list(CASES), width=190, size="small", value=next(iter(CASES))
+            label="Cases", options=list(CASES), width=230, size="small", value=next(iter(CASES))
         )
         self._filter = pmui.RadioButtonGroup(
             options=[EVERY, WRONG], value=EVERY, size="small", margin=(8, 10), sx=PLAIN

@@ -18,6 +18,7 @@ from app.views.drawing import (
     Key,
     Picture,
     empty,
+    length_of,
     make_figure,
     set_range,
 )
@@ -81,7 +82,7 @@ class StatusMap:
         half_t = 0.5 * _step(begun.instants)
         first_x, last_x = float(begun.positions[0]), float(begun.positions[-1])
         first_t, last_t = float(begun.instants[0]), float(begun.instants[-1])
-        set_range(self.figure.x_range, first_x, last_x)
+        set_range(self.figure.x_range, 0.0, length_of(run.settings))
         set_range(self.figure.y_range, first_t - half_t, last_t + half_t)
         image = np.ascontiguousarray((frame.status + 1).astype(np.uint8).T)
         self._image.data = {

@@ -19,6 +19,7 @@ from app.views.drawing import (
     decimal_scale,
     empty,
     held,
+    length_of,
     make_figure,
     set_range,
 )
@@ -108,7 +109,7 @@ class Tractions:
     def _draw_base(self, picture: Picture) -> None:
         begun, run = picture.run.begun, picture.run
         assert begun is not None
-        set_range(self.figure.x_range, float(begun.positions[0]), float(begun.positions[-1]))
+        set_range(self.figure.x_range, 0.0, length_of(run.settings))
         self._cuts.data = {"x": begun.cuts}
         nothing: dict[str, object] = {"x": [], "pressure": [], "friction": []}
         found = run.reference

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import partial
+from typing import Any
 
+from solver.discrete import Problem
 from solver.latin import Checkpoint, Status, StopRules
 from solver.latin.warm import Start
 from solver.reference import incremental
@@ -42,7 +46,8 @@ class Resume:
     rules
         Stop rules, with what they remember.
     reference
-        As computed already; None where there is none.
+        As computed already, given its problem, as `without_problem` keeps it; None where there is
+        none.
     status
         How the run ended, or None.
     due
@@ -57,8 +62,18 @@ class Resume:
     before: Checkpoint | None
     iteration: int
     rules: StopRules
-    reference: incremental.Reference | None
+    reference: Callable[[Problem], incremental.Reference] | None
     status: Status | None
     due: float
     beside: ResumeBeside | None = None
     start: Start | None = None
+
+
+def without_problem(found: incremental.Reference) -> Callable[[Problem], incremental.Reference]:
+    """Keep a reference without its problem, which every process has, and cannot always be sent."""
+    kept = {one.name: getattr(found, one.name) for one in fields(found) if one.name != "problem"}
+    return partial(_with_problem, kept)
+
+
+def _with_problem(kept: dict[str, Any], problem: Problem) -> incremental.Reference:
+    return incremental.Reference(problem, **kept)

@@ -27,7 +27,7 @@ from app.worker.protocol import (
     Watch,
 )
 from app.worker.recording import Recording, References
-from app.worker.resume import Resume
+from app.worker.resume import Resume, without_problem
 from app.worker.sampler import Sampler
 from app.worker.tempo import Tempo
 from solver.definitions import SettingError
@@ -165,7 +165,7 @@ class WorkerRun:
                 self._before,
                 done,
                 self._rules,
-                self._reference,
+                without_problem(self._reference) if self._reference else None,
                 self._status,
                 self._tempo.due,
                 self._beside.resume if self._beside else None,
@@ -202,7 +202,7 @@ class WorkerRun:
         self._send(self._sampler.completed(begun) if resume else begun)
         self._send(self._frame(newest, self._before))
         if resume is not None:
-            self._refer(resume.reference)
+            self._refer(resume.reference(self._problem) if resume.reference else None)
             if self._before is not None:
                 self._recording.keep(self._before)
             self._recording.keep(newest.checkpoint)

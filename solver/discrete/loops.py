@@ -85,8 +85,8 @@ def _of_block(settings: BlockSettings, problem: Problem) -> Loop:
     moved = [side for side in ("top", "left", "right") if getattr(settings, side) not in AT_REST]
     side = moved[0] if moved else "top"
     return Loop(
-        (f"Mean horizontal displacement of the {side}", "m"),
-        ("Shear force on the support", "N"),
+        (f"Displacement of the {side}", "m"),
+        ("Shear force", "N"),
         side_mean(problem, side, 0),
         lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
     )

@@ -27,17 +27,17 @@ CATALOGUE = {
         BarSettings,
     ),
     "block": Entry(
-        "Block pressed and sheared on a rough support",
+        "Block pressed and sheared",
         "Johnson, Contact Mechanics, 1985, ch. 4 and 7",
         BlockSettings,
     ),
     "layers": Entry(
-        "Stack of layers bent under pressure",
+        "Stack of layers, bent",
         "a leaf spring, or the section of a cable laid flat",
         LayersSettings,
     ),
     "strand": Entry(
-        "Parallel wires that rub on each other, one of them broken",
+        "Parallel wires, one broken",
         "closed form: force regained over T / (mu p)",
         StrandSettings,
     ),

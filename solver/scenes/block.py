@@ -24,6 +24,7 @@ class BlockSettings(SideSettings):
         GAPS,
         "position",
         "gap",
+        ("m", "m"),
         "Opening between the undeformed body and its support: a preset, or points (m, m).",
         group="Contact",
         title="Gap",

@@ -29,6 +29,7 @@ class StrandSettings(Settings):
         PULLS,
         "time",
         "force",
+        ("s", "N"),
         "Tension of a wire over time: a preset between 0 and the peak, or points (s, N).",
         group="Load",
         title="Tension path",

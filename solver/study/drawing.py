@@ -18,10 +18,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 from PIL import Image
 
-from solver.study.figure_data import Line, Panel, PaperFigure
+from solver.study.figure_data import HUES, Line, Panel, PaperFigure
 
-HUES = ("#404040", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9")
-"""Okabe and Ito's palette, told apart by the colour-blind; the first is the neutral hue."""
+COLORS = ("#404040", *HUES)
+"""Of lines by their hue; the first is neutral."""
 LINES: dict[Line, dict[str, Any]] = {
     "solid": {"linestyle": "-"},
     "dashed": {"linestyle": (0, (5, 2))},
@@ -161,7 +161,7 @@ def _draw(axes: Axes, panel: Panel) -> dict[str, Line2D]:
     """Draw a panel; give its lines by label."""
     lines = {}
     for curve in panel.curves:
-        style = {"linewidth": 1.6, **LINES[curve.line], "color": HUES[curve.hue]}
+        style = {"linewidth": 1.6, **LINES[curve.line], "color": COLORS[curve.hue]}
         (lines[curve.label],) = axes.plot(curve.x, curve.y, **style)
     axes.set(xlabel=panel.x.label, xscale=panel.x.scale, ylabel=panel.y.label, yscale=panel.y.scale)
     axes.set_title(panel.title, fontsize=10)

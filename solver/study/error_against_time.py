@@ -49,7 +49,7 @@ FORMS: dict[str, dict[str, Any]] = {
     "LATIN multiscale": PLAIN,
     "LATIN auto k, nested": {**AUTO, "start": "nested"},
     "LATIN auto k, nested, Anderson": NESTED,
-    "LATIN the same, k updated": {**NESTED, "k_update": "status"},
+    "LATIN auto k, nested, Anderson, k updated": {**NESTED, "k_update": "status"},
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
 """Settings that make the forms of LATIN; all others are those of the run."""
@@ -58,7 +58,7 @@ PLANE_FORMS: dict[str, dict[str, Any]] = {
     "LATIN multiscale": PLAIN,
     "LATIN auto k": AUTO,
     "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
-    "LATIN the same, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
+    "LATIN auto k, Anderson, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
     "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
 }
 """The same in the plane, where no run starts from coarser meshes."""

@@ -8,8 +8,9 @@ import numpy as np
 
 from solver.discrete.problem import Array
 from solver.study.error_against_time import INCREMENTAL, Course, Study
-from solver.study.figure_data import Axis, Curve, Line, Panel
+from solver.study.figure_data import HUES, Axis, Curve, Line, Panel
 from solver.study.growth import MEASURED, Growth
+from solver.study.peers import PEERS
 
 SPAN = (1e-9, 2.0)
 """Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower edge."""
@@ -29,7 +30,7 @@ def error_panels(study: Study) -> list[Panel]:
         ("error_displacement", "Displacement"),
         ("error_force", "Friction force"),
     ):
-        numbers = {"latin": 0, "peer": 0}
+        numbers = {"latin": 0, "peer": len(HUES) - len(PEERS)}
         curves = []
         for course in study.courses:
             if course.kind != "incremental":

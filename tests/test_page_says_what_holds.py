@@ -1,0 +1,80 @@
+"""The page says what holds: of its address, of a run, in numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from app.address import settings_from_query
+from app.recording import Recording
+from app.serve import is_phone
+from app.words import number, status_line
+from solver.scenes.bar import BarSettings
+
+PHONE = "Mozilla/5.0 (Linux; Android 14; Pixel 8) AppleWebKit/537.36 Chrome/130.0 Mobile Safari"
+DESK = "Mozilla/5.0 (X11; Linux x86_64) AppleWebKit/537.36 Chrome/130.0 Safari/537.36"
+
+
+@pytest.mark.parametrize(
+    ("query", "kept", "refused"),
+    [
+        ("?friction=-3&substructures=5", {"substructures": 5}, ["friction = -3"]),
+        ("?friction=-3&peak=many&seed=2", {"seed": 2}, ["friction = -3", 'peak = "many"']),
+        ("?frictoin=0.2&seed=2", {"seed": 2}, ["there is no setting frictoin"]),
+        ("?elements=5&substructures=20&seed=2", {"substructures": 20, "seed": 2}, ["elements is"]),
+        ("?scene=strand&broken=6&wires=9", {"broken": 6, "wires": 9}, []),
+        ("?scene=strand&broken=6&wires=9&grip=x", {"broken": 6, "wires": 9}, ["grip"]),
+        ("?scene=strand&broken=99&peak=500", {"peak": 500.0}, ["broken = 99"]),
+        ("?scene=rope&seed=2", {}, ["scene"]),
+    ],
+)
+def test_what_is_valid_holds_and_all_that_is_not_is_named(
+    query: str, kept: dict[str, Any], refused: list[str]
+) -> None:
+    settings, complaint = settings_from_query(query)
+    assert {name: settings.values()[name] for name in kept} == kept
+    assert set(settings.changed()) <= set(kept)
+    assert bool(complaint) == bool(refused)
+    assert all(part in complaint for part in refused)
+
+
+def test_a_long_address_is_answered_in_few_words() -> None:
+    query = "?" + "&".join(f"{'name' * 100}{number}=1" for number in range(2000))
+    _, complaint = settings_from_query(query)
+    assert "and 1997 more" in complaint
+    assert len(complaint) < 400
+
+
+def test_a_complaint_stands_in_the_status_line_as_text() -> None:
+    run = Recording(1, BarSettings.checked({}), "")
+    line = status_line(run, True, None, complaint="From the address: <b> is refused.")
+    assert "From the address: &lt;b&gt; is refused." in line
+
+
+def test_a_run_that_has_nothing_to_show_yet_is_being_set_up() -> None:
+    line = status_line(Recording(1, BarSettings.checked({}), ""), True, None)
+    assert "setting up" in line
+    assert "iteration 0" not in line
+
+
+def test_a_phone_is_known_by_what_it_asks_with() -> None:
+    assert is_phone({"User-Agent": PHONE})
+    assert is_phone({"User-Agent": DESK, "Sec-Ch-Ua-Mobile": "?1"})
+    assert not is_phone({"User-Agent": DESK, "Sec-Ch-Ua-Mobile": "?0"})
+    assert not is_phone({})
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (9.98e-11, "1.0·10<sup>-10</sup>"),
+        (2.3e-4, "2.3·10<sup>-4</sup>"),
+        (0.0164, "0.0164"),
+        (4e6, "4.0·10<sup>6</sup>"),
+        (0.0, "0"),
+        (float("nan"), "–"),
+    ],
+)
+def test_numbers_have_one_digit_before_the_point_of_a_power(value: float, text: str) -> None:
+    assert number(value) == text
