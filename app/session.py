@@ -171,10 +171,10 @@ class Session:
         return bool(reports)
 
     def go(self) -> None:
-        """Let iterations go on by themselves; a run that ended starts again."""
+        """Let iterations go on by themselves; a run that ended, or broke, starts again."""
         self.running = True
         self.follows = True
-        if self.run.status is not None:
+        if self.run.is_over:
             self.start()
         else:
             self._keep_pace()
@@ -185,10 +185,13 @@ class Session:
         self._seat.send(Pace(self.run.ticket, 0.0))
 
     def step(self) -> None:
-        """Do one iteration and wait."""
+        """Do one iteration and wait; a run that broke starts again, one that ended stays."""
         self.running = False
         self.follows = True
-        self._seat.send(Step(self.run.ticket))
+        if self.run.is_broken:
+            self.start()
+        else:
+            self._seat.send(Step(self.run.ticket))
 
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""
@@ -253,6 +256,11 @@ class Session:
         return any(heard)
 
     @property
+    def goes_on(self) -> bool:
+        """Whether the run is one that goes on until the user pauses it."""
+        return self.running and not self.run.is_over
+
+    @property
     def is_held(self) -> bool:
         """Whether the run stands still for a study that is timed."""
         return self._held
@@ -275,7 +283,7 @@ class Session:
         return self.running and not self._alone and not self._held
 
     def _keep_pace(self) -> None:
-        if self.running and self.run.status is None:
+        if self.goes_on:
             self._seat.send(Pace(self.run.ticket, self.pace if self._is_free else 0.0))
 
     def _look(self, **changes: Any) -> None:

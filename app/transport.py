@@ -58,7 +58,7 @@ class Transport:
 
     def toggle(self) -> None:
         """Run or pause."""
-        if self._session.running and self._session.run.status is None:
+        if self._session.goes_on:
             self._session.pause()
         else:
             self._session.go()
@@ -104,7 +104,7 @@ class Transport:
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
         session = self._session
-        active = session.running and session.run.status is None
+        active = session.goes_on
         self._run.param.update(
             label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
         )

@@ -46,6 +46,8 @@ def status_line(run: Recording, running: bool, sought: int | None, *, held: bool
     if run.status is not None:
         counted = "iteration" if run.iteration == 1 else "iterations"
         state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
+    elif run.is_broken:
+        state = f"<b>■ stopped</b> at iteration {run.iteration}"
     elif held:
         state = f"<b>waits</b> for the study that is timed, at iteration {run.iteration}"
     elif not running:
