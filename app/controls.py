@@ -22,6 +22,10 @@ PLAIN = "0[.]000"
 PLAIN_FROM = 0.1
 """Largest value of a slider from which three places behind the point are enough."""
 
+GATHER_MS = 1
+"""For how long Panel gathers what a widget sends, instead of 50 ms: only what came while the server
+was busy, and a slider's two messages about one move, each of which costs Panel 4 ms."""
+
 Report = Callable[[str, Any], None]
 
 
@@ -40,9 +44,7 @@ class Control:
         self._report = report
         self._showing = False
         self.widget = self._make_widget()
-        # Panel gathers changes from the browser for 50 ms; here every change is wanted at once,
-        # and the session itself starts no run before the last one was shown.
-        self.widget._debounce = 0
+        self.widget._debounce = GATHER_MS
         self.view: pn.viewable.Viewable = self.widget
         self.widget.param.watch(self._on_value, "value")
 

@@ -116,6 +116,7 @@ class Dashboard:
         if self.session.attend():
             self._tabs.refresh()
             self._mark()
+        self._sidebar.obey()
         self._collect()
 
     def end(self, context: Any) -> None:

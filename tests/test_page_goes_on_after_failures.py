@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
 from typing import Any
 
 import pytest
+from lone_seat import Seat
 
 from app.errand import Errand
 from app.session import Session
@@ -22,25 +22,6 @@ from solver.scenes.bar import BarSettings
 
 PATIENCE = 60.0
 BROKEN = [Refused(1, "too large"), Died(1, "given up", again=False)]
-
-
-class Seat:
-    """A place in no pool: it keeps the orders, and says what it is told to say."""
-
-    def __init__(self) -> None:
-        self.orders: list[Any] = []
-        self.others_at_work = 0
-        self.say: Callable[[Report], None] = lambda report: None
-
-    def seat(self, listener: Callable[[Report], None]) -> Seat:
-        self.say = listener
-        return self
-
-    def run(self, order: Run) -> None:
-        self.orders.append(order)
-
-    def send(self, order: Any) -> None:
-        self.orders.append(order)
 
 
 @pytest.fixture
