@@ -61,7 +61,7 @@ class Session:
         reset never does. It is no setting of the method: a run alone has none before it.
     follows
         Whether the newest iterate is looked at, not one that was sought.
-    study, stability
+    figures, study, stability
         The reports that this page has asked for.
     crowd
         Most runs of other pages that were at work at a time during the last study.
@@ -83,8 +83,7 @@ class Session:
         self.warm_start = False
         self.watch: frozenset[str] = frozenset()
         self.follows = True
-        self.study = Errand(bench)
-        self.stability = Errand(bench)
+        self.figures, self.study, self.stability = (Errand(bench) for _ in range(3))
         self.crowd = 0
         self._alone = False
         self._held = False
@@ -236,7 +235,7 @@ class Session:
     def close(self) -> None:
         """Leave: the run stops and its process is free, and so do the reports."""
         self._seat.close()
-        for errand in (self.study, self.stability):
+        for errand in self._errands:
             errand.cancel()
 
     def rest(self, alone: bool) -> None:
@@ -246,7 +245,7 @@ class Session:
 
     def attend(self) -> bool:
         """Take what the reports say, and hold the run while one is timed; tell if it is new."""
-        heard = [errand.collect() for errand in (self.study, self.stability)]
+        heard = [errand.collect() for errand in self._errands]
         if self.study.is_begun != self._held:
             self._held = self.study.is_begun
             self.crowd = self.crowd if not self._held else 0
@@ -276,6 +275,10 @@ class Session:
         if self.follows or self.run.sought is None:
             return self.run.newest
         return self.run.sought
+
+    @property
+    def _errands(self) -> tuple[Errand, ...]:
+        return self.figures, self.study, self.stability
 
     @property
     def _is_free(self) -> bool:
