@@ -53,7 +53,7 @@ class Session:
     look
         Where one looks: the interface, the instant as a share of the interval, and the stress.
     substructure
-        The one whose modes are looked at, from 0 at the clamp; None is the last one.
+        The one whose modes are looked at, counted from 0; None is the last one.
     running, pace
         Whether iterations go on by themselves, and how many a second (None: all it can).
     warm_start
@@ -225,7 +225,7 @@ class Session:
             self._look_again()
 
     def choose_substructure(self, number: int) -> None:
-        """Choose the substructure whose modes are looked at, from 0 at the clamp."""
+        """Choose the substructure whose modes are looked at, counted from 0."""
         last = self.settings.n_substructures - 1
         chosen = None if number >= last else max(number, 0)
         if chosen != self.substructure:

@@ -82,7 +82,7 @@ class Transport:
             self._refresh()
 
     def choose_substructure(self, number: int) -> None:
-        """Look at the modes of another substructure, from 0 at the clamp."""
+        """Look at the modes of another substructure, counted from 0."""
         self._session.choose_substructure(number)
         self._refresh()
 

@@ -17,7 +17,7 @@ tractions, Pa, where it depends on the pressure.
 Every record of a run is in exactly one Progress, and so is every record of the full stage that is
 iterated beside a run on separated bases; frames are only the newest. A run that was parked and
 went on sends a complete Begun, Reference and a Frame again, and no record or End twice. Died alone
-breaks this: what was sent under its ticket before is to be forgotten.
+breaks this: what was sent of iterates under its ticket before is to be forgotten.
 
 With the full linear stage, frames have no `bases`, and Progress neither `sizes` nor `beside`.
 """
@@ -173,8 +173,8 @@ class Watch:
     Attributes
     ----------
     substructure
-        The one whose modes are carried, from 0 at the clamp; None is the last one, and so is a
-        number that is too large.
+        The one whose modes are carried, counted from 0; None is the last one, and so is a number
+        that is too large.
     look
         Where one looks; the chosen instant and stress matter for "mesh" and "axial" alone.
     """
@@ -405,7 +405,7 @@ class Bases:
     Attributes
     ----------
     substructure
-        The chosen one, from 0 at the clamp.
+        The chosen one, counted from 0.
     largest, stored
         Modes of the largest basis, and of all together, a shared one counted once.
     modes, values
@@ -532,9 +532,9 @@ class Refused:
 
 @dataclass(frozen=True)
 class Died:
-    """The process of this run is gone, and all that was sent under the ticket is to be forgotten.
+    """The process of this run is gone: its Progress, Frame and End are to be forgotten.
 
-    The pool says it in the process's stead.
+    Begun and Reference still hold. The pool says it in the process's stead.
 
     Attributes
     ----------
