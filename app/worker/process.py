@@ -16,6 +16,7 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
+from app.worker.previous import last_iterate
 from app.worker.protocol import (
     Leave,
     Order,
@@ -32,7 +33,7 @@ from app.worker.protocol import (
     Watch,
 )
 from app.worker.recording import References
-from app.worker.run import WorkerRun, last_iterate
+from app.worker.run import WorkerRun
 from solver.definitions import SettingError
 
 NICENESS = 2
