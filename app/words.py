@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from html import escape
 
 from app.recording import Recording
-from app.views.drawing import Key
 from app.worker.rivals import has_reference
 from solver.latin import Ending, Record
 
@@ -132,16 +131,6 @@ def _figures(run: Recording, entry: Record) -> tuple[str, ...]:
         f"{1e3 * entry.seconds:.1f} ms",
         str(within.iteration) if within else "–",
     )
-
-
-def card_title(name: str, keys: Sequence[Key]) -> str:
-    """Write a view's name with its legend beside it (HTML)."""
-    entries = "".join(
-        f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
-        f"{escape(key.text)}</span>"
-        for key in keys
-    )
-    return f"<b>{escape(name)}</b>{entries}"
 
 
 def per_iteration(run: Recording) -> float:
