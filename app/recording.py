@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.protocol import (
+from app.worker.reports import (
     Begun,
     Died,
     End,

@@ -15,18 +15,10 @@ from typing import Any
 from app.errand import Errand
 from app.recording import Recording
 from app.worker.bench import Bench
+from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
 from app.worker.pool import Pool
-from app.worker.protocol import (
-    Frame,
-    Look,
-    Pace,
-    Report,
-    Run,
-    Seek,
-    Step,
-    Watch,
-    instant_of,
-)
+from app.worker.reports import Frame, Report
+from app.worker.shown import instant_of
 from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings

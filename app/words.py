@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from html import escape
 
 from app.recording import Recording
-from app.worker.rivals import has_reference
+from app.worker.shown import has_reference
 from solver.latin import Ending, Record
 
 ENDINGS = {

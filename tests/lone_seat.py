@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app.worker.protocol import Report, Run
+from app.worker.orders import Run
+from app.worker.reports import Report
 
 
 class Seat:

@@ -17,7 +17,8 @@ from app.worker import job, member
 from app.worker.bench import Bench
 from app.worker.job import STOPPED
 from app.worker.member import Member
-from app.worker.protocol import Died, Refused, Report, Run, Step
+from app.worker.orders import Run, Step
+from app.worker.reports import Died, Refused, Report
 from solver.scenes.bar import BarSettings
 
 PATIENCE = 60.0

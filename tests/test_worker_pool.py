@@ -22,28 +22,22 @@ from hypothesis import strategies as st
 
 from app.worker import post as posts
 from app.worker import seat as seats
+from app.worker.orders import Leave, Pace, Park, Run, Seek, Step, Watch
 from app.worker.pool import Pool
-from app.worker.protocol import (
+from app.worker.reports import (
     Begun,
     Died,
     End,
     Frame,
-    Leave,
-    Pace,
-    Park,
     Parked,
     Progress,
     Ready,
     Reference,
     Refused,
     Report,
-    Run,
-    Seek,
-    Step,
     Taken,
     Unrivalled,
     Waiting,
-    Watch,
 )
 from app.worker.roster import Roster
 from solver.discrete import discretise
@@ -387,7 +381,8 @@ def test_closed_pool_leaves_no_process(frozen: bool) -> None:
 SERVER = """
 import sys, time
 from app.worker.pool import shared_pool
-from app.worker.protocol import Frame, Run
+from app.worker.orders import Run
+from app.worker.reports import Frame
 
 pool, seen = shared_pool(), set()
 for number in range(2):

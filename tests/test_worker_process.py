@@ -16,29 +16,22 @@ import numpy as np
 import pytest
 
 from app.worker import member, run
-from app.worker.protocol import (
+from app.worker.checkpoints import Checkpoints
+from app.worker.orders import Leave, Look, Order, Pace, Park, Run, Seek, Step, Watch
+from app.worker.reports import (
     Begun,
     End,
     Frame,
-    Leave,
-    Look,
-    Order,
-    Pace,
-    Park,
     Parked,
     Progress,
     Ready,
     Reference,
     Refused,
     Report,
-    Run,
-    Seek,
-    Step,
     Taken,
     Waiting,
-    Watch,
 )
-from app.worker.recording import Recording, References
+from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from app.worker.sampler import Sampler
 from solver import latin
@@ -496,7 +489,7 @@ def test_run_that_diverges_keeps_its_last_good_iterate(monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("budget", [0, 800, 8000, 10**9])
 def test_recording_stays_within_its_memory_and_finds_the_nearest_checkpoint(budget: int) -> None:
-    recording = Recording(budget)
+    recording = Checkpoints(budget)
     for number in range(1, 1001):
         recording.keep(Checkpoint(number, 0.0, np.zeros((10, 10))))
     found = [recording.before(number) for number in range(1, 1002)]

@@ -19,7 +19,7 @@ from bokeh.plotting import figure
 
 from app.recording import Recording
 from app.views.legend import Key
-from app.worker.protocol import Frame
+from app.worker.reports import Frame
 from solver.settings import Settings
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"

@@ -20,7 +20,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.rivals import has_reference
+from app.worker.shown import has_reference
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 

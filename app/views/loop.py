@@ -23,8 +23,8 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.protocol import Frame, Reference
-from app.worker.rivals import has_reference
+from app.worker.reports import Frame, Reference
+from app.worker.shown import has_reference
 from solver.settings import Settings
 
 Curve = tuple[np.ndarray, np.ndarray]

@@ -21,7 +21,7 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
-from app.worker.protocol import Bases
+from app.worker.shown import Bases
 from solver.settings import Settings
 
 FLOOR = 1e-8

@@ -15,7 +15,8 @@ from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
 
 from app.worker import process
-from app.worker.protocol import Order, Ready, Report
+from app.worker.orders import Order
+from app.worker.reports import Ready, Report
 
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from app.worker.bases import sizes
-from app.worker.protocol import Frame, Progress, Report
+from app.worker.reports import Frame, Progress, Report
 from solver.latin import Record
 
 PUBLISH_EVERY = 1.0 / 25.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.worker.protocol import Run
+from app.worker.orders import Run
 from solver.discrete import Problem, discretise
 from solver.files import scene_settings
 from solver.latin import Iterate

@@ -7,24 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from app.worker.beside import Beside, beside
+from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
 from app.worker.outbox import Outbox
 from app.worker.previous import fits
-from app.worker.protocol import (
-    Begun,
-    End,
-    Frame,
-    Look,
-    Pace,
-    Parked,
-    Report,
-    Run,
-    Seek,
-    Step,
-    Unrivalled,
-    Watch,
-)
-from app.worker.recording import References
+from app.worker.reports import Begun, End, Frame, Parked, Report, Unrivalled
 from app.worker.resume import Resume
+from app.worker.rivals import References
 from app.worker.sampler import Sampler
 from app.worker.seeking import Seeking
 from app.worker.tempo import Tempo

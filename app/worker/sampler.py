@@ -10,18 +10,16 @@ from numpy.typing import NDArray
 
 from app.worker.bases import show_bases
 from app.worker.meshes import Thinned
-from app.worker.protocol import (
+from app.worker.orders import Look
+from app.worker.reports import Begun, Frame, Reference
+from app.worker.shown import (
     LONGEST_CURVE,
     MOST_SPECTRA,
     MOST_VALUES,
     Axes,
-    Begun,
     Bytes,
     Floats,
-    Frame,
-    Look,
     MeshField,
-    Reference,
     instant_of,
     thinned,
 )

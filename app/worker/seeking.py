@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from app.worker.recording import Recording
+from app.worker.checkpoints import Checkpoints
 from solver.latin import Checkpoint, Iterate
 
 Found = tuple[Iterate, Checkpoint | None]
@@ -22,7 +22,7 @@ class Seeking:
 
     def __init__(self, iterations: Callable[[Checkpoint | None], Iterator[Iterate]]) -> None:
         self._iterations = iterations
-        self._recording = Recording()
+        self._checkpoints = Checkpoints()
         self._generator: Iterator[Iterate] | None = None
         self._wanted: int | None = None
         self._passed: Checkpoint | None = None
@@ -34,11 +34,11 @@ class Seeking:
 
     def keep(self, checkpoint: Checkpoint) -> None:
         """Take a checkpoint to seek from."""
-        self._recording.keep(checkpoint)
+        self._checkpoints.keep(checkpoint)
 
     def begin(self, iteration: int) -> None:
         """Seek an iterate, in place of any that was sought."""
-        self._passed = self._recording.before(iteration)
+        self._passed = self._checkpoints.before(iteration)
         self._generator, self._wanted = self._iterations(self._passed), iteration
 
     def stop(self) -> None:
