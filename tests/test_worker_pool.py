@@ -261,13 +261,13 @@ def test_frozen_worker_is_replaced_when_a_new_run_is_ordered(session: Session) -
     frozen = session.pid
     os.kill(frozen, signal.SIGSTOP)
     session.seat.run(Run(2, "bar", SHORT))
-    session.seat.send(Watch(2, frozenset({"behaviour"})))
+    session.seat.send(Watch(2, frozenset({"spectra"})))
     session.until(Frame, ticket=2, patience=SOON)
     session.until(End, ticket=2)
     assert not is_alive(frozen)
     assert not any(isinstance(report, Died) for report in session.reports)
     frames = [report for report in session.reports if isinstance(report, Frame)]
-    assert frames[-1].behaviour is not None
+    assert frames[-1].spectra is not None
 
 
 def test_eight_sessions_on_two_processes_progress_together(pool: Pool) -> None:

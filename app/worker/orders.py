@@ -44,8 +44,7 @@ class Run:
     resume
         Where to go on; records before it are not sent again.
     watch
-        Names of what frames carry beyond the fields: "spectra", "behaviour", "modes", "mesh",
-        "axial".
+        Names of what frames carry beyond the fields: "spectra", "modes", "mesh", "axial".
     seek
         Iteration whose frame is sought first.
     substructure, look

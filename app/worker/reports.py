@@ -153,8 +153,6 @@ class Frame:
     spectra
         Singular values, shape (n_substructures, n_values), NaN where there is none, of the
         substructures `thinned(number, MOST_SPECTRA)`; or None.
-    behaviour
-        Map of the k-free indicator, shape as friction; or None.
     bases
         The separated bases, if there are any.
     mesh, axial
@@ -171,7 +169,6 @@ class Frame:
     end_displacement: Floats
     load: Floats | None
     spectra: Floats | None
-    behaviour: Floats | None
     bases: Bases | None
     mesh: MeshField | None = None
     axial: AxialForces | None = None
