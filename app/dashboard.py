@@ -111,6 +111,7 @@ class Dashboard:
         if self.session.attend():
             self._tabs.refresh()
             self._painter.mark()
+        self._sidebar.obey()
         self._collect()
 
     def end(self, context: Any) -> None:
@@ -154,8 +155,9 @@ class Dashboard:
         )
         # The page follows the server's being busy, which costs a walk over all models twice for
         # every event of the browser (60 ms), and would only turn the indicator that is not there.
+        # A value would leave the server's hold on the page, for good; another reference ends it.
         with edit_readonly(page):
-            page.busy = False
+            page.busy = page.param.loading
         return page
 
     def _html(self, role: str) -> Any:

@@ -11,6 +11,7 @@ from app.worker.bench import Bench
 from app.worker.job import Broke, Doing, Done, Job, Part, Said, Started, Work
 
 KEPT = 6
+WAITING, STARTING = "Waiting for what was asked for before", "Starting"
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +78,8 @@ class Errand:
         self._number += 1
         number = self._number
         self.title, self.parts, self.notice = title, [], ""
-        self.doing, self.share = "Waiting for what another page has asked for", 0.0
+        self.doing = WAITING if self._bench.is_busy else STARTING
+        self.share = 0.0
 
         def hear(said: Said) -> None:
             with self._lock:
@@ -104,7 +106,7 @@ class Errand:
     def _take(self, said: Said) -> None:
         match said:
             case Started():
-                self.is_begun, self.doing = True, "Starting"
+                self.is_begun, self.doing = True, STARTING
             case Doing():
                 self.doing, self.share = said.text, said.share
             case Part():

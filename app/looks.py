@@ -10,7 +10,7 @@ import panel_material_ui as pmui
 
 from app.scrubber import Scrubber
 from app.session import Session
-from app.worker.protocol import STRESSES
+from app.worker.shown import STRESSES
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.protocol import (
+from app.worker.reports import (
     Begun,
     Died,
     End,
@@ -50,6 +50,8 @@ class Recording:
         The newest frame, and the one last sought.
     is_warm
         Whether it was to start from the run before, where that is better.
+    is_broken
+        Whether the worker refused it, or the pool gave it up.
     """
 
     ticket: int
@@ -65,6 +67,7 @@ class Recording:
     status: Status | None = None
     notice: str = ""
     is_warm: bool = False
+    is_broken: bool = False
 
     def take(self, report: Report) -> None:
         """Add what a worker reports."""
@@ -89,12 +92,12 @@ class Recording:
             case End():
                 self.status = report.status
             case Refused():
-                self.notice = report.reason
+                self.notice, self.is_broken = report.reason, True
             case Died():
                 for kept in (self.records, self.sizes, self.beside):
                     kept.clear()
                 self.newest = self.sought = self.status = None
-                self.notice = report.reason
+                self.notice, self.is_broken = report.reason, not report.again
             case _:
                 raise TypeError(f"no place for a report of type {type(report).__name__}")
 
@@ -109,6 +112,11 @@ class Recording:
         warm = self.choice is not None and self.choice.is_previous
         label = self.label or ("first settings" if self.settings.changed() else "defaults")
         return f"{label}{', from the run before it' if warm else ''}"
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it ended or broke: only another run can go on."""
+        return self.status is not None or self.is_broken
 
     @property
     def iteration(self) -> int:

@@ -15,18 +15,10 @@ from typing import Any
 from app.errand import Errand
 from app.recording import Recording
 from app.worker.bench import Bench
+from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
 from app.worker.pool import Pool
-from app.worker.protocol import (
-    Frame,
-    Look,
-    Pace,
-    Report,
-    Run,
-    Seek,
-    Step,
-    Watch,
-    instant_of,
-)
+from app.worker.reports import Frame, Report
+from app.worker.shown import instant_of
 from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings
@@ -53,7 +45,7 @@ class Session:
     look
         Where one looks: the interface, the instant as a share of the interval, and the stress.
     substructure
-        The one whose modes are looked at, from 0 at the clamp; None is the last one.
+        The one whose modes are looked at, counted from 0; None is the last one.
     running, pace
         Whether iterations go on by themselves, and how many a second (None: all it can).
     warm_start
@@ -61,7 +53,7 @@ class Session:
         reset never does. It is no setting of the method: a run alone has none before it.
     follows
         Whether the newest iterate is looked at, not one that was sought.
-    study, stability
+    figures, study, stability
         The reports that this page has asked for.
     crowd
         Most runs of other pages that were at work at a time during the last study.
@@ -83,8 +75,7 @@ class Session:
         self.warm_start = False
         self.watch: frozenset[str] = frozenset()
         self.follows = True
-        self.study = Errand(bench)
-        self.stability = Errand(bench)
+        self.figures, self.study, self.stability = (Errand(bench) for _ in range(3))
         self.crowd = 0
         self._alone = False
         self._held = False
@@ -172,10 +163,10 @@ class Session:
         return bool(reports)
 
     def go(self) -> None:
-        """Let iterations go on by themselves; a run that ended starts again."""
+        """Let iterations go on by themselves; a run that ended, or broke, starts again."""
         self.running = True
         self.follows = True
-        if self.run.status is not None:
+        if self.run.is_over:
             self.start()
         else:
             self._keep_pace()
@@ -186,10 +177,13 @@ class Session:
         self._seat.send(Pace(self.run.ticket, 0.0))
 
     def step(self) -> None:
-        """Do one iteration and wait."""
+        """Do one iteration and wait; a run that broke starts again, one that ended stays."""
         self.running = False
         self.follows = True
-        self._seat.send(Step(self.run.ticket))
+        if self.run.is_broken:
+            self.start()
+        else:
+            self._seat.send(Step(self.run.ticket))
 
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""
@@ -224,7 +218,7 @@ class Session:
             self._look_again()
 
     def choose_substructure(self, number: int) -> None:
-        """Choose the substructure whose modes are looked at, from 0 at the clamp."""
+        """Choose the substructure whose modes are looked at, counted from 0."""
         last = self.settings.n_substructures - 1
         chosen = None if number >= last else max(number, 0)
         if chosen != self.substructure:
@@ -234,7 +228,7 @@ class Session:
     def close(self) -> None:
         """Leave: the run stops and its process is free, and so do the reports."""
         self._seat.close()
-        for errand in (self.study, self.stability):
+        for errand in self._errands:
             errand.cancel()
 
     def rest(self, alone: bool) -> None:
@@ -244,7 +238,7 @@ class Session:
 
     def attend(self) -> bool:
         """Take what the reports say, and hold the run while one is timed; tell if it is new."""
-        heard = [errand.collect() for errand in (self.study, self.stability)]
+        heard = [errand.collect() for errand in self._errands]
         if self.study.is_begun != self._held:
             self._held = self.study.is_begun
             self.crowd = self.crowd if not self._held else 0
@@ -252,6 +246,11 @@ class Session:
         if self._held:
             self.crowd = max(self.crowd, self._seat.others_at_work)
         return any(heard)
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the run is one that goes on until the user pauses it."""
+        return self.running and not self.run.is_over
 
     @property
     def is_held(self) -> bool:
@@ -271,12 +270,16 @@ class Session:
         return self.run.sought
 
     @property
+    def _errands(self) -> tuple[Errand, ...]:
+        return self.figures, self.study, self.stability
+
+    @property
     def _is_free(self) -> bool:
         """Whether iterations go on by themselves at present."""
         return self.running and not self._alone and not self._held
 
     def _keep_pace(self) -> None:
-        if self.running and self.run.status is None:
+        if self.goes_on:
             self._seat.send(Pace(self.run.ticket, self.pace if self._is_free else 0.0))
 
     def _look(self, **changes: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import panel_material_ui as pmui
 
 from app.address import query_of
-from app.controls import Control, make_control
+from app.controls import GATHER_MS, Control, make_control
 from app.samples import points_of
 from app.session import Session
 from solver.definitions import Curve, SettingError, about, read_table
@@ -71,6 +71,8 @@ class Sidebar:
         self._complain = complain
         self._copy = copy
         self._unwanted: set[str] = set()
+        self._asked: dict[str, Any] = {}
+        self._has_obeyed = False
         self._views = pmui.CheckBoxGroup(options=[], value=[])
         self._views.param.watch(self._on_views, "value")
         self._more = pmui.Column(sizing_mode="stretch_width", margin=0)
@@ -94,7 +96,8 @@ class Sidebar:
             size="small",
             sizing_mode="stretch_width",
         )
-        self._warm._debounce = 0  # as for the settings, or a slider moved next would overtake it
+        # As for the settings, or a slider moved next would overtake it.
+        self._warm._debounce = GATHER_MS
         self._warm.param.watch(self._on_warm, "value")
         self.view = pmui.Column(sizing_mode="stretch_width", margin=0)
 
@@ -120,6 +123,18 @@ class Sidebar:
             self.show(self._session.wanted)
             self.fill()
 
+    def obey(self) -> None:
+        """Make the changes that were asked for since the last one; to be called at every tick."""
+        asked, self._asked = self._asked, {}
+        self._has_obeyed = bool(asked)
+        for name, value in asked.items():
+            try:
+                self._session.change(name, value)
+            except SettingError as refusal:
+                self._complain(str(refusal))
+        if asked:
+            self._after_change()
+
     def offer(self, views: Sequence[str]) -> list[str]:
         """Offer these views, and give those of them that are wanted."""
         wanted = [name for name in views if name not in self._unwanted]
@@ -129,6 +144,7 @@ class Sidebar:
 
     def _on_scene(self, event: Any) -> None:
         if event.new != self._session.wanted.scene:
+            self.obey()
             self._session.choose_scene(event.new)
             self._after_change()
 
@@ -210,6 +226,7 @@ class Sidebar:
     def _open_more(self, event: Any) -> None:
         """Make the controls behind "more" when they are first looked at: few ever are."""
         if event.new and not self._more.objects:
+            self.obey()
             more = self._make_controls(essential=False)
             self._controls.update(more)
             self.show(self._session.wanted)
@@ -220,13 +237,16 @@ class Sidebar:
         return points_of(self._session.wanted, name)
 
     def _on_setting(self, name: str, value: Any) -> None:
-        try:
-            self._session.change(name, value)
-        except SettingError as refusal:
-            self._complain(str(refusal))
-        self._after_change()
+        """Make the first change at once, and of those before the next tick the newest then.
+
+        A slider that is dragged sends more of them than the server could obey.
+        """
+        self._asked[name] = value
+        if not self._has_obeyed:
+            self.obey()
 
     def _adopt(self, settings: Settings) -> None:
+        self.obey()
         self._session.adopt(settings)
         self._after_change()
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 
 from app.session import Session
 from app.views.paper_figures import PaperFigures
+from app.views.report import Report
 from app.views.stability import StabilityReport
 from app.views.study import StudyReport
 
@@ -30,21 +31,6 @@ IN_HEADER = {
 }
 """White on the blue of the header, in both themes."""
 BELOW = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 0"}}
-
-
-class Tab(Protocol):
-    """What can be looked at in place of the live run.
-
-    Attributes
-    ----------
-    view
-        What stands on the page.
-    """
-
-    view: Any
-
-    def open(self) -> None:
-        """Show it; whatever is in it may be made only now."""
 
 
 class Tabs:
@@ -74,14 +60,12 @@ class Tabs:
     ) -> None:
         self._live = live
         self._changed = changed
-        self._study = StudyReport(
-            session.study, style, lambda: session.wanted, lambda: session.crowd
-        )
-        self._stability = StabilityReport(session.stability, style)
-        self._beside: dict[str, Tab] = {
-            "Figures": PaperFigures(style),
-            "Study": self._study,
-            "Stability": self._stability,
+        self._beside: dict[str, Report] = {
+            "Figures": PaperFigures(session.figures, style),
+            "Study": StudyReport(
+                session.study, style, lambda: session.wanted, lambda: session.crowd
+            ),
+            "Stability": StabilityReport(session.stability, style),
         }
         self.bar = pmui.RadioButtonGroup(
             options=[LIVE, *self._beside], value=LIVE, size="small", margin=(0, 12), sx=IN_HEADER
@@ -98,8 +82,8 @@ class Tabs:
 
     def refresh(self) -> None:
         """Show what the reports have come to."""
-        self._study.refresh()
-        self._stability.refresh()
+        for report in self._beside.values():
+            report.refresh()
 
     def leave_the_header(self) -> None:
         """Stand above what is chosen: a phone's header has no room."""

@@ -58,7 +58,7 @@ class Transport:
 
     def toggle(self) -> None:
         """Run or pause."""
-        if self._session.running and self._session.run.status is None:
+        if self._session.goes_on:
             self._session.pause()
         else:
             self._session.go()
@@ -82,7 +82,7 @@ class Transport:
             self._refresh()
 
     def choose_substructure(self, number: int) -> None:
-        """Look at the modes of another substructure, from 0 at the clamp."""
+        """Look at the modes of another substructure, counted from 0."""
         self._session.choose_substructure(number)
         self._refresh()
 
@@ -104,7 +104,7 @@ class Transport:
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
         session = self._session
-        active = session.running and session.run.status is None
+        active = session.goes_on
         self._run.param.update(
             label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
         )

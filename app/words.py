@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from html import escape
 
 from app.recording import Recording
-from app.views.drawing import Key
-from app.worker.rivals import has_reference
+from app.worker.shown import has_reference
 from solver.latin import Ending, Record
 
 ENDINGS = {
@@ -63,6 +62,8 @@ def status_line(
     if run.status is not None:
         counted = "iteration" if run.iteration == 1 else "iterations"
         state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
+    elif run.is_broken:
+        state = f"<b>■ stopped</b> at iteration {run.iteration}"
     elif held:
         state = f"<b>waits</b> for the study that is timed, at iteration {done}"
     elif not running:
@@ -150,16 +151,6 @@ def _figures(run: Recording, entry: Record) -> tuple[str, ...]:
         f"{1e3 * entry.seconds:.1f} ms",
         str(within.iteration) if within else "–",
     )
-
-
-def card_title(name: str, keys: Sequence[Key]) -> str:
-    """Write a view's name with its legend beside it (HTML)."""
-    entries = "".join(
-        f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
-        f"{escape(key.text)}</span>"
-        for key in keys
-    )
-    return f"<b>{escape(name)}</b>{entries}"
 
 
 def per_iteration(run: Recording) -> float:

@@ -1,7 +1,8 @@
 """Measure the page in headless Chromium: `python tests/measure_page.py`.
 
-Prints medians, in ms, of opening the page until its first picture is painted, and of a key press
-on a slider until the first picture of the new run is painted; and for every scene how many pictures
+Prints medians, in ms, of opening the page until its first picture is painted, of a key press
+on a slider until the first picture of the new run is painted, and of the last of many quick presses
+until its own picture is; and for every scene how many pictures
 of a run that goes on are painted in a second.
 """
 
@@ -18,6 +19,9 @@ from playwright.sync_api import BrowserContext, Page
 from solver.scenes import CATALOGUE
 
 REPEATS = 15
+BURSTS = 4
+PRESSES = 10
+"""Quick presses in a burst, as of a key that is held."""
 FIRST_PICTURE = """() => new Promise((resolve) => {
   const look = () => {
     const status = document.querySelector("body") && window.findStatus()
@@ -85,6 +89,24 @@ def slider_latency(page: Page) -> list[float]:
     return times
 
 
+def burst_latency(page: Page) -> list[float]:
+    """Give the times from a burst of keys until the page shows what the slider then stands at."""
+    handle = page.get_by_role("slider", name="Substructures")
+    times = []
+    for repeat in range(BURSTS):
+        page.wait_for_timeout(1200)
+        handle.focus()
+        for _ in range(PRESSES):
+            page.keyboard.press("ArrowRight" if repeat % 2 == 0 else "ArrowLeft")
+        pressed = time.perf_counter()
+        words = f"· {handle.get_attribute('aria-valuenow')} substructures"
+        page.wait_for_function(
+            "(words) => window.findStatus().textContent.includes(words)", arg=words
+        )
+        times.append(1e3 * (time.perf_counter() - pressed))
+    return times
+
+
 def frames_per_second(context: BrowserContext, address: str) -> float:
     page = context.new_page()
     page.goto(address, wait_until="commit")
@@ -112,6 +134,7 @@ def main() -> None:
                 if repeat == 0:
                     page.wait_for_timeout(3000)
                     latency = slider_latency(page)
+                    bursts = burst_latency(page)
                 page.close()
             pictures = {
                 name: frames_per_second(context, f"{server.address}?scene={name}&{ENDLESS}")
@@ -123,6 +146,10 @@ def main() -> None:
     print(
         f"slider to picture: median {statistics.median(latency):.0f}, "
         f"from {min(latency):.0f} to {max(latency):.0f} ({REPEATS} presses)"
+    )
+    print(
+        f"last of {PRESSES} quick presses to its picture: median {statistics.median(bursts):.0f}, "
+        f"from {min(bursts):.0f} to {max(bursts):.0f}"
     )
     print("pictures a second: " + ", ".join(f"{name} {n:.1f}" for name, n in pictures.items()))
 

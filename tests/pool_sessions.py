@@ -11,11 +11,7 @@ from direct_runs import timeless
 from processes import PATIENCE
 
 from app.worker.pool import Pool
-from app.worker.protocol import (
-    Died,
-    Progress,
-    Report,
-)
+from app.worker.reports import Died, Progress, Report
 from solver.latin import Record
 
 SOON = 2.0

@@ -12,7 +12,7 @@ import pytest
 from jobs import count_to, refuse, sleep, vanish
 from processes import is_alive, wait_for
 
-from app.errand import KEPT, Errand
+from app.errand import KEPT, STARTING, WAITING, Errand
 from app.session import Session
 from app.views.report import progress
 from app.views.stability import matrix
@@ -88,10 +88,16 @@ def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
     second.collect()
     assert first.is_begun
     assert not second.is_begun
-    assert "Waiting for what another page" in progress(second)
+    assert WAITING in progress(second)
     first.cancel()
     until_idle(second)
     assert second.parts == [0, 1, 2]
+
+
+def test_a_job_that_nobody_is_before_does_not_say_that_it_waits(errand: Errand) -> None:
+    errand.ask("any", partial(count_to, 1))
+    assert STARTING in progress(errand)
+    assert WAITING not in progress(errand)
 
 
 def test_a_cancelled_job_ends_its_process_and_says_nothing_more(

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
 
 import panel as pn
 import pytest
+from bokeh.document import Document
+from lone_seat import Seat
+from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 from app.address import settings_from_query
@@ -14,6 +19,7 @@ from app.dashboard import Dashboard
 from app.session import Session
 from app.worker.bench import Bench
 from app.worker.pool import Pool
+from solver.files import scene_settings
 
 
 @pytest.fixture
@@ -45,6 +51,16 @@ def test_a_busy_server_changes_nothing_on_the_page(dashboard: Dashboard) -> None
         pn.state.busy = True
         pn.state.busy = False
     assert not changes
+
+
+def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
+    """Twenty pages that the server did not let go were 200 MB."""
+    with set_curdoc(Document()):
+        pn.extension(notifications=True)
+        session = Session(Seat(), Bench(), scene_settings("bar").checked({}))
+        page = weakref.ref(Dashboard(session).page)
+    gc.collect()
+    assert page() is None
 
 
 # panel-material-ui gives its download button both names of one parameter.

@@ -15,7 +15,8 @@ from app.sidebar import Sidebar
 from app.words import start_line, status_line
 from app.worker.bench import Bench
 from app.worker.pool import Pool
-from app.worker.protocol import Axes, Begun
+from app.worker.reports import Begun
+from app.worker.shown import Axes
 from solver.files import settings_from_toml
 from solver.latin.warm import StartChoice
 from solver.scenes.bar import BarSettings

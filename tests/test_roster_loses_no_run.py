@@ -9,21 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.worker import seat as seats
-from app.worker.protocol import (
-    Leave,
-    Pace,
-    Park,
-    Parked,
-    Ready,
-    Refused,
-    Run,
-    Seek,
-    Step,
-    Taken,
-    Unrivalled,
-    Waiting,
-    Watch,
-)
+from app.worker.orders import Leave, Pace, Park, Run, Seek, Step, Watch
+from app.worker.reports import Parked, Ready, Refused, Taken, Unrivalled, Waiting
 from app.worker.roster import Roster
 
 

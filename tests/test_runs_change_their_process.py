@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from app.worker.protocol import Progress, Report, Run
-from app.worker.recording import References
+from app.worker.orders import Run
+from app.worker.reports import Progress, Report
+from app.worker.rivals import References
 from app.worker.run import WorkerRun
 
 SMALL: dict[str, dict[str, Any]] = {

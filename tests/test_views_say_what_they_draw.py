@@ -17,8 +17,9 @@ from app.views.friction import FrictionForce
 from app.views.loop import Loop
 from app.views.status_map import StatusMap
 from app.views.tractions import Tractions
-from app.worker.protocol import Look, Run, Waiting
-from app.worker.recording import References
+from app.worker.orders import Look, Run
+from app.worker.reports import Waiting
+from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from solver.scenes import CATALOGUE
 

@@ -10,17 +10,8 @@ import pytest
 from direct_runs import direct, timeless
 from worker_line import SHORT, STALLING, Line, is_same_picture, shown
 
-from app.worker.protocol import (
-    Begun,
-    End,
-    Frame,
-    Park,
-    Parked,
-    Reference,
-    Run,
-    Seek,
-    Waiting,
-)
+from app.worker.orders import Park, Run, Seek
+from app.worker.reports import Begun, End, Frame, Parked, Reference, Waiting
 from solver.reference.closed_form import closed_form
 from solver.scenes.bar import BarSettings, bar
 

@@ -8,22 +8,8 @@ import numpy as np
 import pytest
 from worker_line import PATIENCE, SHORT, Line
 
-from app.worker.protocol import (
-    End,
-    Frame,
-    Leave,
-    Pace,
-    Park,
-    Parked,
-    Progress,
-    Reference,
-    Refused,
-    Run,
-    Seek,
-    Step,
-    Waiting,
-    Watch,
-)
+from app.worker.orders import Leave, Pace, Park, Run, Seek, Step, Watch
+from app.worker.reports import End, Frame, Parked, Progress, Reference, Refused, Waiting
 from solver.latin import Ending
 
 
@@ -47,13 +33,12 @@ def test_pace_zero_waits_after_the_first_iteration(line: Line) -> None:
     assert [record.iteration for record in line.records()] == [1]
 
 
-def test_frames_carry_spectra_and_behaviour_only_when_watched(line: Line) -> None:
+def test_frames_carry_spectra_only_when_watched(line: Line) -> None:
     line.send(Run(1, "bar", {"elements": 52, "substructures": 10}, pause_after=3))
     line.until(Waiting)
-    assert all(frame.spectra is None and frame.behaviour is None for frame in line.all(Frame))
-    line.send(Watch(1, frozenset({"spectra", "behaviour"})))
+    assert all(frame.spectra is None for frame in line.all(Frame))
+    line.send(Watch(1, frozenset({"spectra"})))
     frame = line.until(Frame)
-    assert frame.behaviour.shape == frame.friction.shape
     assert frame.spectra.shape == (10, 7)
     assert np.isnan(frame.spectra[2:, 6:]).all()
     assert not np.isnan(frame.spectra[:, :6]).any()

@@ -12,21 +12,9 @@ from pool_sessions import ENDLESS, SHORT, SOON, Session
 from processes import wait_for
 
 from app.worker import post as posts
+from app.worker.orders import Pace, Run, Seek, Step
 from app.worker.pool import Pool
-from app.worker.protocol import (
-    Begun,
-    Died,
-    End,
-    Frame,
-    Pace,
-    Progress,
-    Reference,
-    Refused,
-    Report,
-    Run,
-    Seek,
-    Step,
-)
+from app.worker.reports import Begun, Died, End, Frame, Progress, Reference, Refused, Report
 
 SLOW_TO_SET_UP = {"elements": 5000, "instants": 2001, "substructures": 500}
 

@@ -15,16 +15,9 @@ from direct_runs import direct, timeless
 from pool_sessions import ENDLESS, SHORT, SOON, Session
 from processes import PATIENCE, is_alive, wait_for
 
+from app.worker.orders import Run, Step, Watch
 from app.worker.pool import Pool
-from app.worker.protocol import (
-    Died,
-    End,
-    Frame,
-    Progress,
-    Run,
-    Step,
-    Watch,
-)
+from app.worker.reports import Died, End, Frame, Progress
 
 
 def test_killed_worker_is_replaced_and_the_run_starts_again(session: Session) -> None:
@@ -71,13 +64,13 @@ def test_frozen_worker_is_replaced_when_a_new_run_is_ordered(session: Session) -
     frozen = session.pid
     os.kill(frozen, signal.SIGSTOP)
     session.seat.run(Run(2, "bar", SHORT))
-    session.seat.send(Watch(2, frozenset({"behaviour"})))
+    session.seat.send(Watch(2, frozenset({"spectra"})))
     session.until(Frame, ticket=2, patience=SOON)
     session.until(End, ticket=2)
     assert not is_alive(frozen)
     assert not any(isinstance(report, Died) for report in session.reports)
     frames = [report for report in session.reports if isinstance(report, Frame)]
-    assert frames[-1].behaviour is not None
+    assert frames[-1].spectra is not None
 
 
 @pytest.mark.parametrize("frozen", [False, True])
@@ -104,7 +97,8 @@ def test_closed_pool_leaves_no_process(frozen: bool) -> None:
 SERVER = """
 import sys, time
 from app.worker.pool import shared_pool
-from app.worker.protocol import Frame, Run
+from app.worker.orders import Run
+from app.worker.reports import Frame
 
 pool, seen = shared_pool(), set()
 for number in range(2):

@@ -15,18 +15,9 @@ from direct_runs import direct, timeless
 from worker_line import SHORT, STALLING, Line, is_same_picture, shown
 
 from app.worker import run
-from app.worker.protocol import (
-    Begun,
-    End,
-    Frame,
-    Progress,
-    Reference,
-    Refused,
-    Run,
-    Taken,
-    Waiting,
-)
-from app.worker.recording import References
+from app.worker.orders import Run
+from app.worker.reports import Begun, End, Frame, Progress, Reference, Refused, Taken, Waiting
+from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from solver import latin
 from solver.latin import Ending, Iterate, Record

@@ -9,18 +9,9 @@ import pytest
 from direct_runs import direct, iterate_number, timeless
 from worker_line import SHORT, STALLING, Line, is_same_picture, shown
 
-from app.worker.protocol import (
-    End,
-    Frame,
-    Pace,
-    Park,
-    Parked,
-    Progress,
-    Run,
-    Seek,
-    Waiting,
-)
-from app.worker.recording import Recording
+from app.worker.checkpoints import Checkpoints
+from app.worker.orders import Pace, Park, Run, Seek
+from app.worker.reports import End, Frame, Parked, Progress, Waiting
 from solver.latin import Checkpoint
 
 
@@ -68,7 +59,7 @@ def test_seek_does_not_move_the_run(line: Line) -> None:
 
 @pytest.mark.parametrize("budget", [0, 800, 8000, 10**9])
 def test_recording_stays_within_its_memory_and_finds_the_nearest_checkpoint(budget: int) -> None:
-    recording = Recording(budget)
+    recording = Checkpoints(budget)
     for number in range(1, 1001):
         recording.keep(Checkpoint(number, 0.0, np.zeros((10, 10))))
     found = [recording.before(number) for number in range(1, 1002)]

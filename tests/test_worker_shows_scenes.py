@@ -22,24 +22,20 @@ from app.views.status_map import StatusMap
 from app.views.tractions import Tractions
 from app.words import status_line
 from app.worker.meshes import MOST_QUADS, Thinned
-from app.worker.protocol import (
-    STATUS_OPEN,
+from app.worker.orders import Look, Run, Watch
+from app.worker.reports import (
     Begun,
     Frame,
-    Look,
-    Mesh,
     Parked,
     Progress,
     Reference,
     Report,
-    Run,
     Unrivalled,
     Waiting,
-    Watch,
 )
-from app.worker.recording import References
-from app.worker.rivals import has_reference
+from app.worker.rivals import References
 from app.worker.run import WorkerRun
+from app.worker.shown import STATUS_OPEN, Mesh, has_reference
 from solver.discrete import discretise
 from solver.latin import Iterate
 from solver.scenes import CATALOGUE

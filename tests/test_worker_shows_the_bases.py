@@ -16,22 +16,12 @@ from app.views.drawing import Picture, View
 from app.views.error_time import ErrorTime
 from app.views.modes import SpaceModes, TimeFunctions
 from app.views.spectra import Spectra
-from app.worker.protocol import (
-    MOST_MODES,
-    MOST_SIZES,
-    Bases,
-    Frame,
-    Progress,
-    Report,
-    Run,
-    Seek,
-    ShownModes,
-    Waiting,
-    Watch,
-)
-from app.worker.recording import Recording as Checkpoints
-from app.worker.recording import References
+from app.worker.checkpoints import Checkpoints
+from app.worker.orders import Run, Seek, Watch
+from app.worker.reports import Frame, Progress, Report, Waiting
+from app.worker.rivals import References
 from app.worker.run import WorkerRun
+from app.worker.shown import MOST_MODES, MOST_SIZES, Bases, ShownModes
 from solver.latin import Record
 from solver.scenes.bar import BarSettings
 

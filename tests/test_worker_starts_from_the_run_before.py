@@ -9,17 +9,8 @@ import pytest
 from direct_runs import direct, timeless
 from worker_line import STALLING, Line, is_same_picture, shown
 
-from app.worker.protocol import (
-    Begun,
-    End,
-    Frame,
-    Park,
-    Parked,
-    Progress,
-    Run,
-    Seek,
-    Waiting,
-)
+from app.worker.orders import Park, Run, Seek
+from app.worker.reports import Begun, End, Frame, Parked, Progress, Waiting
 from solver.discrete import discretise
 from solver.latin import Record, record
 from solver.latin.warm import choose_start

@@ -10,14 +10,8 @@ import pytest
 from processes import PATIENCE
 
 from app.worker import member
-from app.worker.protocol import (
-    Frame,
-    Look,
-    Order,
-    Progress,
-    Ready,
-    Report,
-)
+from app.worker.orders import Look, Order
+from app.worker.reports import Frame, Progress, Ready, Report
 from app.worker.sampler import Sampler
 from solver.latin import Iterate, Record
 from solver.scenes.bar import BarSettings

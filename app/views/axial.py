@@ -25,7 +25,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.protocol import Wires
+from app.worker.shown import Wires
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings
 

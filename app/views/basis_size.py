@@ -31,7 +31,7 @@ class BasisSize:
     Parameters
     ----------
     choose
-        Called with the number of the substructure, from 0 at the clamp.
+        Called with the number of the substructure, counted from 0.
     """
 
     name = "PGD basis size"

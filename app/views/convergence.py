@@ -21,7 +21,7 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
-from app.worker.rivals import has_reference
+from app.worker.shown import has_reference
 from solver.latin import Record
 from solver.settings import Settings
 

@@ -20,7 +20,7 @@ from app.views.drawing import (
     make_figure,
     round_up,
 )
-from app.worker.protocol import Mesh, MeshField
+from app.worker.shown import Mesh, MeshField
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 

@@ -18,28 +18,14 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from app.recording import Recording
-from app.worker.protocol import Frame
+from app.views.legend import Key
+from app.worker.reports import Frame
 from solver.settings import Settings
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"
 SKY, VERMILION = "#56B4E9", "#D55E00"
 BACKWARD, STICK, FORWARD, OPEN = BLUE, "#D9D9D9", ORANGE, "#4D4D4D"
 FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
-
-
-@dataclass(frozen=True)
-class Key:
-    """One entry of a legend, which stands beside the view's name: a mark and its meaning.
-
-    Attributes
-    ----------
-    mark
-        "line", "dashed", "dotted", "pale", "band", "square", "ring", "cross", or "bare" for none.
-    """
-
-    color: str
-    mark: str
-    text: str
 
 
 @dataclass(frozen=True)

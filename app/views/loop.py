@@ -23,7 +23,8 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.protocol import Axes, Frame, Reference
+from app.worker.reports import Frame, Reference
+from app.worker.shown import Axes
 from solver.settings import Settings
 
 Curve = tuple[np.ndarray, np.ndarray]

@@ -22,7 +22,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.protocol import Bases, ShownModes
+from app.worker.shown import Bases, ShownModes
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 

@@ -21,14 +21,14 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
-from app.worker.protocol import Bases
+from app.worker.shown import Bases
 from solver.settings import Settings
 
 FLOOR = 1e-8
 
 
 class Spectra:
-    """How fast the singular values fall, substructures numbered from the clamp.
+    """How fast the singular values fall, substructure by substructure.
 
     Rings are the sizes of the chosen separated basis's modes; crosses are the singular values of
     the field that it has to hold.

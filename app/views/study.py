@@ -11,10 +11,10 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.errand import Errand, Found
+from app.views.legend import card_title
 from app.views.panels import keys, plot
 from app.views.report import Report, bullets, table
-from app.words import card_title
-from app.worker.rivals import has_reference
+from app.worker.shown import has_reference
 from app.worker.studies import StudyFound, study_of
 from solver.settings import Settings
 from solver.study.figure_data import Panel

@@ -23,7 +23,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
-from app.worker.protocol import instant_of
+from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.protocol import (
+from app.worker.shown import (
     MOST_MODES,
     MOST_SIZES,
     MOST_VALUES,

@@ -31,6 +31,11 @@ class Bench:
         return job
 
     @property
+    def is_busy(self) -> bool:
+        """Whether a job is at work, for which another one has to wait."""
+        return self._at_work is not None
+
+    @property
     def pid(self) -> int | None:
         """Number of the process at work, if any."""
         job = self._at_work

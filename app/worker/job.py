@@ -121,19 +121,17 @@ class Job:
                 self._listen(ours)
             started.kill()
             started.join()
-        except OSError:
+        except (OSError, EOFError):
+            # The process is gone; or, where the fork server was gone, it has never been there.
             self._say(Broke(STOPPED))
         finally:
             self._ended(self)
 
     def _listen(self, connection: Connection) -> None:
-        """Pass on what is said, until the end or, as an OSError, the end of the process."""
+        """Pass on what is said, until the end or, as an EOFError, the end of the process."""
         said: Said | None = None
         while not isinstance(said, Done | Broke):
-            try:
-                said = connection.recv()
-            except EOFError as gone:
-                raise OSError from gone
+            said = connection.recv()
             self._say(said)
 
     def _say(self, said: Said) -> None:

@@ -15,7 +15,8 @@ from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
 
 from app.worker import process
-from app.worker.protocol import Order, Ready, Report
+from app.worker.orders import Order
+from app.worker.reports import Ready, Report
 
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]
@@ -69,23 +70,28 @@ class Member:
 
     def _live(self) -> None:
         try:
-            started, ours = start()
-            self._process = started
-            if self._doomed.is_set():
-                started.kill()
-            carry = threading.Thread(
-                target=self._carry_orders, args=(ours,), name="worker-orders", daemon=True
-            )
-            carry.start()
+            # The pipe ends with the process; where the fork server is gone, there is no process.
             with contextlib.suppress(EOFError, OSError):
-                while True:
-                    self._received(self, ours.recv())
+                self._converse()
         finally:
             self._orders.put(None)
             if self._process is not None:
                 self._process.kill()
                 self._process.join()
             self._gone(self)
+
+    def _converse(self) -> None:
+        """Start the process, and take its reports until it has ended."""
+        started, ours = start()
+        self._process = started
+        if self._doomed.is_set():
+            started.kill()
+        carry = threading.Thread(
+            target=self._carry_orders, args=(ours,), name="worker-orders", daemon=True
+        )
+        carry.start()
+        while True:
+            self._received(self, ours.recv())
 
     def _carry_orders(self, connection: Connection) -> None:
         with contextlib.suppress(OSError):

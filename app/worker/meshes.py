@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.protocol import STRESSES, Mesh
+from app.worker.shown import STRESSES, Mesh
 from solver.discrete.elements import von_mises
 from solver.discrete.problem import Inside
 from solver.scenes.plane import PlaneSettings

@@ -26,7 +26,8 @@ from collections.abc import Iterator
 from time import monotonic
 
 from app.worker.member import Member
-from app.worker.protocol import Ready, Report, Run
+from app.worker.orders import Run
+from app.worker.reports import Ready, Report
 from app.worker.roster import Delivery, Roster
 from app.worker.seat import Change, Listener, Seat
 

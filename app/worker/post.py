@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.worker.protocol import Parked, Taken
+from app.worker.reports import Parked, Taken
 from app.worker.seat import QUANTUM
 
 if TYPE_CHECKING:

@@ -16,23 +16,11 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
-from app.worker.protocol import (
-    Leave,
-    Order,
-    Pace,
-    Park,
-    Parked,
-    Ready,
-    Refused,
-    Run,
-    Seek,
-    Step,
-    Taken,
-    Waiting,
-    Watch,
-)
-from app.worker.recording import References
-from app.worker.run import WorkerRun, last_iterate
+from app.worker.orders import Leave, Order, Pace, Park, Run, Seek, Step, Watch
+from app.worker.previous import last_iterate
+from app.worker.reports import Parked, Ready, Refused, Taken, Waiting
+from app.worker.rivals import References
+from app.worker.run import WorkerRun
 from solver.definitions import SettingError
 
 NICENESS = 2

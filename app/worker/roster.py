@@ -41,16 +41,15 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.worker.member import Member
+from app.worker.orders import Park, Run
 from app.worker.post import Post
-from app.worker.protocol import (
-    Park,
+from app.worker.reports import (
     Parked,
     Progress,
     Ready,
     Reference,
     Refused,
     Report,
-    Run,
     Taken,
     Unrivalled,
     Waiting,

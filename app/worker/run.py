@@ -3,46 +3,27 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-import numpy as np
-
-from app.worker.bases import sizes
 from app.worker.beside import Beside, beside
-from app.worker.protocol import (
-    Begun,
-    End,
-    Frame,
-    Look,
-    Pace,
-    Parked,
-    Progress,
-    Report,
-    Run,
-    Seek,
-    Step,
-    Unrivalled,
-    Watch,
-)
-from app.worker.recording import Recording, References
+from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
+from app.worker.outbox import Outbox
+from app.worker.previous import fits
+from app.worker.reports import Begun, End, Frame, Parked, Report, Unrivalled
 from app.worker.resume import Resume, without_problem
+from app.worker.rivals import References
 from app.worker.sampler import Sampler
+from app.worker.seeking import Seeking
 from app.worker.tempo import Tempo
-from solver.definitions import SettingError
-from solver.discrete import Problem, discretise
-from solver.latin import Checkpoint, Ending, Iterate, Record, StopRules, record
+from solver.discrete import discretise
+from solver.files import scene_settings
+from solver.latin import Checkpoint, Ending, Iterate, StopRules, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.warm import choose_start, iterations_from
 from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted
-from solver.scenes import CATALOGUE
-from solver.settings import Settings
-
-PUBLISH_EVERY = 1.0 / 25.0
-"""Seconds between two frames of a run that goes on by itself."""
 
 
 class WorkerRun:
@@ -84,7 +65,7 @@ class WorkerRun:
         self._send = send
         self._urgent = urgent
         self._references = references
-        self._settings = _checked(order)
+        self._settings = scene_settings(order.scene).checked(order.values)
         self._problem = discretise(self._settings)
         self._look = order.look
         self._sampler = Sampler(self._problem, self._settings, self._look)
@@ -95,19 +76,14 @@ class WorkerRun:
         self._distance: Distance | None = None
         self._before = resume.before if resume else None
         self._start = resume.start if resume else None
-        self._previous = previous if resume is None and _fits(previous, self._problem) else None
+        self._previous = previous if resume is None and fits(previous, self._problem) else None
         self._newest: Iterate | None = None
-        self._search: tuple[Iterator[Iterate], int] | None = None
-        self._passed: Checkpoint | None = None
-        self._recording = Recording()
+        self._seeking = Seeking(self._iterations)
+        self._outbox = Outbox(order.ticket, send)
         self._tempo = Tempo(order.pace, order.pause_after, resume.due if resume else None)
         self._watch = order.watch
         self._substructure = order.substructure
         self._beside: Beside | None = None
-        self._unsent: list[Record] = []
-        self._unsent_beside: list[Record] = []
-        self._stale = False
-        self._publish_at = 0.0
 
     @property
     def last(self) -> Iterate | None:
@@ -116,13 +92,10 @@ class WorkerRun:
 
     def rest(self) -> float | None:
         """Give the seconds until `advance` has something to do; None waits for an order."""
-        if self._newest is None or not self._compared or self._search is not None:
+        if self._newest is None or not self._compared or self._seeking.wanted is not None:
             return 0.0
-        rest = self._rest_of_iterations(self._newest.number)
-        if not self._stale:
-            return rest
-        due = max(self._publish_at - time.monotonic(), 0.0)
-        return due if rest is None else min(rest, due)
+        rests = (self._rest_of_iterations(self._newest.number), self._outbox.rest())
+        return min((rest for rest in rests if rest is not None), default=None)
 
     def advance(self) -> None:
         """Do the next piece of work, if any is due."""
@@ -130,9 +103,9 @@ class WorkerRun:
             self._open()
         elif not self._compared:
             self._compare(self._newest)
-        elif self._search is not None:
-            self._search_on(*self._search)
-        elif self._stale and time.monotonic() >= self._publish_at:
+        elif self._seeking.wanted is not None:
+            self._seek_on()
+        elif self._outbox.rest() == 0.0:
             self._publish()
         elif self._is_due():
             self._iterate(self._newest)
@@ -172,14 +145,13 @@ class WorkerRun:
                 self._start,
             )
         pace, pause_after = self._tempo.carried(done)
-        seek = self._search[1] if self._search else self._order.seek
         order = replace(
             self._order,
             pace=pace,
             pause_after=pause_after,
             resume=resume,
             watch=self._watch,
-            seek=seek,
+            seek=self._seeking.wanted or self._order.seek,
             substructure=self._substructure,
             look=self._look,
             after=None,
@@ -204,8 +176,8 @@ class WorkerRun:
         if resume is not None:
             self._refer(resume.reference(self._problem) if resume.reference else None)
             if self._before is not None:
-                self._recording.keep(self._before)
-            self._recording.keep(newest.checkpoint)
+                self._seeking.keep(self._before)
+            self._seeking.keep(newest.checkpoint)
         if self._order.seek is not None:
             self._seek(self._order.seek)
 
@@ -278,12 +250,11 @@ class WorkerRun:
         if self._status is None or self._status.ending is not Ending.DIVERGED:
             if iterate is not newest:
                 self._before = newest.checkpoint
-                self._stale = True
+                self._outbox.owe_frame()
             self._newest = newest = iterate
-            self._unsent.append(entry)
-            if self._beside is not None:
-                self._unsent_beside += self._beside.follow(iterate.number, self._distance)
-            self._recording.keep(iterate.checkpoint)
+            beside = self._beside
+            self._outbox.add(entry, beside.follow(iterate.number, self._distance) if beside else ())
+            self._seeking.keep(iterate.checkpoint)
         if self._rest_of_iterations(newest.number) is None:
             self._publish()
         if self._status is not None:
@@ -297,41 +268,20 @@ class WorkerRun:
         self._order = replace(self._order, seek=None)
         wanted = min(max(iteration, 1), newest.number)
         if wanted == newest.number:
-            self._search = None
+            self._seeking.stop()
             self._send(self._frame(newest, self._before, sought=True))
         else:
-            start = self._recording.before(wanted)
-            self._search = (self._iterations(start), wanted)
-            self._passed = start
+            self._seeking.begin(wanted)
 
-    def _search_on(self, generator: Iterator[Iterate], wanted: int) -> None:
-        iterate = next(generator)
-        self._recording.keep(iterate.checkpoint)
-        if iterate.number == wanted:
-            self._search = None
-            self._send(self._frame(iterate, self._passed, sought=True))
-        self._passed = iterate.checkpoint
+    def _seek_on(self) -> None:
+        found = self._seeking.go_on()
+        if found is not None:
+            self._send(self._frame(*found, sought=True))
 
     def _publish(self) -> None:
-        """Send all records not yet sent, and the newest frame if there is a newer one."""
-        if self._unsent:
-            self._send(
-                Progress(
-                    self.ticket,
-                    tuple(
-                        replace(entry, reduction=()) if entry.reduction else entry
-                        for entry in self._unsent
-                    ),
-                    sizes(self._unsent),
-                    tuple(self._unsent_beside),
-                )
-            )
-            self._unsent.clear()
-            self._unsent_beside.clear()
-        if self._stale and self._newest is not None:
-            self._send(self._frame(self._newest, self._before))
-            self._stale = False
-        self._publish_at = time.monotonic() + PUBLISH_EVERY
+        newest = self._newest
+        if newest is not None:
+            self._outbox.publish(lambda: self._frame(newest, self._before))
 
     def _frame(self, iterate: Iterate, before: Checkpoint | None, *, sought: bool = False) -> Frame:
         return self._sampler.frame(
@@ -349,33 +299,3 @@ class WorkerRun:
 
     def _rest_of_iterations(self, done: int) -> float | None:
         return None if self._status is not None else self._tempo.rest(done)
-
-
-def _fits(previous: Iterate | None, problem: Problem) -> bool:
-    """Tell whether a run may start from another's iterate.
-
-    Row by row it always may; fields that have to be carried to another mesh must be those of wires
-    that rub where these do.
-    """
-    if previous is None:
-        return False
-    old = previous.problem
-    if np.array_equal(old.row_dofs, problem.row_dofs):
-        return True
-    wires = old.positions.ndim == problem.positions.ndim == 1
-    return wires and set(problem.rubbing) <= set(old.rubbing)
-
-
-def last_iterate(order: Run) -> Iterate | None:
-    """Give the last iterate of a run that was parked, if it had any."""
-    if order.resume is None:
-        return None
-    settings = _checked(order)
-    resume = order.resume
-    return next(iterations_from(discretise(settings), settings, resume.start, resume.before))
-
-
-def _checked(order: Run) -> Settings:
-    if order.scene not in CATALOGUE:
-        raise SettingError("scene", order.scene, ", ".join(CATALOGUE), "choose one of these")
-    return CATALOGUE[order.scene].settings.checked(order.values)

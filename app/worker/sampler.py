@@ -10,18 +10,16 @@ from numpy.typing import NDArray
 
 from app.worker.bases import show_bases
 from app.worker.meshes import Thinned
-from app.worker.protocol import (
+from app.worker.orders import Look
+from app.worker.reports import Begun, Frame, Reference
+from app.worker.shown import (
     LONGEST_CURVE,
     MOST_SPECTRA,
     MOST_VALUES,
     Axes,
-    Begun,
     Bytes,
     Floats,
-    Frame,
-    Look,
     MeshField,
-    Reference,
     instant_of,
     thinned,
 )
@@ -30,7 +28,6 @@ from solver.discrete import Problem
 from solver.discrete.contact_fields import mean_by_point
 from solver.discrete.loops import Fields, loop_of
 from solver.latin import Checkpoint, Iterate
-from solver.latin.indicators import behaviour_indicator
 from solver.laws import Contact
 from solver.reduction.svd import friction_spectra
 from solver.reference import incremental
@@ -169,7 +166,6 @@ class Sampler:
             end_displacement=_floats(self._loop.displacement(iterate.displacement)[self._curve]),
             load=self._load(iterate),
             spectra=_table(friction_spectra(iterate)) if "spectra" in watch else None,
-            behaviour=self._behaviour(iterate) if "behaviour" in watch else None,
             bases=show_bases(iterate, before, watch, substructure),
             mesh=self._mesh_field(iterate, look, instant) if "mesh" in watch else None,
             axial=axial.forces(iterate, instant, self._columns[instant]) if axial else None,
@@ -183,9 +179,6 @@ class Sampler:
         displacement, stress = self._mesh.fields(whole, column, look.stress)
         largest = max(float(whole.max()), -float(whole.min()))
         return MeshField(instant, look.stress, _floats(displacement), _floats(stress), largest)
-
-    def _behaviour(self, iterate: Iterate) -> Floats:
-        return _floats(self._thin(behaviour_indicator(iterate).map[self._points]))
 
     def _load(self, fields: Fields) -> Floats | None:
         force = self._loop.force

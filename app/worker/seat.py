@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from app.worker.protocol import Died, Pace, Report, Run, Seek, Step, Watch
+from app.worker.orders import Pace, Run, Seek, Step, Watch
+from app.worker.reports import Died, Report
 
 if TYPE_CHECKING:
     from app.worker.pool import Pool

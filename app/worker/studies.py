@@ -11,8 +11,10 @@ from typing import Any
 from app.worker.job import Doing, Part, Send
 from solver.scenes import CATALOGUE
 from solver.study.error_against_time import Study, error_against_time
+from solver.study.figure_data import PaperFigure
 from solver.study.growth import Growth, growth
-from solver.study.paper_figures import PaperFigure, paper_figures
+from solver.study.paper_figures import MAKERS
+from solver.study.paper_runs import PaperRuns
 from solver.study.stability import Row, cases_of, invariance, methods_of, stability
 from solver.study.stability_report import write_report
 from solver.study.study_files import write_study
@@ -78,8 +80,13 @@ def stability_of(quick: bool, send: Send) -> StabilityFound:
 
 
 def figures_of_the_paper(send: Send) -> list[PaperFigure]:
-    """Compute the paper's figures."""
-    return paper_figures()
+    """Compute the paper's figures, and send each as it comes."""
+    runs, figures = PaperRuns(), list[PaperFigure]()
+    for make in MAKERS:
+        send(Doing(f"{len(figures)} of {len(MAKERS)} figures", len(figures) / len(MAKERS)))
+        figures.append(make(runs))
+        send(Part(figures[-1]))
+    return figures
 
 
 def _files(write: Callable[[Path], object]) -> Files:

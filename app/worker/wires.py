@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.protocol import AxialForces, Wires, thinned
+from app.worker.shown import AxialForces, Wires, thinned
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
 from solver.latin import Iterate

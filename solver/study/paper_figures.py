@@ -31,8 +31,7 @@ MODE = Axis("Space mode", "1/√m")
 def paper_figures(runs: PaperRuns | None = None) -> list[PaperFigure]:
     """Make Figs. 3 to 8 from one set of runs."""
     runs = runs or PaperRuns()
-    makers = (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)
-    return [make(runs) for make in makers]
+    return [make(runs) for make in MAKERS]
 
 
 def figure_3(runs: PaperRuns) -> PaperFigure:
@@ -294,3 +293,7 @@ def _beside_svd(exact: Decomposition, modes: Array) -> list[Curve]:
             Curve(f"SVD {order}", exact.positions, exact.space_modes[:, place], order, "dotted"),
         ]
     return curves
+
+
+MAKERS = (figure_3, figure_4, figure_5, figure_6, figure_7, figure_8)
+"""Each makes its figure from the runs that all share; a run is done when it is first asked for."""

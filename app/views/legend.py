@@ -1,0 +1,32 @@
+"""What stands above a plot: its name, with its legend beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+
+
+@dataclass(frozen=True)
+class Key:
+    """One entry of a legend, which stands beside the view's name: a mark and its meaning.
+
+    Attributes
+    ----------
+    mark
+        "line", "dashed", "dotted", "pale", "band", "square", "ring", "cross", or "bare" for none.
+    """
+
+    color: str
+    mark: str
+    text: str
+
+
+def card_title(name: str, keys: Sequence[Key]) -> str:
+    """Write a view's name with its legend beside it (HTML)."""
+    entries = "".join(
+        f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
+        f"{escape(key.text)}</span>"
+        for key in keys
+    )
+    return f"<b>{escape(name)}</b>{entries}"

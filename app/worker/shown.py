@@ -1,0 +1,199 @@
+"""What is shown of a run: the types and limits of its arrays, and the parts of a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.reduction.basis import ReductionRecord
+from solver.settings import Settings
+
+Floats = NDArray[np.float32]
+Bytes = NDArray[np.int8]
+Counts = NDArray[np.int16]
+
+LARGEST_SIDE = 400
+"""Points and instants of a field that are sent at most; a screen shows no more."""
+
+LONGEST_CURVE = 2000
+"""Instants of a curve that are sent at most."""
+
+MOST_SPECTRA = 60
+"""Substructures whose spectra are sent at most, chosen by `thinned`."""
+
+MOST_VALUES = 64
+"""Singular values of a substructure that are sent at most."""
+
+MOST_SIZES = 60
+"""Substructures whose numbers of modes are sent at most, chosen by `thinned`."""
+
+MOST_MODES = 5
+"""Modes of the chosen substructure that are sent at most, the largest."""
+
+MOST_JUMPS = 1000
+"""Jumps up to which a reference takes no longer than a second or two; its time grows with their
+cube (measured: 8 s for 1900), and meanwhile the worker obeys no order."""
+
+STRESSES = ("von Mises", "xx", "yy", "xy")
+"""Components of stress that a frame may carry."""
+
+STATUS_OPEN = 2
+"""Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Title and unit across and up."""
+
+    across: tuple[str, str]
+    up: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Quadrilaterals, as many as a screen shows: corners (n_nodes, 2), m; nodes (n_quads, 4)."""
+
+    nodes: Floats
+    quads: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Wires:
+    """Wires that a frame may show the axial force of.
+
+    Attributes
+    ----------
+    numbers
+        Of the wires, from 1.
+    positions
+        Where the force is given along each of them, shape (n_positions,), m.
+    broken
+        Number of the broken one, or 0.
+    exact_positions, exact
+        Force of the broken wire and of its neighbours in closed form, shape (2, n_nodes,
+        n_instants), N, and its places, m; None where there is none, or not yet.
+    """
+
+    numbers: tuple[int, ...]
+    positions: Floats
+    broken: int
+    exact_positions: Floats | None = None
+    exact: Floats | None = None
+
+
+@dataclass(frozen=True)
+class ShownModes:
+    """The largest displacement modes of one substructure's separated basis, without body forces.
+
+    Attributes
+    ----------
+    positions
+        Shape (n_points,), m.
+    space_modes
+        Shape (n_modes, n_points); the largest entry of each is 1 in size, and the last lobe that
+        is at least half as large is positive.
+    time_functions
+        Shape (n_modes, n_instants), m, at the instants of Begun; mode times function is the field.
+    born
+        Shape (n_modes,): whether more than half of the mode, in its energy, lies outside the modes
+        of the iteration before.
+    record
+        What the iteration did to the basis.
+    lost
+        Modes that downsizing dropped.
+    """
+
+    positions: Floats
+    space_modes: Floats
+    time_functions: Floats
+    born: NDArray[np.bool_]
+    record: ReductionRecord
+    lost: int
+
+
+@dataclass(frozen=True)
+class OwnValues:
+    """How large the modes of one substructure are, beside the field that they have to hold.
+
+    Attributes
+    ----------
+    basis
+        Norms of the time functions, shape (n_modes,), relative to the largest entry of both.
+    wanted
+        Singular values, at most `MOST_VALUES`, of what the local stage asks for, W^ + F^/k, in the
+        same inner product.
+    """
+
+    basis: Floats
+    wanted: Floats
+
+
+@dataclass(frozen=True)
+class Bases:
+    """The separated bases of one iterate.
+
+    Attributes
+    ----------
+    substructure
+        The chosen one, counted from 0.
+    largest, stored
+        Modes of the largest basis, and of all together, a shared one counted once.
+    modes, values
+        Of the chosen substructure, if "modes", or "spectra", is watched.
+    """
+
+    substructure: int
+    largest: int
+    stored: int
+    modes: ShownModes | None
+    values: OwnValues | None
+
+
+@dataclass(frozen=True)
+class MeshField:
+    """Displacement and stress on a `Mesh` at one instant.
+
+    Attributes
+    ----------
+    instant
+        Index of the instant among those of Begun.
+    component
+        One of `STRESSES`.
+    displacement
+        Shape (n_nodes, 2), m.
+    stress
+        Shape (n_quads,), Pa; a quadrilateral that stands for several elements has their mean.
+    largest
+        Largest displacement over the whole time, m.
+    """
+
+    instant: int
+    component: str
+    displacement: Floats
+    stress: Floats
+    largest: float
+
+
+@dataclass(frozen=True)
+class AxialForces:
+    """Axial forces at one instant, an index as in `MeshField`: (n_wires, n_positions), N."""
+
+    instant: int
+    force: Floats
+
+
+def instant_of(phase: float, count: int) -> int:
+    """Give the instant, among this many, at a share of the interval."""
+    return min(max(round(phase * (count - 1)), 0), count - 1)
+
+
+def thinned(size: int, largest: int = LARGEST_SIDE) -> NDArray[np.intp]:
+    """Give the indices that stand for a long axis, first and last included."""
+    return np.unique(np.linspace(0, size - 1, min(size, largest)).round().astype(np.intp))
+
+
+def has_reference(settings: Settings) -> bool:
+    """Tell whether a run has a reference to measure errors by."""
+    return settings.n_jumps <= MOST_JUMPS

@@ -1,0 +1,110 @@
+"""However fast settings change, the server does each newest one and nothing twice."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel as pn
+import pytest
+from lone_seat import Seat
+
+from app.dashboard import Dashboard
+from app.session import Session
+from app.sidebar import Sidebar
+from app.worker.bench import Bench
+from solver.scenes.bar import BarSettings
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(Seat(), Bench(), BarSettings.checked({}))
+
+
+@pytest.fixture
+def changed(session: Session, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any]]:
+    """Keep what the session is told to change."""
+    found: list[tuple[str, Any]] = []
+    change = session.change
+
+    def note(name: str, value: Any) -> None:
+        found.append((name, value))
+        change(name, value)
+
+    monkeypatch.setattr(session, "change", note)
+    return found
+
+
+@pytest.fixture
+def complaints() -> list[str]:
+    return []
+
+
+@pytest.fixture
+def sidebar(session: Session, complaints: list[str]) -> Sidebar:
+    return Sidebar(session, lambda: None, complaints.append, lambda query: None)
+
+
+def move(sidebar: Sidebar, name: str, value: Any) -> None:
+    sidebar._controls[name].widget.value = value
+
+
+def test_the_first_move_is_obeyed_at_once(sidebar: Sidebar, changed: list[Any]) -> None:
+    move(sidebar, "peak", 910.0)
+    assert changed == [("peak", 910.0)]
+
+
+def test_of_the_moves_between_two_ticks_the_newest_of_each_setting_counts(
+    sidebar: Sidebar, session: Session, changed: list[Any]
+) -> None:
+    for value in (910.0, 920.0, 930.0):
+        move(sidebar, "peak", value)
+    for value in (9, 8):
+        move(sidebar, "substructures", value)
+    sidebar.obey()
+    assert changed == [("peak", 910.0), ("peak", 930.0), ("substructures", 8)]
+    assert (session.wanted.peak, session.wanted.substructures) == (930.0, 8)
+    assert sidebar._controls["peak"].widget.value == 930.0
+
+
+def test_after_a_tick_without_a_move_the_next_is_obeyed_at_once_again(
+    sidebar: Sidebar, changed: list[Any]
+) -> None:
+    move(sidebar, "peak", 910.0)
+    move(sidebar, "peak", 920.0)
+    sidebar.obey()
+    sidebar.obey()
+    move(sidebar, "peak", 930.0)
+    assert changed[-1] == ("peak", 930.0)
+
+
+def test_a_move_that_waits_is_made_before_the_scene_is_left(
+    sidebar: Sidebar, session: Session
+) -> None:
+    move(sidebar, "peak", 910.0)
+    move(sidebar, "peak", 920.0)
+    sidebar._scene.value = "strand"
+    sidebar.obey()
+    assert session.wanted.scene == "strand"
+    sidebar._scene.value = "bar"
+    assert session.wanted.peak == 920.0
+
+
+def test_a_refused_move_is_told_and_the_others_are_made(
+    sidebar: Sidebar, session: Session, complaints: list[str]
+) -> None:
+    sidebar._on_setting("peak", 910.0)
+    sidebar._on_setting("friction", -1.0)
+    sidebar._on_setting("substructures", 9)
+    sidebar.obey()
+    assert session.wanted.substructures == 9
+    assert [text.split()[0] for text in complaints] == ["friction"]
+
+
+def test_the_page_obeys_at_every_tick(session: Session) -> None:
+    pn.extension(notifications=True)
+    dashboard = Dashboard(session)
+    for value in (910.0, 920.0):
+        dashboard._sidebar._on_setting("peak", value)
+    assert session.wanted.peak == 910.0
+    dashboard.tick()
+    assert session.wanted.peak == 920.0
