@@ -14,12 +14,12 @@ from app.views.deformed import Deformed
 from app.views.drawing import Picture, View
 from app.views.error_time import ErrorTime
 from app.views.friction import FrictionForce
+from app.views.legend import card_title
 from app.views.loop import Loop
 from app.views.modes import SpaceModes, TimeFunctions
 from app.views.spectra import Spectra
 from app.views.status_map import StatusMap
 from app.views.tractions import Tractions
-from app.words import card_title
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings

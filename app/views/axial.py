@@ -15,7 +15,6 @@ from app.views.drawing import (
     PURPLE,
     SKY,
     VERMILION,
-    Key,
     Limits,
     Picture,
     decimal_scale,
@@ -25,6 +24,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.shown import Wires
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings

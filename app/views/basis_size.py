@@ -9,16 +9,8 @@ from bokeh.events import Pan, Tap
 from bokeh.models import FixedTicker, LinearColorMapper, Range1d, Span
 from bokeh.palettes import Viridis256
 
-from app.views.drawing import (
-    VERMILION,
-    Key,
-    Picture,
-    color_bar,
-    empty,
-    make_figure,
-    round_up,
-    set_range,
-)
+from app.views.drawing import VERMILION, Picture, color_bar, empty, make_figure, round_up, set_range
+from app.views.legend import Key
 from solver.settings import Settings
 
 MOST_COLUMNS = 240

@@ -12,7 +12,6 @@ from app.views.drawing import (
     GREY,
     PURPLE,
     VERMILION,
-    Key,
     Picture,
     decades,
     empty,
@@ -21,6 +20,7 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.shown import has_reference
 from solver.latin import Record
 from solver.settings import Settings

@@ -10,7 +10,6 @@ from bokeh.palettes import Cividis256
 
 from app.views.drawing import (
     GREY,
-    Key,
     Limits,
     Picture,
     color_bar,
@@ -20,6 +19,7 @@ from app.views.drawing import (
     make_figure,
     round_up,
 )
+from app.views.legend import Key
 from app.worker.shown import Mesh, MeshField
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

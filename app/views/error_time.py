@@ -16,7 +16,6 @@ from app.views.drawing import (
     PURPLE,
     SKY,
     VERMILION,
-    Key,
     Picture,
     decades,
     empty,
@@ -24,6 +23,7 @@ from app.views.drawing import (
     mark_decades,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.shown import has_reference
 from solver.latin import Record
 from solver.settings import Settings

@@ -13,7 +13,6 @@ from app.views.drawing import (
     GREY,
     ORANGE,
     SKY,
-    Key,
     Picture,
     decimal_scale,
     empty,
@@ -21,6 +20,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
+from app.views.legend import Key
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 

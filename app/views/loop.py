@@ -14,7 +14,6 @@ from app.views.drawing import (
     ORANGE,
     SKY,
     VERMILION,
-    Key,
     Limits,
     Picture,
     decimal_scale,
@@ -23,6 +22,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.reports import Frame, Reference
 from app.worker.shown import Axes
 from solver.settings import Settings

@@ -15,13 +15,13 @@ from app.views.drawing import (
     ORANGE,
     PURPLE,
     VERMILION,
-    Key,
     Picture,
     decimal_scale,
     empty,
     make_figure,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.shown import Bases, ShownModes
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

@@ -9,7 +9,8 @@ import holoviews as hv
 import numpy as np
 import panel as pn
 
-from app.views.drawing import GREY, Key
+from app.views.drawing import GREY
+from app.views.legend import Key
 from solver.study.figure_data import HUES, Curve, Panel
 
 COLORS = (GREY, *HUES)

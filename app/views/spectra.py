@@ -11,7 +11,6 @@ from bokeh.palettes import Viridis256
 from app.views.drawing import (
     GREY,
     VERMILION,
-    Key,
     Picture,
     color_bar,
     decades,
@@ -21,6 +20,7 @@ from app.views.drawing import (
     round_up,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.shown import Bases
 from solver.settings import Settings
 

@@ -15,13 +15,13 @@ from app.views.drawing import (
     OPEN,
     STICK,
     VERMILION,
-    Key,
     Picture,
     empty,
     length_of,
     make_figure,
     set_range,
 )
+from app.views.legend import Key
 from solver.settings import Settings
 
 KEYS = (

@@ -13,7 +13,6 @@ from app.views.drawing import (
     GREY,
     ORANGE,
     PURPLE,
-    Key,
     Limits,
     Picture,
     decimal_scale,
@@ -23,6 +22,7 @@ from app.views.drawing import (
     make_figure,
     set_range,
 )
+from app.views.legend import Key
 from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

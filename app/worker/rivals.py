@@ -66,9 +66,10 @@ def find_reference(
     if not has_reference(settings):
         return None
     try:
-        return reference_of(problem, stop)
+        found = reference_of(problem, stop)
     except NotHeldError:
         return None
+    return found if found.converged.all() else None
 
 
 def physics(settings: Settings) -> tuple[object, ...]:
