@@ -102,12 +102,7 @@ def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
 def scene_settings(scene: object) -> type[Settings]:
     """Find the settings of a scene by its name in the catalogue."""
     if not isinstance(scene, str) or scene not in CATALOGUE:
-        raise SettingError(
-            "scene",
-            scene,
-            ", ".join(CATALOGUE),
-            "choose one of these (run and study also take a saved .toml file)",
-        )
+        raise SettingError("scene", scene, ", ".join(CATALOGUE), "choose one of these")
     return CATALOGUE[scene].settings
 
 
