@@ -15,7 +15,7 @@ FEW = {"instants": 21}
 CASES = [
     ("bar", {}),
     ("bar", FAST),
-    ("bar", {**FAST, "elements": 400}),
+    ("bar", {**FAST, "elements": 200}),
     ("bar", {"peak": 10.0}),
     ("bar", {"friction": 100.0}),
     ("bar", {"load": "decaying", **FAST}),
