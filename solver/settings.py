@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import param
 
@@ -39,6 +39,26 @@ class Settings(param.Parameterized):
 
     scene: str = ""
 
+    METHODS: ClassVar[Mapping[str, Mapping[str, object]]] = {
+        "fast": {
+            "search_direction": "auto",
+            "acceleration": "anderson",
+            "start": "nested",
+            "relaxation": 0.8,
+            "finish": "status",
+            "tolerance": 1e-3,
+        },
+        "paper": {
+            "search_direction": "paper",
+            "acceleration": "none",
+            "start": "zero",
+            "relaxation": 0.8,
+            "finish": "none",
+            "tolerance": 1e-10,
+        },
+    }
+    """What `method` sets; a scene that lacks an option keeps its own default."""
+
     substructures = count(
         10,
         (1, 20_000),
@@ -57,8 +77,17 @@ class Settings(param.Parameterized):
         applies=lambda settings: settings.n_substructures > 1,
         essential=True,
     )
+    method = choice(
+        "fast",
+        ["fast", "paper"],
+        "Sets search direction, acceleration, start, relaxation, finish and tolerance at once: to "
+        "what reaches the accuracy soonest, or to the paper's. Each can still be set alone.",
+        group="Method",
+        title="Method",
+        essential=True,
+    )
     search_direction = choice(
-        "paper",
+        "auto",
         ["paper", "auto"],
         "Rule for the search direction: the paper's, from the length of a substructure, or on "
         "friction points from the length that is expected to slide and that of an element.",
@@ -215,7 +244,7 @@ class Settings(param.Parameterized):
         applies=_is_sampled,
     )
     acceleration = choice(
-        "none",
+        "anderson",
         ["none", "anderson"],
         "Anderson mixes the newest iterate with those before, so that their residual is least.",
         group="Method",
@@ -233,7 +262,7 @@ class Settings(param.Parameterized):
         applies=lambda settings: not _is_reduced(settings) and settings.acceleration == "anderson",
     )
     start = choice(
-        "zero",
+        "nested",
         ["zero", "nested"],
         "Where the iteration starts: from zero, or from the solution of coarser meshes, uncut and "
         "accelerated, each started so itself. Their time is billed to the run.",
@@ -259,15 +288,35 @@ class Settings(param.Parameterized):
         title="Update of k",
         applies=lambda settings: not _is_reduced(settings),
     )
+    finish = choice(
+        "status",
+        ["none", "status"],
+        "Whether a run may end with a status step: stick, slip and opening are taken from an "
+        "iterate and, where the step itself shows them to be wrong, mended; taken only if the "
+        "field so found obeys all laws up to rounding.",
+        group="Method",
+        title="Finish",
+        applies=lambda settings: not _is_reduced(settings),
+    )
+    accuracy = quantity(
+        0.01,
+        (1e-12, 1.0),
+        (1e-6, 0.1),
+        "The run ends when the estimated error of the contact force falls below this share of it.",
+        group="Stop",
+        title="Accuracy",
+        logarithmic=True,
+        essential=True,
+    )
     tolerance = quantity(
-        1e-10,
+        1e-3,
         (1e-30, 1.0),
         (1e-16, 1e-2),
-        "The run ends when the LATIN indicator eta falls below this. Eta is not an error.",
+        "A run that no status step finishes goes on until the LATIN indicator eta is below this, "
+        "too. Eta is not an error.",
         group="Stop",
         title="Tolerance on η",
         logarithmic=True,
-        essential=True,
     )
     max_iterations = count(
         1000,
@@ -300,7 +349,7 @@ class Settings(param.Parameterized):
         Parameters
         ----------
         values
-            Plain values by name; what is left out takes its default.
+            Plain values by name; what is left out takes its default, or what the method says.
 
         Raises
         ------
@@ -314,9 +363,21 @@ class Settings(param.Parameterized):
             if name not in definitions:
                 raise unknown(name, value, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        settings = cls(**clean)
+        chosen = clean.get("method", definitions["method"].default)
+        settings = cls(**{**cls.of_method(chosen), **clean})
         settings.check_together()
         return settings
+
+    @classmethod
+    def of_method(cls, method: str) -> dict[str, Any]:
+        """Give the values of the settings that a method sets."""
+        definitions = cls.definitions()
+        found = {}
+        for name, value in cls.METHODS[method].items():
+            definition = definitions[name]
+            is_option = not isinstance(definition, param.Selector) or value in definition.objects
+            found[name] = value if is_option else definition.default
+        return found
 
     def check_together(self) -> None:
         """Check what no setting can check alone; a scene extends this."""
@@ -326,17 +387,22 @@ class Settings(param.Parameterized):
         return {name: getattr(self, name) for name in self.definitions()}
 
     def changed(self) -> dict[str, Any]:
-        """Give the settings that differ from their defaults."""
+        """Give the settings that differ from their defaults, or from what their method says."""
         definitions = self.definitions()
-        return {
-            name: value
-            for name, value in self.values().items()
-            if value != definitions[name].default
-        }
+        usual = {name: definition.default for name, definition in definitions.items()}
+        usual |= self.of_method(self.method)
+        return {name: value for name, value in self.values().items() if value != usual[name]}
 
     def replace(self, **changes: object) -> Self:
-        """Give new settings with some values changed, checked as a whole."""
-        return self.checked({**self.values(), **changes})
+        """Give new settings with some values changed, checked as a whole.
+
+        Another method brings its own values of all that it sets.
+        """
+        values = self.values()
+        if changes.get("method", self.method) != self.method:
+            own = self.METHODS[self.method]
+            values = {name: value for name, value in values.items() if name not in own}
+        return self.checked({**values, **changes})
 
     def with_change(self, name: str, value: object) -> Self:
         """Change one setting and bring along those that could not stand beside it."""

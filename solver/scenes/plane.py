@@ -104,7 +104,6 @@ class PlaneSettings(Settings):
         title="Macro degree",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
     )
-    search_direction = redefined(Settings.param["search_direction"], "auto")
     k_normal_scale = quantity(
         1.0,
         (1e-6, 1e6),
@@ -114,7 +113,6 @@ class PlaneSettings(Settings):
         title="Normal k factor",
         logarithmic=True,
     )
-    acceleration = redefined(Settings.param["acceleration"], "anderson")
     local_stage = choice(
         "full",
         ["full"],

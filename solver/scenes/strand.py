@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.definitions import SettingError, choice, count, curve, quantity, redefined
+from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.loads import PULLS, Array, instants_of, load_path
 from solver.settings import Settings
 
@@ -127,10 +127,6 @@ class StrandSettings(Settings):
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
     young = shared.young("Strand")
     section = shared.section("Area of the cross section of a wire.", "Strand")
-
-    search_direction = redefined(Settings.param["search_direction"], "auto")
-    acceleration = redefined(Settings.param["acceleration"], "anderson")
-    start = redefined(Settings.param["start"], "nested")
 
     @property
     def n_substructures(self) -> int:
