@@ -113,6 +113,9 @@ class Iterate:
         everywhere, in the norm of the search direction; 0 where they were evaluated everywhere.
     history, memory, course
         Of an acceleration and of the update of k, as in `Checkpoint`.
+    residual
+        Of an iterate that is a certified solution (`solver.latin.status_step`), its KKT residual
+        relative to the contact force; None of all others.
     """
 
     number: int
@@ -129,6 +132,7 @@ class Iterate:
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
     course: Course | None = None
+    residual: float | None = None
 
     @property
     def checkpoint(self) -> Checkpoint:

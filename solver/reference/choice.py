@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Protocol
 
 from solver.discrete.problem import Problem
 from solver.laws import Friction
-from solver.reference.contact import incremental_contact
-from solver.reference.incremental import Reference, incremental
+from solver.reference.contact import IncrementalContact
+from solver.reference.incremental import IncrementalRod
+from solver.reference.solution import Reference, States
+
+
+class Incremental(Protocol):
+    """An incremental solver, ready to march through time."""
+
+    def march(
+        self,
+        guess: States | None = None,
+        most: int | None = None,
+        stop: Callable[[], bool] | None = None,
+    ) -> Reference:
+        """Solve instant by instant, as `IncrementalRod.march` and its like say."""
 
 
 def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
@@ -20,6 +36,17 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
     stop
         Called once per instant; `Interrupted` is raised as soon as it gives True.
     """
+    start = time.perf_counter()
+    found = incremental_solver(problem).march(stop=stop)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def incremental_solver(problem: Problem) -> Incremental:
+    """Prepare the solver that the interfaces of a problem call for."""
+    return IncrementalRod(problem) if is_alone(problem) else IncrementalContact(problem)
+
+
+def is_alone(problem: Problem) -> bool:
+    """Tell whether all friction is of known bound, on one rigid support."""
     laws = list(problem.rubbing.values())
-    alone = len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
-    return incremental(problem, stop) if alone else incremental_contact(problem, stop)
+    return len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None

@@ -15,6 +15,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +24,7 @@ from numpy.typing import NDArray
 from solver.discrete.contact_fields import OPEN
 from solver.discrete.problem import Array, Problem, components
 from solver.reference.condensation import Condensation, TooLargeError
-from solver.reference.incremental import Interrupted, Reference
+from solver.reference.solution import Interrupted, Reference
 from solver.reference.states import HELD, Response, Rules, Sides, States, rules_of
 from solver.reference.unloading import unload
 
@@ -41,10 +43,17 @@ ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve instant by instant.
+    """Solve instant by instant, as `IncrementalContact` does."""
+    start = time.perf_counter()
+    found = IncrementalContact(problem).march(stop=stop)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+class IncrementalContact:
+    """The incremental solver of any interfaces with friction, ready to march through time.
 
     Friction may have several solutions for a large mu, or none where contact alone holds a body.
-    Where several exist this is one of them, and `ambiguous` if that shows; where none is found,
+    Where several exist one of them is found, and `ambiguous` if that shows; where none is found,
     `converged` is False, and the contacts stay where they were, by forces that break the laws.
 
     Where the normal jump is prescribed, contact shares its force with the support in any way: it
@@ -55,61 +64,112 @@ def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None
     ----------
     problem
         A structure with any number of interfaces with friction.
-    stop
-        Called once per instant.
 
     Raises
     ------
-    Interrupted
-        As soon as `stop` gives True.
     TooLargeError
         If there are more than `MOST_JUMPS` jumps.
     NotHeldError
         If the structure can move with all contacts closed and stuck.
     """
-    start = time.perf_counter()
-    n_jumps = sum(len(rows) for law in problem.rubbing.values() for rows in components(law))
-    if n_jumps > MOST_JUMPS:
-        raise TooLargeError(
-            f"a reference would condense {n_jumps} components of contact (at most {MOST_JUMPS}); "
-            "take fewer elements, layers or wires to have one"
+
+    def __init__(self, problem: Problem) -> None:
+        n_jumps = jumps_in(problem)
+        if n_jumps > MOST_JUMPS:
+            raise TooLargeError(
+                f"a reference would condense {n_jumps} components of contact (at most "
+                f"{MOST_JUMPS}); take fewer elements, layers or wires to have one"
+            )
+        self._problem = problem
+        self._condensed, self._rules = Condensation(problem), rules_of(problem)
+
+    def march(
+        self,
+        guess: States | None = None,
+        most: int | None = None,
+        stop: Callable[[], bool] | None = None,
+    ) -> Reference:
+        """Solve instant by instant.
+
+        Parameters
+        ----------
+        guess
+            States from which every instant starts, stacked as `Problem.sum_of_contact` says, shape
+            (n_forces, n_instants); without them it starts from those of the instant before.
+        most
+            Linear systems to solve; the instants that are not reached then do not move, and are
+            not `converged`.
+        stop
+            Called once per instant.
+
+        Raises
+        ------
+        Interrupted
+            As soon as `stop` gives True.
+        """
+        start = time.perf_counter()
+        problem, condensed, rules = self._problem, self._condensed, self._rules
+        own = rules.kept(condensed.moving)
+        guesses = None if guess is None else guess[condensed.moving]
+        newton = _Newton(condensed, own, problem.rest, guesses)
+        jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))
+        ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
+        for instant in range(problem.n_instants):
+            if stop is not None and stop():
+                raise Interrupted
+            if most is not None and newton.response.solutions >= most:
+                break
+            jump[:, instant], force[:, instant] = newton(instant)
+            ambiguous[instant] = newton.response.turned
+            reached[instant] = True
+        displacement = condensed.displacement(jump, force)
+        jumps = condensed.jump(displacement)
+        jumps[condensed.moving] = jump
+        forces = _all_forces(condensed, rules, jumps, force)
+        unbalanced = _unbalanced(condensed, rules, displacement, forces)
+        size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
+        residual = unbalanced / size if size > 0.0 else unbalanced
+        converged = reached & (residual <= CONVERGED)
+        return Reference(
+            problem=problem,
+            displacement=displacement * problem.scales.displacement,
+            contact_force=forces * problem.scales.force,
+            status=_status(rules, jumps, forces),
+            residual=float(residual.max(initial=0.0)),
+            unbalanced=float(unbalanced.max(initial=0.0)) * problem.scales.force,
+            converged=converged,
+            ambiguous=ambiguous & converged,
+            steps=newton.response.solutions,
+            seconds=time.perf_counter() - start,
         )
-    condensed, rules = Condensation(problem), rules_of(problem)
-    newton = _Newton(condensed, rules.kept(condensed.moving), problem.rest)
-    jump, force = np.zeros((2, len(condensed.moving), problem.n_instants))
-    ambiguous = np.zeros(problem.n_instants, dtype=bool)
-    for instant in range(problem.n_instants):
-        if stop is not None and stop():
-            raise Interrupted
-        jump[:, instant], force[:, instant] = newton(instant)
-        ambiguous[instant] = newton.response.turned
-    displacement = condensed.displacement(jump, force)
-    jumps = condensed.jump(displacement)
-    jumps[condensed.moving] = jump
-    forces = _all_forces(condensed, rules, jumps, force)
-    residual = _residual(condensed, rules, displacement, forces)
-    converged = residual <= CONVERGED
-    return Reference(
-        problem=problem,
-        displacement=displacement * problem.scales.displacement,
-        contact_force=forces * problem.scales.force,
-        status=_status(rules, jumps, forces),
-        residual=float(residual.max(initial=0.0)),
-        converged=converged,
-        ambiguous=ambiguous & converged,
-        steps=newton.response.solutions,
-        seconds=time.perf_counter() - start,
-    )
+
+
+def jumps_in(problem: Problem) -> int:
+    """Give the number of components of contact that `IncrementalContact` condenses."""
+    return sum(len(rows) for law in problem.rubbing.values() for rows in components(law))
+
+
+class _Solved(NamedTuple):
+    """States of the jumps at an instant, with jump and force, shape (n,) each."""
+
+    states: States
+    jump: Array
+    force: Array
 
 
 class _Newton:
     """Finds jumps and forces of one instant after the other."""
 
-    def __init__(self, condensed: Condensation, rules: Rules, rest: Array | None) -> None:
+    def __init__(
+        self, condensed: Condensation, rules: Rules, rest: Array | None, guesses: States | None
+    ) -> None:
         self.response = Response(condensed.stiffness, rules)
         self._condensed, self._rules = condensed, rules
         self._position, self._self_stress = np.zeros((2, len(rules.gap)))
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
+        self._guesses = guesses
+        if guesses is not None:
+            guesses[rules.smooth] = OPEN
         self._overlap: Array | None = None
         if rest is not None:
             self._overlap = condensed.jump(rest)[condensed.moving] + rules.gap[:, None]
@@ -130,8 +190,7 @@ class _Newton:
             if solved is None:
                 force = condensed.stiffness @ self._position - load + self._self_stress
                 return self._position, force
-            self._states = solved
-            jump, force = self.response(solved, self._sides(load - self._self_stress))
+            self._states, jump, force = solved
             apart = stresses.T @ (jump - condensed.given[condensed.moving, instant])
             pull = condensed.tie * (stresses @ apart)
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._largest:
@@ -149,34 +208,37 @@ class _Newton:
         rules = self._rules
         return Sides(load, rules.bound, np.where(rules.normal, -rules.gap, self._position))
 
-    def _solved(self, load: Array, instant: int) -> States | None:
-        """Find the states under a load, or None."""
+    def _solved(self, load: Array, instant: int) -> _Solved | None:
+        """Find the states under a load, jump and force, or None."""
         sides = self._sides(load)
-        states, done = self._iterate(self._states, sides)
-        if not done and self._overlap is not None:
+        guesses = [self._states]
+        if self._guesses is not None:
+            guesses.insert(0, self._guesses[:, instant])
+        if self._overlap is not None:
             # A body that falls or rolls a long way touches elsewhere than one instant before.
             closed = (self._overlap[:, instant] < 0.0)[self._rules.partner]
-            states, done = self._iterate(np.where(closed, HELD, OPEN).astype(np.int8), sides)
-        if not done:
-            found = unload(self.response, self._rules, sides, self._position)
-            if found is None:
-                return None
-            states, done = self._iterate(found, sides)
-        return states if done else None
+            guesses.append(np.where(closed, HELD, OPEN).astype(np.int8))
+        for guess in guesses:
+            found = self._iterate(guess, sides)
+            if found is not None:
+                return found
+        states = unload(self.response, self._rules, sides, self._position)
+        return None if states is None else self._iterate(states, sides)
 
-    def _iterate(self, states: States, sides: Sides) -> tuple[States, bool]:
-        """Seek the states, and tell whether they are right."""
+    def _iterate(self, states: States, sides: Sides) -> _Solved | None:
+        """Seek the states from a guess, or give None where they cycle."""
         seen = set()
         for _ in range(NEWTON_LIMIT):
             jump, force = self.response(states, sides)
             corrected = self._corrected(states, jump, force)
             if np.array_equal(corrected, states):
-                return states, self.response.unbalanced <= CONVERGED * self._largest
+                balanced = self.response.unbalanced <= CONVERGED * self._largest
+                return _Solved(states, jump, force) if balanced else None
             seen.add(states.tobytes())
             states = corrected
             if states.tobytes() in seen:
                 break
-        return states, False
+        return None
 
     def _corrected(self, states: States, jump: Array, force: Array) -> States:
         """Give the states that jump and force call for; what is up to rounding calls for none."""
@@ -208,10 +270,10 @@ def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Arra
     return found
 
 
-def _residual(
+def _unbalanced(
     condensed: Condensation, rules: Rules, displacement: Array, forces: Array
 ) -> NDArray[np.float64]:
-    """Give the KKT residual of every instant, relative to the largest force of all.
+    """Give the KKT residual of every instant, a force, scaled.
 
     The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
     opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness
@@ -231,9 +293,7 @@ def _residual(
     # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
     wrong[rules.normal & (np.isin(np.arange(len(jumps)), condensed.moving, invert=True))] = 0.0
     unbalanced = np.abs(condensed.unbalanced(displacement, forces)).max(axis=0, initial=0.0)
-    largest = np.maximum(unbalanced, wrong.max(axis=0, initial=0.0))
-    size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
-    return np.asarray(largest / size if size > 0.0 else largest)
+    return np.asarray(np.maximum(unbalanced, wrong.max(axis=0, initial=0.0)))
 
 
 def _status(rules: Rules, jumps: Array, forces: Array) -> NDArray[np.int8]:

@@ -55,6 +55,11 @@ class Distance:
     determinate
         Where the contact force is, shape (n_forces, n_instants); a point that is held still by
         a support shares its force with that support in any way.
+
+    Attributes
+    ----------
+    force_size
+        What distances of contact forces are divided by, the norm of the forces, N sqrt(s).
     """
 
     def __init__(
@@ -76,7 +81,7 @@ class Distance:
         allowed = self._norm(np.outer(bound, np.ones(len(time_weights))))
         # Without a known bound it is the load alone that contact forces can vanish beside.
         vanishes = force_size <= ROUNDING * (min(load_size, allowed) or load_size)
-        self._force_size = (load_size if vanishes else force_size) or 1.0
+        self.force_size = (load_size if vanishes else force_size) or 1.0
 
     def of_displacement(self, fields: Fields) -> float:
         """Give the relative error of the displacement."""
@@ -86,7 +91,7 @@ class Distance:
     def of_friction_force(self, fields: Fields) -> float:
         """Give the relative error of the contact forces: friction, and pressure if unknown."""
         force = fields.contact_force * self._determinate
-        return self._norm(force - self._force) / self._force_size
+        return self._norm(force - self._force) / self.force_size
 
     def _norm(self, field: Array) -> float:
         largest = float(np.abs(field).max(initial=0.0))

@@ -13,85 +13,31 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import sparse
-from scipy.linalg import blas, solveh_banded
 
-from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Array, Problem
 from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.band import Band, pairs
+from solver.reference.solution import Interrupted, Reference, States
 
 NEWTON_LIMIT = 8  # steps from one guess of the statuses before a better one is sought
 COARSEST = 8  # degrees of freedom below which no coarser mesh is asked for a guess
 ROUNDING = 32.0 * float(np.finfo(float).eps)
 
 
-class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
-    """The caller asked the solver to stop before the last instant."""
-
-
-@dataclass(frozen=True, eq=False)
-class Reference:
-    """The solution of a problem on its own mesh and instants, exact up to rounding.
-
-    Attributes
-    ----------
-    problem
-        What it solves.
-    displacement
-        Shape (n_dofs, n_instants), m.
-    contact_force
-        Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says, shape
-        (n_forces, n_instants), N.
-    status
-        Shape (n_points, n_instants), the points stacked interface by interface: -1 slip backward,
-        0 stick, +1 slip forward, 2 open. The increment of a sticking point is zero.
-    residual
-        Relative KKT residual, the maximum over the instants. Of `incremental`: distance of 0 from
-        the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|;
-        storing v in doubles costs as much.
-    converged
-        Whether the instants are solved, shape (n_instants,).
-    ambiguous
-        Instants whose solution is certainly one of several, same shape; others may be, too, where
-        friction is large.
-    steps
-        Newton steps, which are linear systems of full size, in all.
-    seconds
-        Time taken.
-    """
-
-    problem: Problem
-    displacement: Array
-    contact_force: Array
-    status: NDArray[np.int8]
-    residual: float
-    converged: NDArray[np.bool_]
-    ambiguous: NDArray[np.bool_]
-    steps: int
-    seconds: float
-
-    @property
-    def friction_force(self) -> Array:
-        """Nodal friction force on the body, (n_points, n_instants), N, where its bound is known."""
-        return self.contact_force
-
-    def contact(self, name: str) -> ContactFields:
-        """Show one interface with friction."""
-        problem = self.problem
-        sizes = [len(law.positions) for law in problem.rubbing.values()]
-        first = sum(sizes[: list(problem.rubbing).index(name)])
-        status = self.status[first : first + len(problem.rubbing[name].positions)]
-        rows = self.displacement[problem.row_dofs] / problem.scales.displacement
-        return contact_fields(problem, name, self.contact_force, rows, status)
-
-
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve instant by instant (theory.md, 6).
+    """Solve instant by instant (theory.md, 6), as `IncrementalRod` does."""
+    start = time.perf_counter()
+    found = IncrementalRod(problem).march(stop=stop)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+class IncrementalRod:
+    """The incremental solver of rods that rub on a rigid support, ready to march through time.
 
     A point whose displacement is prescribed may rub too. Where it moves, its friction force is
     -r sign(v). Where it stands still, only the sum of friction force and reaction is determinate:
@@ -102,48 +48,87 @@ def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Ref
     ----------
     problem
         A structure with one frictional interface of known bound.
-    stop
-        Called once per instant.
-
-    Raises
-    ------
-    Interrupted
-        As soon as `stop` gives True.
     """
-    start = time.perf_counter()
-    structure = _Structure(problem)
-    increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
-    balance, status, residual = np.zeros(problem.n_dofs), np.zeros(problem.n_dofs), 0.0
-    for load, moved, increment, pull in zip(
-        structure.load_steps, structure.moves, increments, pulls, strict=True
-    ):
-        if stop is not None and stop():
-            raise Interrupted
-        found = structure.minimise(load + balance, moved, status)
-        increment[:], pull[:] = found.increment, found.pull
-        balance, status = found.pull, found.status
-        residual = max(residual, found.residual)
-    return Reference(
-        problem=problem,
-        displacement=np.cumsum(increments, axis=0).T * problem.scales.displacement,
-        contact_force=0.0 - pulls.T[structure.point_dofs] * problem.scales.force,
-        status=np.sign(increments.T[structure.point_dofs]).astype(np.int8),
-        residual=residual,
-        converged=np.ones(problem.n_instants, dtype=bool),
-        ambiguous=np.zeros(problem.n_instants, dtype=bool),
-        steps=structure.band.solutions,
-        seconds=time.perf_counter() - start,
-    )
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+        self._structure = _Structure(problem)
+
+    def march(
+        self,
+        guess: States | None = None,
+        most: int | None = None,
+        stop: Callable[[], bool] | None = None,
+    ) -> Reference:
+        """Solve instant by instant.
+
+        Parameters
+        ----------
+        guess
+            Statuses from which every instant starts, shape (n_points, n_instants); without them it
+            starts from those of the instant before.
+        most
+            Linear systems to solve; the instants that are not reached then do not move, and are
+            not `converged`.
+        stop
+            Called once per instant.
+
+        Raises
+        ------
+        Interrupted
+            As soon as `stop` gives True.
+        """
+        start = time.perf_counter()
+        problem, structure = self._problem, self._structure
+        guesses = None if guess is None else structure.at_dofs(guess)
+        before = structure.band.solutions
+        increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
+        balance, status = np.zeros((2, problem.n_dofs))
+        residual = unbalanced = 0.0
+        converged = np.zeros(problem.n_instants, dtype=bool)
+        for instant in range(problem.n_instants):
+            if stop is not None and stop():
+                raise Interrupted
+            if most is not None and structure.band.solutions - before >= most:
+                break
+            status = status if guesses is None else guesses[instant]
+            load = structure.load_steps[instant] + balance
+            found = structure.minimise(load, structure.moves[instant], status)
+            increments[instant], pulls[instant] = found.increment, found.pull
+            balance, status = found.pull, found.status
+            residual = max(residual, found.residual)
+            unbalanced = max(unbalanced, found.violation)
+            converged[instant] = True
+        return Reference(
+            problem=problem,
+            displacement=np.cumsum(increments, axis=0).T * problem.scales.displacement,
+            contact_force=0.0 - pulls.T[structure.point_dofs] * problem.scales.force,
+            status=np.sign(increments.T[structure.point_dofs]).astype(np.int8),
+            residual=residual,
+            unbalanced=unbalanced * problem.scales.force,
+            converged=converged,
+            ambiguous=np.zeros(problem.n_instants, dtype=bool),
+            steps=structure.band.solutions - before,
+            seconds=time.perf_counter() - start,
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class _Minimum:
-    """Fields of shape (n_dofs,) at the minimum of phi, and its relative KKT residual."""
+    """Fields of shape (n_dofs,) at the minimum of phi, and its KKT residual, also relative."""
 
     increment: Array
     pull: Array
     status: Array
+    violation: float
     residual: float
+
+
+class _Guess(NamedTuple):
+    """Statuses that were sought, with increment and pull if they are those of the minimum."""
+
+    status: Array
+    solved: tuple[Array, Array] | None
 
 
 class _Structure:
@@ -154,7 +139,7 @@ class _Structure:
         rubbing = problem.row_dofs[law.rows]
         self.point_dofs = np.zeros(len(law.positions), dtype=np.intp)
         self.point_dofs[law.points] = rubbing
-        self.band = _Band(assembled_stiffness(problem))
+        self.band = Band(assembled_stiffness(problem))
         self.load_steps = np.diff(external_force(problem).T, axis=0, prepend=0.0)
         self._fixed, prescribed = problem.prescribed
         self.moves = np.diff(prescribed.T, axis=0, prepend=0.0)
@@ -163,6 +148,12 @@ class _Structure:
         np.add.at(bound, rubbing, law.bound)
         self._support_bound = bound[self._fixed]
         self._search = _Search(self.band, bound * self._movable, self._movable)
+
+    def at_dofs(self, status: States) -> Array:
+        """Give statuses of the points as those of degrees of freedom, (n_instants, n_dofs)."""
+        found = np.zeros((status.shape[1], len(self._movable)))
+        found[:, self.point_dofs] = status.T
+        return found * self._search.rubs
 
     def minimise(self, force: Array, moved: Array, status: Array) -> _Minimum:
         """Minimise phi over one instant, from a guess of the statuses."""
@@ -183,35 +174,37 @@ class _Search:
     method ends in finitely many steps.
     """
 
-    def __init__(self, band: _Band, bound: Array, movable: Array) -> None:
+    def __init__(self, band: Band, bound: Array, movable: Array) -> None:
         self._band = band
         self._bound = bound
         self._movable = movable
-        self._rubs = (bound > 0.0) * movable
-        self._free = movable - self._rubs  # neither held nor rubbing
-        self._limit = np.where(self._rubs > 0.0, bound, np.inf)
+        self.rubs = (bound > 0.0) * movable
+        self._free = movable - self.rubs  # neither held nor rubbing
+        self._limit = np.where(self.rubs > 0.0, bound, np.inf)
 
     def __call__(self, force: Array, status: Array) -> _Minimum:
         """Find the minimum from a guess of the statuses; no force where nothing moves."""
-        status, done = self._statuses(force, status)
-        status = status if done else self._descend(force, status)
-        increment = self._slip(force, status)
-        pull = force - self._band.product(increment)
+        status, solved = self._sought(force, status)
+        if solved is None:
+            status = self._descend(force, status)
+            increment = self._slip(force, status)
+            solved = increment, force - self._band.product(increment)
+        increment, pull = solved
         bound = self._bound
         held = np.where(status != 0.0, bound * status, np.minimum(np.maximum(pull, -bound), bound))
         violation = float((np.abs(pull - held) * self._movable).max())
         relative = violation / float(np.abs(force).sum()) if violation else 0.0
-        return _Minimum(increment, held, status, relative)
+        return _Minimum(increment, held, status, violation, relative)
 
-    def _statuses(self, force: Array, status: Array) -> tuple[Array, bool]:
-        """Seek the statuses, and tell whether they are right."""
-        found, done = self._newton(force, status)
-        if done or len(force) < COARSEST:
-            return found, done
-        coarse, _ = self._coarser._statuses(_pairs(force), np.sign(_pairs(status)))
-        return self._newton(force, self._rubs * np.repeat(coarse, 2)[: len(force)])
+    def _sought(self, force: Array, status: Array) -> _Guess:
+        """Seek the statuses, from a guess, and from that of a coarser mesh if need be."""
+        found = self._newton(force, status)
+        if found.solved is not None or len(force) < COARSEST:
+            return found
+        coarse = self._coarser._sought(pairs(force), np.sign(pairs(status)))
+        return self._newton(force, self.rubs * np.repeat(coarse.status, 2)[: len(force)])
 
-    def _newton(self, force: Array, status: Array) -> tuple[Array, bool]:
+    def _newton(self, force: Array, status: Array) -> _Guess:
         for _ in range(NEWTON_LIMIT):
             increment = self._slip(force, status)
             pull = force - self._band.product(increment)
@@ -220,16 +213,16 @@ class _Search:
                 status != 0.0, status * (status * increment > 0.0), np.sign(pull) * (excess > 0.0)
             )
             if np.array_equal(corrected, status):
-                return status, True
+                return _Guess(status, (increment, pull))
             status = corrected
-        return status, False
+        return _Guess(status, None)
 
     @cached_property
     def _coarser(self) -> _Search:
         """The same structure with each two successive degrees of freedom tied together."""
-        movable = np.minimum(_pairs(self._movable), 1.0)
+        movable = np.minimum(pairs(self._movable), 1.0)
         band = self._band.tied_in_pairs(self._movable, movable)
-        return _Search(band, _pairs(self._bound), movable)
+        return _Search(band, pairs(self._bound), movable)
 
     def _slip(self, force: Array, status: Array) -> Array:
         """Solve for the increment under given statuses; exactly zero where they are zero."""
@@ -271,40 +264,3 @@ class _Search:
             if excess[most] <= self._rounding(force, increment):
                 return status
             status[most] = np.sign(pull[most])
-
-
-class _Band:
-    """A symmetric sparse matrix, solved as a band: upper diagonals by row (LAPACK's form)."""
-
-    def __init__(self, matrix: sparse.csr_array) -> None:
-        self._matrix = matrix
-        entries = sparse.triu(matrix).tocoo()
-        rows, columns = entries.coords
-        self._width = int((columns - rows).max())
-        self._upper = np.zeros((self._width + 1, matrix.shape[0]), order="F")
-        self._upper[self._width - (columns - rows), columns] = entries.data
-        self.largest_row = float(np.abs(matrix).sum(axis=1).max())
-        self.solutions = 0
-
-    def product(self, field: Array) -> Array:
-        """Give K v."""
-        return np.asarray(blas.dsbmv(self._width, 1.0, self._upper, field))
-
-    def solve_kept(self, keep: Array, force: Array) -> Array:
-        """Solve on the degrees of freedom where `keep` is 1; where it is 0, the force must be 0."""
-        self.solutions += 1
-        matrix = self._upper.copy(order="F")
-        for offset in range(1, self._width + 1):
-            matrix[self._width - offset, offset:] *= keep[offset:] * keep[:-offset]
-        return np.asarray(solveh_banded(matrix, force, overwrite_ab=True, check_finite=False))
-
-    def tied_in_pairs(self, movable: Array, movable_pairs: Array) -> _Band:
-        """Give the stiffness of successive pairs of movable degrees of freedom, tied together."""
-        own = np.arange(len(movable))
-        tie, held = sparse.csr_array((movable, (own, own // 2))), 1.0 - movable_pairs
-        return _Band(sparse.csr_array(tie.T @ self._matrix @ tie + sparse.diags_array(held)))
-
-
-def _pairs(field: Array) -> Array:
-    """Sum over successive pairs; an odd last one stays alone."""
-    return np.add.reduceat(field, np.arange(0, len(field), 2))

@@ -10,7 +10,8 @@ from solver.discrete.problem import Problem
 from solver.latin import Iterate, Record, solve
 from solver.reduction.svd import Decomposition, InterfaceField, decompositions
 from solver.reference.distance import distance_to
-from solver.reference.incremental import Reference, incremental
+from solver.reference.incremental import incremental
+from solver.reference.solution import Reference
 from solver.scenes.bar import BarSettings
 
 EARLY = 10

@@ -1,0 +1,163 @@
+"""From a certified solution to an iterate in which both stages agree."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from solver.discrete.problem import Array, Problem, components, components_below
+from solver.latin.iterate import Iterate
+from solver.latin.status_step import Certificate
+from solver.laws import Contact, Friction, Neumann, Perfect
+
+ENOUGH = 1e-14
+"""Share of the largest force at which the forces on rows are in balance, up to rounding."""
+MOST_STEPS = 60
+"""Steps of the conjugate gradients, at most; the rows of one point are few, so a dozen suffice."""
+
+
+def finished(iterate: Iterate, certificate: Certificate, seconds: float) -> Iterate:
+    """Give the iterate after another one that a certified solution takes the place of.
+
+    Its linear and its local stage are the same fields, a fixed point of the method for every k.
+
+    Parameters
+    ----------
+    iterate
+        The one before.
+    certificate
+        The solution.
+    seconds
+        Time that the method took, the status step included.
+    """
+    problem, scales = iterate.problem, iterate.problem.scales
+    displacement = certificate.reference.displacement / scales.displacement
+    force = row_forces(problem, displacement, certificate.reference.contact_force / scales.force)
+    moved = displacement[problem.row_dofs]
+    stretched = force / iterate.k[:, None]
+    outgoing, incoming, local = map(_frozen, (moved + stretched, moved - stretched, moved))
+    return Iterate(
+        number=iterate.number + 1,
+        seconds=seconds,
+        problem=problem,
+        k=iterate.k,
+        outgoing=outgoing,
+        incoming=incoming,
+        local_displacement=local,
+        local_incoming=incoming,
+        residual=certificate.residual,
+    )
+
+
+def _frozen(field: Array) -> Array:
+    field = np.asfortranarray(field)
+    field.flags.writeable = False
+    return field
+
+
+def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> Array:
+    """Share out the forces on every substructure's boundary among its rows.
+
+    Where contact and loads act they are known. What the elasticity of a substructure needs beyond
+    them at a degree of freedom is carried by its other rows there, and what one side of a cut takes
+    the other gives; where several cuts meet, which leaves a choice, the smallest such forces.
+
+    Parameters
+    ----------
+    problem
+        Of which displacement and contact forces are the solution.
+    displacement
+        Shape (n_dofs, n_instants), scaled.
+    contact_force
+        Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), scaled.
+
+    Returns
+    -------
+    F of every row, shape (n_rows, n_instants), scaled.
+    """
+    known, is_known = _known_forces(problem, contact_force)
+    balance, needed = _balance(problem, displacement)
+    cuts = [law for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
+    n_cuts = sum(len(law.first) for law in cuts)
+    first = np.concatenate([np.zeros(0, dtype=np.intp), *(law.first for law in cuts)])
+    second = np.concatenate([np.zeros(0, dtype=np.intp), *(law.second for law in cuts)])
+    pairs = np.arange(n_cuts)
+    opposite = sparse.csr_array(
+        (np.ones(2 * n_cuts), (np.tile(pairs, 2), np.concatenate([first, second]))),
+        shape=(n_cuts, problem.n_rows),
+    )
+    right = np.concatenate([needed - balance @ known, np.zeros((n_cuts, problem.n_instants))])
+    system = sparse.csr_array(sparse.vstack([balance, opposite]))
+    open_rows = np.flatnonzero(~is_known)
+    known[open_rows] = _smallest(sparse.csr_array(system[:, open_rows]), right)
+    return known
+
+
+def _known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Give the forces of rows that rub or are loaded, and which rows these are."""
+    found = np.zeros((problem.n_rows, problem.n_instants))
+    is_known = np.zeros(problem.n_rows, dtype=bool)
+    for law in problem.of_law(Neumann):
+        assert isinstance(law, Neumann)
+        found[law.rows], is_known[law.rows] = law.force, True
+    for name, law in problem.rubbing.items():
+        share = _shares(law)[:, None]
+        for place, above in zip(problem.contact_places[name], components(law), strict=True):
+            found[above] = share * contact_force[place][law.points]
+            is_known[above] = True
+        for above, below in zip(components(law), components_below(law), strict=False):
+            found[below], is_known[below] = -found[above], True
+    return found, is_known
+
+
+def _shares(law: Friction | Contact) -> Array:
+    """Give the share of each pair in the force of its point: of its bound, or of its area."""
+    for weights in ((law.bound,) if isinstance(law, Friction) else ()) + (law.weights,):
+        whole = law.by_point(weights)[law.points]
+        if np.all(whole > 0.0):
+            return np.asarray(weights / whole)
+    return 1.0 / np.bincount(law.points)[law.points]
+
+
+def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, Array]:
+    """Give what sums the rows of every boundary point of a substructure, and what it needs there.
+
+    Shapes (n, n_rows) and (n, n_instants).
+    """
+    rows, places, needed, size = [], [], [], 0
+    for part in problem.substructures:
+        elasticity = part.elasticity
+        own, place = np.unique(elasticity.trace, return_inverse=True)
+        force = np.asarray(elasticity.stiffness[own] @ displacement[part.dofs])
+        if part.body_force is not None:
+            force = force - part.body_force[own]
+        needed.append(force)
+        rows.append(part.rows)
+        places.append(size + place)
+        size += len(own)
+    entries = np.ones(problem.n_rows), (np.concatenate(places), np.concatenate(rows))
+    return sparse.csr_array(entries, shape=(size, problem.n_rows)), np.concatenate(needed)
+
+
+def _smallest(system: sparse.csr_array, right: Array) -> Array:
+    """Give the smallest x with A x = b, by conjugate gradients on A A^T, all columns together.
+
+    Rows of A meet only around a point, so that A A^T has few different eigenvalues.
+    """
+    found = np.zeros((system.shape[1], right.shape[1]))
+    rest, way, before = right.copy(), found, 1.0
+    enough = ENOUGH * float(np.abs(right).max(initial=0.0))
+    for _ in range(MOST_STEPS):
+        gradient = system.T @ rest
+        # What no x takes away is rounding in the equilibrium of the whole.
+        if np.abs(gradient).max(initial=0.0) <= enough:
+            break
+        steep = float(np.vdot(gradient, gradient))
+        way = gradient + (steep / before) * way
+        image = system @ way
+        length = steep / float(np.vdot(image, image))
+        found += length * way
+        rest -= length * image
+        before = steep
+    return found

@@ -1,0 +1,76 @@
+"""What an incremental solver finds: the solution of a problem on its own mesh and instants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.discrete.contact_fields import ContactFields, contact_fields
+from solver.discrete.problem import Array, Problem
+
+States = NDArray[np.int8]
+
+
+class Interrupted(Exception):  # noqa: N818  # asked for by the caller, so no error
+    """The caller asked the solver to stop before the last instant."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The solution of a problem on its own mesh and instants, exact up to rounding.
+
+    Attributes
+    ----------
+    problem
+        What it solves.
+    displacement
+        Shape (n_dofs, n_instants), m.
+    contact_force
+        Nodal forces on the bodies above, stacked as `Problem.sum_of_contact` says, shape
+        (n_forces, n_instants), N.
+    status
+        Shape (n_points, n_instants), the points stacked interface by interface: -1 slip backward,
+        0 stick, +1 slip forward, 2 open. The increment of a sticking point is zero.
+    residual
+        Relative KKT residual, the maximum over the instants. Of `incremental`: distance of 0 from
+        the subdifferential K v - g + r d|v| of phi, in the maximum norm, divided by the sum of |g|;
+        storing v in doubles costs as much.
+    unbalanced
+        The same before it is divided, N.
+    converged
+        Whether the instants are solved, shape (n_instants,).
+    ambiguous
+        Instants whose solution is certainly one of several, same shape; others may be, too, where
+        friction is large.
+    steps
+        Newton steps, which are linear systems of full size, in all.
+    seconds
+        Time taken.
+    """
+
+    problem: Problem
+    displacement: Array
+    contact_force: Array
+    status: NDArray[np.int8]
+    residual: float
+    unbalanced: float
+    converged: NDArray[np.bool_]
+    ambiguous: NDArray[np.bool_]
+    steps: int
+    seconds: float
+
+    @property
+    def friction_force(self) -> Array:
+        """Nodal friction force on the body, (n_points, n_instants), N, where its bound is known."""
+        return self.contact_force
+
+    def contact(self, name: str) -> ContactFields:
+        """Show one interface with friction."""
+        problem = self.problem
+        sizes = [len(law.positions) for law in problem.rubbing.values()]
+        first = sum(sizes[: list(problem.rubbing).index(name)])
+        status = self.status[first : first + len(problem.rubbing[name].positions)]
+        rows = self.displacement[problem.row_dofs] / problem.scales.displacement
+        return contact_fields(problem, name, self.contact_force, rows, status)
