@@ -113,7 +113,7 @@ def _run(chosen: argparse.Namespace) -> int:
         print(f"slipfront: {remark}", file=sys.stderr)
     problem = discretise(settings)
     distance = _distance(problem) if chosen.reference else None
-    solution = solve(problem, settings, distance=distance)
+    solution = solve(problem, settings, distance=distance, watch=chosen.reference)
     _print_figures(settings, solution, chosen.json)
     if chosen.out is not None:
         try:

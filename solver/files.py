@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,6 +16,7 @@ from solver.discrete.problem import Inside
 from solver.latin import Iterate, Solution
 from solver.laws import Friction
 from solver.reduction.basis import Reduction
+from solver.reference.distance import determinate_forces
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
@@ -116,9 +118,12 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "iterations": solution.iterate.number,
         "indicator": last.indicator if last else None,
         "behaviour": last.behaviour if last else None,
+        "estimated_error": last.estimated_error if last else None,
+        "certified": solution.is_certified,
+        "residual": solution.iterate.residual,
         "error_displacement": last.error_displacement if last else None,
         "error_force": last.error_force if last else None,
-        "seconds": solution.iterate.seconds,
+        "seconds": last.seconds if last else solution.iterate.seconds,
         **_bases(solution.iterate.reduction),
     }
 
@@ -149,6 +154,7 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     history: dict[str, list[Any]] = {
         "indicator": [entry.indicator for entry in solution.records],
         "behaviour": [entry.behaviour for entry in solution.records],
+        "estimated_error": [entry.estimated_error for entry in solution.records],
         "seconds": [entry.seconds for entry in solution.records],
         "error_displacement": [entry.error_displacement for entry in solution.records],
         "error_force": [entry.error_force for entry in solution.records],
@@ -165,6 +171,8 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
         ),
         **interface_arrays(iterate),
         **{name: np.array(column) for name, column in history.items()},
+        "certified": solution.is_certified,
+        "residual": math.nan if iterate.residual is None else iterate.residual,
         "settings": json.dumps({"scene": settings.scene, **settings.values()}),
     }
 
@@ -174,6 +182,7 @@ def _on_lines(iterate: Iterate) -> dict[str, Any]:
         "x": iterate.problem.positions,
         "displacement": iterate.displacement,
         "friction_force": iterate.friction_force,
+        "determinate": determinate_forces(iterate.problem),
         "status": iterate.status,
     }
 
@@ -189,16 +198,20 @@ def _in_the_plane(inside: Inside, iterate: Iterate) -> dict[str, Any]:
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     """Give the arrays `interface/NAME/...` of all interfaces between bodies, or that may open.
 
-    `points` are places along the interface, m; the others are as in `ContactFields`, shape
-    (n_points, n_instants), with the opening as `gap`. Forces are in N, on the body above.
+    `points` are places along the interface, m; `determinate` tells where the force is no arbitrary
+    share of what a support or a ring of contacts carries; the others are as in `ContactFields`,
+    shape (n_points, n_instants), with the opening as `gap`. Forces are in N, on the body above.
     """
     found: dict[str, Any] = {}
+    determinate = determinate_forces(iterate.problem)
     for name, law in iterate.problem.rubbing.items():
         if isinstance(law, Friction) and law.below is None:
             continue
         fields = iterate.contact(name)
+        *_, tangential = iterate.problem.contact_places[name]
         own = {
             "points": law.positions,
+            "determinate": determinate[tangential],
             "normal_force": fields.normal_force,
             "tangential_force": fields.tangential_force,
             "gap": fields.opening,

@@ -2,7 +2,8 @@
 
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
-from solver.latin.solve import Ending, Record, Solution, Status, StopRules, record, solve
+from solver.latin.solve import Record, Solution, record, solve
+from solver.latin.stop import Ending, Status, StopRules, Verdict
 
 __all__ = [
     "Checkpoint",
@@ -12,6 +13,7 @@ __all__ = [
     "Solution",
     "Status",
     "StopRules",
+    "Verdict",
     "iterations",
     "record",
     "solve",

@@ -17,7 +17,7 @@ MOST_STEPS = 60
 """Steps of the conjugate gradients, at most; the rows of one point are few, so a dozen suffice."""
 
 
-def finished(iterate: Iterate, certificate: Certificate, seconds: float) -> Iterate:
+def finished(iterate: Iterate, certificate: Certificate) -> Iterate:
     """Give the iterate after another one that a certified solution takes the place of.
 
     Its linear and its local stage are the same fields, a fixed point of the method for every k.
@@ -28,8 +28,6 @@ def finished(iterate: Iterate, certificate: Certificate, seconds: float) -> Iter
         The one before.
     certificate
         The solution.
-    seconds
-        Time that the method took, the status step included.
     """
     problem, scales = iterate.problem, iterate.problem.scales
     displacement = certificate.reference.displacement / scales.displacement
@@ -39,7 +37,7 @@ def finished(iterate: Iterate, certificate: Certificate, seconds: float) -> Iter
     outgoing, incoming, local = map(_frozen, (moved + stretched, moved - stretched, moved))
     return Iterate(
         number=iterate.number + 1,
-        seconds=seconds,
+        seconds=iterate.seconds,
         problem=problem,
         k=iterate.k,
         outgoing=outgoing,

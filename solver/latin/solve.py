@@ -1,48 +1,19 @@
-"""Driving the iteration to an end: stop rules, records, and one status with advice."""
+"""Driving the iteration to an end, with a record of every iterate."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import StrEnum
 
 from solver.discrete.problem import Problem
-from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.latin.indicators import behaviour_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
+from solver.latin.stop import CANCELLED, Ending, Status, StopRules, Verdict
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 from solver.settings import Settings
-
-STALL_WINDOW = 200
-STALL_FACTOR = 0.99
-ROUNDING = 1e-24
-LARGEST_VIOLATION = 1e-2
-SMALLEST_VIOLATION = 1e-12
-VIOLATION = 1.0
-"""Times the root of the tolerance on eta, which is a ratio of squares: what the k-free indicator
-may be at the end, between the two bounds above. Measured at the default tolerance: the friction
-force is then within 0.1 % (block, layers), 0.4 % (bar, 2 to 20 wires) and 2 % (40 wires, or 200
-elements with the paper's options) of the reference; with 100 it was up to 20 % off."""
-
-
-class Ending(StrEnum):
-    """How a run can end."""
-
-    CONVERGED = "converged"
-    EXHAUSTED = "exhausted"
-    STALLED = "stalled"
-    CANCELLED = "cancelled"
-    DIVERGED = "diverged"
-
-
-@dataclass(frozen=True)
-class Status:
-    """The end of a run, in a word, and what to try next in a sentence."""
-
-    ending: Ending
-    advice: str
 
 
 @dataclass(frozen=True)
@@ -52,11 +23,13 @@ class Record:
     Attributes
     ----------
     seconds
-        Time that the method took so far, s.
+        Time that the run took so far, s: set-up, iterations, and all that its stop rules compute.
     indicator
         LATIN indicator eta (paper, eq. 2).
     behaviour, behaviour_largest
-        The k-free indicator, and the largest entry of its map.
+        The k-free indicator, and the largest entry of its map; NaN where nobody asked.
+    estimated_error
+        Of the contact force, relative, without a reference; NaN where there is no estimate yet.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
     reduction
@@ -70,6 +43,7 @@ class Record:
     indicator: float
     behaviour: float
     behaviour_largest: float
+    estimated_error: float
     error_displacement: float
     error_force: float
     reduction: tuple[ReductionRecord, ...] = ()
@@ -84,91 +58,41 @@ class Solution:
     records: list[Record]
     status: Status
 
+    @property
+    def is_certified(self) -> bool:
+        """Whether a status step ended it with the solution of the discrete problem."""
+        return self.iterate.residual is not None
 
-def record(iterate: Iterate, distance: Distance | None) -> Record:
-    """Compute the scalars of an iterate, off the method's clock."""
-    behaviour = behaviour_indicator(iterate)
+
+def record(
+    iterate: Iterate, verdict: Verdict, distance: Distance | None, *, watch: bool = True
+) -> Record:
+    """Gather the scalars of an iterate; what the rules did not need is off the run's clock.
+
+    Parameters
+    ----------
+    iterate, verdict
+        Of one iteration.
+    distance
+        To a reference, or None.
+    watch
+        Whether anybody wants the k-free indicator of every iteration.
+    """
+    behaviour = verdict.behaviour
+    if behaviour is None and watch:
+        behaviour = behaviour_indicator(iterate)
     return Record(
         iteration=iterate.number,
-        seconds=iterate.seconds,
-        indicator=latin_indicator(iterate),
-        behaviour=behaviour.total,
-        behaviour_largest=behaviour.largest,
+        seconds=verdict.seconds,
+        indicator=verdict.indicator,
+        behaviour=behaviour.total if behaviour else math.nan,
+        behaviour_largest=behaviour.largest if behaviour else math.nan,
+        estimated_error=verdict.estimated_error,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
         reduction=iterate.reduction.records if iterate.reduction else (),
         local_error=iterate.local_error,
     )
-
-
-def agreement(tolerance: float) -> float:
-    """Give the k-free indicator up to which it agrees that the run has converged.
-
-    The LATIN indicator alone can be fooled: a search direction that is far from the stiffness in
-    play makes it as small as one likes (theory.md, 4).
-    """
-    return min(max(VIOLATION * math.sqrt(tolerance), SMALLEST_VIOLATION), LARGEST_VIOLATION)
-
-
-class StopRules:
-    """When a run ends; it remembers the best indicator to see a stall."""
-
-    def __init__(self, settings: Settings) -> None:
-        self._settings = settings
-        self._best = math.inf
-        self._best_at = 0
-
-    def judge(self, iteration: int, indicator: float, behaviour: float) -> Status | None:
-        """Say how the run ends after an iteration with these indicators, or None if it goes on."""
-        settings = self._settings
-        if not math.isfinite(indicator):
-            return Status(
-                Ending.DIVERGED,
-                f"Numbers stopped being finite at iteration {iteration}; the iterate before it is "
-                "kept. Lower the relaxation, or bring k_scale and the loads nearer to 1.",
-            )
-        agreed = behaviour <= agreement(settings.tolerance)
-        if indicator <= settings.tolerance and agreed:
-            return Status(
-                Ending.CONVERGED,
-                "Both indicators are low. They are no errors: lower the tolerance if the error is "
-                "still too large.",
-            )
-        if indicator < STALL_FACTOR * self._best:
-            self._best, self._best_at = indicator, iteration
-        if iteration - self._best_at >= STALL_WINDOW:
-            return Status(Ending.STALLED, self._stall_advice(agreed))
-        if iteration >= settings.max_iterations:
-            still = indicator <= settings.tolerance
-            laws = " before the interface laws hold as well as the tolerance asks" if still else ""
-            return Status(Ending.EXHAUSTED, f"The iterations are used up{laws}. {self._remedy()}")
-        return None
-
-    def _stall_advice(self, agreed: bool) -> str:
-        if self._best < ROUNDING and agreed:
-            return "The indicator is down to rounding: this is as near as it gets."
-        if self._best < ROUNDING:
-            return (
-                "The LATIN indicator is down to rounding, but the interface laws do not hold: the "
-                "friction force is too small beside the load, or k too far from the stiffness, "
-                "for more digits. Bring friction, the load and k_scale nearer to each other."
-            )
-        if self._best <= self._settings.tolerance:
-            return (
-                "The LATIN indicator is below the tolerance, but the interface laws do not hold: "
-                "the k-free indicator says so. Try another k_scale."
-            )
-        if self._settings.relaxation > 0.9:
-            return "The indicator does not fall any more. Lower the relaxation to 0.8."
-        return f"The indicator does not fall any more. {self._remedy()}"
-
-    def _remedy(self) -> str:
-        if self._settings.is_reduced:
-            return "The separated bases may be too small: raise pgd_modes, lower pgd_tolerance."
-        return "Raise max_iterations, loosen the tolerance, or try another k_scale."
-
-
-CANCELLED = Status(Ending.CANCELLED, "The run was stopped; it can be started again.")
 
 
 def solve(
@@ -177,6 +101,7 @@ def solve(
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,
+    watch: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Solution:
     """Drive the iteration until a stop rule ends it.
@@ -187,6 +112,8 @@ def solve(
         As for `iterations`.
     distance
         To a reference, for the errors in the records.
+    watch
+        Whether the records shall hold the k-free indicator of every iteration.
     cancelled
         Asked after every iteration.
     """
@@ -194,14 +121,18 @@ def solve(
     records: list[Record] = []
     last = None
     for iterate in iterations(problem, settings, start):
-        entry = record(iterate, distance)
-        status = rules.judge(iterate.number, entry.indicator, entry.behaviour)
+        verdict = rules.judge(iterate)
+        status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)
-        records.append(entry)
+        records.append(record(iterate, verdict, distance, watch=watch))
         last = iterate
+        if verdict.finished is not None:
+            last, verdict = verdict.finished, rules.close(verdict.finished)
+            records.append(record(last, verdict, distance))
+            status = verdict.status
         if status is None and cancelled():
             status = CANCELLED
         if status is not None:
-            return Solution(iterate, records, status)
+            return Solution(last, records, status)
     raise AssertionError("the iteration has no end of its own")

@@ -1,0 +1,115 @@
+"""How wrong the contact force of an iterate is, estimated without any reference (theory.md, 7)."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+import numpy as np
+
+from solver.discrete.problem import Array
+from solver.latin.iterate import Iterate
+from solver.latin.status_step import Certificate, StatusStep, is_affordable
+from solver.reference.condensation import NoReferenceError
+from solver.settings import Settings
+
+LOOK_BACK = 0.7
+"""The change of the contact force is that since the iterate at this share of the iterations."""
+SAFETY = 5.0
+"""What is left over that change, for a force that converges as the inverse root of the iterations:
+1 / (LOOK_BACK^-0.5 - 1). Nothing slower was seen; the common rates are faster."""
+SPACING = 1.1
+"""Ratio of the iterations whose contact forces are kept to look back at."""
+NEAR = 0.5
+"""Estimate by the change at which the status step is worth its first trial: the force has then
+changed by a tenth in the last third of the iterations."""
+AGAIN = 1.5
+"""Ratio of the iteration at which a failed status step is tried again."""
+
+
+class ErrorEstimate:
+    """The relative error of the contact force, iterate after iterate.
+
+    Once a status step is certified it is the distance to that solution. Before, and where the step
+    costs more than it saves, it is what the last changes let expect, with a factor for safety.
+
+    Parameters
+    ----------
+    settings
+        Of the run.
+
+    Attributes
+    ----------
+    certificate
+        The solution, once it is known.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._past: deque[tuple[int, Array]] = deque()
+        self._next_trial = 2
+        self._step: StatusStep | None = None
+        self._may_step = True
+        self.certificate: Certificate | None = None
+
+    def __call__(self, iterate: Iterate) -> float:
+        """Give the estimate; NaN while there is none."""
+        expected, accuracy = self._by_changes(iterate), self._settings.accuracy
+        is_due = iterate.number >= self._next_trial
+        if self.certificate is None and is_due and expected <= max(NEAR, accuracy):
+            self.try_step(iterate)
+        if self.certificate is None:
+            return expected
+        found = self.certificate.distance.of_friction_force(iterate)
+        if is_due and expected <= accuracy < found and self.try_step(iterate):
+            # It has come to rest elsewhere: there may be several solutions.
+            found = self.certificate.distance.of_friction_force(iterate)
+        return found
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether the last estimate was the distance to a certified solution."""
+        return self.certificate is not None
+
+    @property
+    def can_be_proven(self) -> bool:
+        """Whether a status step is worth its cost."""
+        return self._may_step
+
+    def try_step(self, iterate: Iterate) -> bool:
+        """Try the status step from an iterate, unless it costs too much; tell whether it holds."""
+        self._next_trial = math.ceil(AGAIN * iterate.number) + 1
+        if self._step is None and self._may_step:
+            # Bases that are too small converge to something else, which no change shows.
+            self._may_step = self._settings.is_reduced or is_affordable(iterate.problem)
+            self._step = StatusStep(iterate.problem)
+        if self._step is None or not self._may_step:
+            return False
+        try:
+            found = self._step(iterate)
+        except NoReferenceError:
+            self._may_step = False
+            return False
+        if found is None or found.residual > self._settings.accuracy:
+            return False
+        self.certificate = found
+        return True
+
+    def _by_changes(self, iterate: Iterate) -> float:
+        """Give what is left, if the force goes on to change as it did."""
+        force, number = iterate.contact_force, iterate.number
+        past = self._past
+        while len(past) > 1 and past[1][0] <= LOOK_BACK * number:
+            past.popleft()
+        before = past[0] if past and past[0][0] <= LOOK_BACK * number else None
+        if not past or number >= SPACING * past[-1][0]:
+            past.append((number, force))
+        if before is None:
+            return math.nan
+        size = float(np.linalg.norm(force))
+        change = float(np.linalg.norm(force - before[1]))
+        return SAFETY * change / size if size > 0.0 else 0.0
+
+    def __getstate__(self) -> dict[str, object]:
+        """Go elsewhere without what belongs to one problem: it is found again there."""
+        return {**self.__dict__, "_step": None, "certificate": None, "_past": deque()}

@@ -1,0 +1,207 @@
+"""When a run ends, and how: stop rules, and one status with advice."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from enum import StrEnum
+
+from solver.latin.estimate import ErrorEstimate
+from solver.latin.finish import finished
+from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
+from solver.latin.iterate import Iterate
+from solver.settings import Settings
+
+STALL_WINDOW = 200
+STALL_FACTOR = 0.99
+ROUNDING = 1e-24
+LARGEST_VIOLATION = 1e-2
+SMALLEST_VIOLATION = 1e-12
+VIOLATION = 1.0
+"""Times the root of the tolerance on eta, which is a ratio of squares: what the k-free indicator
+may be at the end, between the two bounds above. Measured at the default tolerance: the friction
+force is then within 0.1 % (block, layers), 0.4 % (bar, 2 to 20 wires) and 2 % (40 wires, or 200
+elements with the paper's options) of the reference; with 100 it was up to 20 % off."""
+
+
+class Ending(StrEnum):
+    """How a run can end."""
+
+    CONVERGED = "converged"
+    EXHAUSTED = "exhausted"
+    STALLED = "stalled"
+    CANCELLED = "cancelled"
+    DIVERGED = "diverged"
+
+
+@dataclass(frozen=True)
+class Status:
+    """The end of a run, in a word, and what to try next in a sentence."""
+
+    ending: Ending
+    advice: str
+
+
+_CERTIFIED = "A status step ended the run: all laws and equilibrium hold up to rounding"
+_PROVEN = "The contact force is within the accuracy of the solution, which a status step has found."
+_EXPECTED = (
+    "The contact force has changed so little of late that its error is estimated to be below the "
+    "accuracy. A status step, which would prove it, costs more than the run."
+)
+CANCELLED = Status(Ending.CANCELLED, "The run was stopped; it can be started again.")
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What the stop rules make of an iterate.
+
+    Attributes
+    ----------
+    seconds
+        Time that the run took so far, the stop rules' own included, s.
+    indicator, behaviour, estimated_error
+        As in `Record`; the k-free indicator is None unless the rules needed it.
+    status
+        How the run ends, or None if it goes on.
+    finished
+        The certified solution that a status step made of the iterate, if one did.
+    """
+
+    seconds: float
+    indicator: float
+    behaviour: BehaviourIndicator | None
+    estimated_error: float
+    status: Status | None
+    finished: Iterate | None = None
+
+
+def agreement(tolerance: float) -> float:
+    """Give the k-free indicator up to which it agrees that the run has converged.
+
+    The LATIN indicator alone can be fooled: a search direction that is far from the stiffness in
+    play makes it as small as one likes (theory.md, 4).
+    """
+    return min(max(VIOLATION * math.sqrt(tolerance), SMALLEST_VIOLATION), LARGEST_VIOLATION)
+
+
+class StopRules:
+    """When a run ends; they remember what they have seen, and what they cost.
+
+    A run has converged when the estimated error of its contact force is below `accuracy` and both
+    indicators agree, or when a status step ends it with a certified solution.
+
+    Attributes
+    ----------
+    seconds
+        Time that they took so far.
+    """
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._estimate = ErrorEstimate(settings)
+        self._best = math.inf
+        self._best_at = 0
+        self.seconds = 0.0
+
+    def judge(self, iterate: Iterate) -> Verdict:
+        """Say whether the run ends after an iterate, and how."""
+        began = time.perf_counter()
+        indicator = latin_indicator(iterate)
+        status: Status | None = _diverged(iterate.number)
+        behaviour, finish, estimated = None, None, math.nan
+        if math.isfinite(indicator):
+            estimated = self._estimate(iterate)
+            behaviour = self._agreement_asked(iterate, indicator, estimated)
+            status = self._ending(iterate.number, indicator, estimated, behaviour)
+            finish = self._finished(iterate, status)
+            if finish is not None:
+                estimated = self._estimate(iterate)
+                status = None
+        self.seconds += time.perf_counter() - began
+        seconds = iterate.seconds + self.seconds
+        return Verdict(seconds, indicator, behaviour, estimated, status, finish)
+
+    def close(self, finish: Iterate) -> Verdict:
+        """Judge the certified solution that ends a run."""
+        seconds = finish.seconds + self.seconds
+        residual = finish.residual or 0.0
+        behaviour = behaviour_indicator(finish)
+        status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
+        return Verdict(seconds, latin_indicator(finish), behaviour, residual, status)
+
+    def _finished(self, iterate: Iterate, status: Status | None) -> Iterate | None:
+        """Give the certified solution in the place of an iterate, if the run may end with it."""
+        if self._settings.finish != "status" or self._settings.is_reduced:
+            return None
+        gives_up = status is not None and status.ending is not Ending.CONVERGED
+        if self._estimate.certificate is None and gives_up:
+            self._estimate.try_step(iterate)
+        found = self._estimate.certificate
+        return finished(iterate, found) if found is not None else None
+
+    def _agreement_asked(
+        self, iterate: Iterate, indicator: float, estimated: float
+    ) -> BehaviourIndicator | None:
+        """Compute the k-free indicator, which is dear, where all else says converged or stalled."""
+        settings = self._settings
+        is_low = indicator <= settings.tolerance
+        is_last = iterate.number in (settings.max_iterations, self._best_at + STALL_WINDOW)
+        if (is_low and estimated <= settings.accuracy) or is_last:
+            return behaviour_indicator(iterate)
+        return None
+
+    def _ending(
+        self,
+        iteration: int,
+        indicator: float,
+        estimated: float,
+        behaviour: BehaviourIndicator | None,
+    ) -> Status | None:
+        settings = self._settings
+        agreed = behaviour is not None and behaviour.total <= agreement(settings.tolerance)
+        if indicator <= settings.tolerance and agreed and estimated <= settings.accuracy:
+            if self._estimate.is_proven:
+                return Status(Ending.CONVERGED, _PROVEN)
+            if not self._estimate.can_be_proven:
+                return Status(Ending.CONVERGED, _EXPECTED)
+        if indicator < STALL_FACTOR * self._best:
+            self._best, self._best_at = indicator, iteration
+        if iteration - self._best_at >= STALL_WINDOW:
+            return Status(Ending.STALLED, self._stall_advice(agreed))
+        if iteration >= settings.max_iterations:
+            still = indicator <= settings.tolerance
+            laws = " before the contact force is known to be accurate" if still else ""
+            return Status(Ending.EXHAUSTED, f"The iterations are used up{laws}. {self._remedy()}")
+        return None
+
+    def _stall_advice(self, agreed: bool) -> str:
+        if self._best < ROUNDING and agreed:
+            return "The indicator is down to rounding: this is as near as it gets."
+        if self._best < ROUNDING:
+            return (
+                "The LATIN indicator is down to rounding, but the interface laws do not hold: the "
+                "friction force is too small beside the load, or k too far from the stiffness, "
+                "for more digits. Bring friction, the load and k_scale nearer to each other."
+            )
+        if self._best <= self._settings.tolerance:
+            return (
+                "The LATIN indicator is below the tolerance, but the interface laws do not hold: "
+                "the k-free indicator says so. Try another k_scale."
+            )
+        if self._settings.relaxation > 0.9:
+            return "The indicator does not fall any more. Lower the relaxation to 0.8."
+        return f"The indicator does not fall any more. {self._remedy()}"
+
+    def _remedy(self) -> str:
+        if self._settings.is_reduced:
+            return "The separated bases may be too small: raise pgd_modes, lower pgd_tolerance."
+        return "Raise max_iterations, loosen the tolerance, or try another k_scale."
+
+
+def _diverged(iteration: int) -> Status:
+    return Status(
+        Ending.DIVERGED,
+        f"Numbers stopped being finite at iteration {iteration}; the iterate before it is "
+        "kept. Lower the relaxation, or bring k_scale and the loads nearer to 1.",
+    )
