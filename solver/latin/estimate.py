@@ -49,7 +49,7 @@ class ErrorEstimate:
         self._past: deque[tuple[int, Array]] = deque()
         self._next_trial = 2
         self._step: StatusStep | None = None
-        self._may_step = True
+        self._has_solver = True
         self.certificate: Certificate | None = None
 
     def __call__(self, iterate: Iterate) -> float:
@@ -71,24 +71,23 @@ class ErrorEstimate:
         """Whether the last estimate was the distance to a certified solution."""
         return self.certificate is not None
 
-    @property
-    def can_be_proven(self) -> bool:
-        """Whether a status step is worth its cost."""
-        return self._may_step
+    def can_be_proven(self, iterate: Iterate) -> bool:
+        """Tell whether a status step is worth its cost by now."""
+        if not self._has_solver:
+            return False
+        # Bases that are too small converge to something else, which no change shows.
+        return self._settings.is_reduced or is_affordable(iterate.problem, iterate.number)
 
     def try_step(self, iterate: Iterate) -> bool:
         """Try the status step from an iterate, unless it costs too much; tell whether it holds."""
-        self._next_trial = math.ceil(AGAIN * iterate.number) + 1
-        if self._step is None and self._may_step:
-            # Bases that are too small converge to something else, which no change shows.
-            self._may_step = self._settings.is_reduced or is_affordable(iterate.problem)
-            self._step = StatusStep(iterate.problem)
-        if self._step is None or not self._may_step:
+        if not self.can_be_proven(iterate):
             return False
+        self._next_trial = math.ceil(AGAIN * iterate.number) + 1
+        self._step = self._step or StatusStep(iterate.problem)
         try:
             found = self._step(iterate)
         except NoReferenceError:
-            self._may_step = False
+            self._has_solver = False
             return False
         if found is None or found.residual > self._settings.accuracy:
             return False

@@ -44,8 +44,8 @@ PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
 CALLS = 1e-4
 """Seconds of an iteration, or of an instant of the step, that no size makes less (measured)."""
-AFFORDABLE = 40.0
-"""Iterations that a status step may cost: about as many as it saves."""
+AFFORDABLE = 40
+"""Iterations that a status step may cost in any case: about as many as it saves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,14 +120,16 @@ def states_of(iterate: Iterate) -> States:
     return np.concatenate(found)
 
 
-def is_affordable(problem: Problem) -> bool:
-    """Tell whether a status step costs no more than the iterations that it saves.
+def is_affordable(problem: Problem, iterations: int) -> bool:
+    """Tell whether a status step costs no more than the iterations done so far, or that it saves.
 
-    It is a matter of counts, not of clocks, so that a run ends alike on every machine. On one rigid
-    support of known bound it costs a band matrix an instant; elsewhere the structure is condensed
-    onto its contacts first, and then an instant costs a dense matrix of those that move.
+    So a run never costs more than twice what the better of both ways would have. It is a matter of
+    counts, not of clocks, so that a run ends alike on every machine. On one rigid support of known
+    bound a step costs a band matrix an instant; elsewhere the structure is condensed onto its
+    contacts first, and then an instant costs a dense matrix of those that move.
     """
-    return is_alone(problem) or step_seconds(problem) <= AFFORDABLE * iteration_seconds(problem)
+    allowed = max(iterations, AFFORDABLE) * iteration_seconds(problem)
+    return is_alone(problem) or step_seconds(problem) <= allowed
 
 
 def step_seconds(problem: Problem) -> float:

@@ -113,7 +113,7 @@ class StopRules:
         if math.isfinite(indicator):
             estimated = self._estimate(iterate)
             behaviour = self._agreement_asked(iterate, indicator, estimated)
-            status = self._ending(iterate.number, indicator, estimated, behaviour)
+            status = self._ending(iterate, indicator, estimated, behaviour)
             finish = self._finished(iterate, status)
             if finish is not None:
                 estimated = self._estimate(iterate)
@@ -153,17 +153,17 @@ class StopRules:
 
     def _ending(
         self,
-        iteration: int,
+        iterate: Iterate,
         indicator: float,
         estimated: float,
         behaviour: BehaviourIndicator | None,
     ) -> Status | None:
-        settings = self._settings
+        settings, iteration = self._settings, iterate.number
         agreed = behaviour is not None and behaviour.total <= agreement(settings.tolerance)
         if indicator <= settings.tolerance and agreed and estimated <= settings.accuracy:
             if self._estimate.is_proven:
                 return Status(Ending.CONVERGED, _PROVEN)
-            if not self._estimate.can_be_proven:
+            if not settings.is_reduced and not self._estimate.can_be_proven(iterate):
                 return Status(Ending.CONVERGED, _EXPECTED)
         if indicator < STALL_FACTOR * self._best:
             self._best, self._best_at = indicator, iteration
