@@ -28,6 +28,7 @@ HISTORY = (
     "seconds",
     "indicator",
     "behaviour",
+    "estimated_error",
     "error_displacement",
     "error_force",
 )

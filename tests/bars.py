@@ -14,7 +14,9 @@ SMALL = {"elements": 30, "instants": 41, "substructures": 6}
 
 
 def options(**values):
-    return BarSettings.checked({"tolerance": 1e-26, "max_iterations": 20_000, **values})
+    return BarSettings.checked(
+        {"method": "paper", "tolerance": 1e-26, "max_iterations": 20_000, **values}
+    )
 
 
 def table(forces):

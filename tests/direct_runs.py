@@ -14,13 +14,13 @@ from solver.scenes.bar import BarSettings
 
 
 def direct(values: dict[str, Any]) -> Solution:
-    settings = BarSettings.checked(values)
+    settings = BarSettings.checked({"method": "paper", **values})
     problem = discretise(settings)
     return solve(problem, settings, distance=distance_to(incremental(problem), problem))
 
 
 def iterate_number(number: int, values: dict[str, Any]) -> Iterate:
-    settings = BarSettings.checked(values)
+    settings = BarSettings.checked({"method": "paper", **values})
     for iterate in iterations(discretise(settings), settings):
         if iterate.number == number:
             return iterate

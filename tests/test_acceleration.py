@@ -21,7 +21,7 @@ FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested
 
 
 def options(**changes: object) -> BarSettings:
-    return BarSettings.checked({**FAST, **changes})
+    return BarSettings.checked({"method": "paper", **FAST, **changes})
 
 
 def run(settings: BarSettings):

@@ -14,7 +14,7 @@ POINTS = [[0.0, 0.0], [1.0, 500.0]]
 
 def edited(rows: list[list[float]]) -> CurveControl:
     """Edit the table of a load path that is `POINTS`."""
-    settings = BarSettings.checked({"load": POINTS})
+    settings = BarSettings.checked({"method": "paper", "load": POINTS})
 
     def change(name: str, value: Any) -> None:
         try:

@@ -19,7 +19,7 @@ FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested
 
 
 def options(**changes: object) -> BarSettings:
-    return BarSettings.checked({"k_update": "status", **changes})
+    return BarSettings.checked({"method": "paper", "k_update": "status", **changes})
 
 
 def run(settings: BarSettings):

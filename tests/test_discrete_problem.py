@@ -26,7 +26,7 @@ coarse = importlib.import_module("solver.latin.coarse")
 
 
 def options(**values):
-    return BarSettings.checked({"instants": 31, **values})
+    return BarSettings.checked({"method": "paper", "instants": 31, **values})
 
 
 def sample(chosen, number):

@@ -138,7 +138,7 @@ def test_closing_the_bench_ends_the_job(bench: Bench, errand: Errand) -> None:
 
 def test_a_page_that_closes_ends_its_jobs(bench: Bench) -> None:
     with closing(Pool(1)) as pool:
-        session = Session(pool, bench, BarSettings.checked(TINY))
+        session = Session(pool, bench, BarSettings.checked({"method": "paper", **TINY}))
         session.stability.ask("any", sleep)
         wait_for(lambda: session.attend() and session.stability.doing == "asleep")
         pid = bench.pid
@@ -157,7 +157,9 @@ def test_results_stay_and_the_oldest_go(errand: Errand) -> None:
 def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -> None:
     with (
         closing(Pool(1)) as pool,
-        closing(Session(pool, bench, BarSettings.checked({"tolerance": 1e-30}))) as session,
+        closing(
+            Session(pool, bench, BarSettings.checked({"method": "paper", "tolerance": 1e-30}))
+        ) as session,
     ):
         session.set_pace(100.0)
         session.start()
@@ -191,7 +193,9 @@ def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
     assert set(found.files) == {"curves.csv", "levels.csv", "study.html"}
     rows = list(csv.DictReader(found.files["curves.csv"].decode().splitlines()))
     assert {row["method"] for row in rows} == {course.method for course in found.study.courses}
-    assert found.study.settings.values() == BarSettings.checked(TINY).values()
+    assert (
+        found.study.settings.values() == BarSettings.checked({"method": "paper", **TINY}).values()
+    )
     assert found.study.machine.count("BLAS threads: 1;") == 1
 
 
@@ -231,8 +235,8 @@ def test_the_matrix_says_each_verdict_in_a_word_and_hides_only_what_is_right() -
 
 
 def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> None:
-    assert title_of(BarSettings.checked({})) == "defaults"
-    assert title_of(BarSettings.checked({"friction": 0.4})) == "friction 0.4"
+    assert title_of(BarSettings.checked({"method": "paper"})) == "defaults"
+    assert title_of(BarSettings.checked({"method": "paper", "friction": 0.4})) == "friction 0.4"
     assert "no other page" in company(0)
     assert "a run of another page was" in company(1)
     assert "3 runs of other pages were" in company(3)

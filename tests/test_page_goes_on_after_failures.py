@@ -32,7 +32,7 @@ def seat() -> Seat:
 
 @pytest.fixture
 def session(seat: Seat) -> Session:
-    made = Session(seat, Bench(), BarSettings.checked({}))
+    made = Session(seat, Bench(), BarSettings.checked({"method": "paper"}))
     made.start()
     return made
 

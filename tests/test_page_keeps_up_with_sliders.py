@@ -17,7 +17,7 @@ from solver.scenes.bar import BarSettings
 
 @pytest.fixture
 def session() -> Session:
-    return Session(Seat(), Bench(), BarSettings.checked({}))
+    return Session(Seat(), Bench(), BarSettings.checked({"method": "paper"}))
 
 
 @pytest.fixture

@@ -47,13 +47,13 @@ def test_a_long_address_is_answered_in_few_words() -> None:
 
 
 def test_a_complaint_stands_in_the_status_line_as_text() -> None:
-    run = Recording(1, BarSettings.checked({}), "")
+    run = Recording(1, BarSettings.checked({"method": "paper"}), "")
     line = status_line(run, True, None, complaint="From the address: <b> is refused.")
     assert "From the address: &lt;b&gt; is refused." in line
 
 
 def test_a_run_that_has_nothing_to_show_yet_is_being_set_up() -> None:
-    line = status_line(Recording(1, BarSettings.checked({}), ""), True, None)
+    line = status_line(Recording(1, BarSettings.checked({"method": "paper"}), ""), True, None)
     assert "setting up" in line
     assert "iteration 0" not in line
 

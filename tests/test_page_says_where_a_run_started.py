@@ -42,7 +42,7 @@ def recording(choice: StartChoice | None, **changes: Any) -> Recording:
         closed_form_end=None,
         start=choice,
     )
-    settings = BarSettings.checked(changes)
+    settings = BarSettings.checked({"method": "paper", **changes})
     return Recording(1, settings, "peak 910 N", begun=begun, is_warm=True)
 
 
@@ -77,7 +77,7 @@ def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> Non
 
 def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     with closing(Pool(1)) as pool, closing(Bench()) as bench:
-        session = Session(pool, bench, BarSettings.checked({"peak": 910.0}))
+        session = Session(pool, bench, BarSettings.checked({"method": "paper", "peak": 910.0}))
         sidebar = Sidebar(session, lambda: None, lambda text: None, lambda query: None)
         plain = sidebar._saved().getvalue()
         session.run = recording(NEARER, peak=910.0)

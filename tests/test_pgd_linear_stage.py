@@ -22,7 +22,7 @@ GENEROUS = {"pgd_modes": 100, "pgd_pairs": 100, "pgd_tolerance": 1e-12, "pgd_enr
 
 
 def options(**changes: object) -> BarSettings:
-    return BarSettings.checked({"linear_stage": "pgd", **changes})
+    return BarSettings.checked({"method": "paper", "linear_stage": "pgd", **changes})
 
 
 def run(settings: BarSettings, **rest: object):

@@ -21,7 +21,7 @@ FORCES = st.lists(st.floats(-2400.0, 2400.0), min_size=1, max_size=12)
 
 
 def scene(**values: object) -> Bar:
-    return bar(BarSettings.checked(values))
+    return bar(BarSettings.checked({"method": "paper", **values}))
 
 
 def under(base: Bar, load: list[float] | np.ndarray) -> Bar:

@@ -19,7 +19,7 @@ GRADED = [[0.0, 100.0], [0.4, 1.0], [1.0, 3.0]]
 
 
 def settings(**changes):
-    return BarSettings.checked({**SMALL, **changes})
+    return BarSettings.checked({"method": "paper", **SMALL, **changes})
 
 
 def test_one_factor_everywhere_is_a_bar_of_that_section():

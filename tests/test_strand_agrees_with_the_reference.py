@@ -75,7 +75,9 @@ def test_where_nothing_rubs_the_force_error_is_relative_to_what_pulls(grip):
 
 
 def test_friction_however_small_counts_where_it_is_at_its_bound():
-    settings = BarSettings.checked({"friction": 1e-12, "instants": 11, "elements": 10})
+    settings = BarSettings.checked(
+        {"method": "paper", "friction": 1e-12, "instants": 11, "elements": 10}
+    )
     problem = discretise(settings)
     reference = reference_of(problem)
     nothing = replace(reference, contact_force=0.0 * reference.contact_force)
@@ -100,8 +102,8 @@ def test_wires_have_macro_forces_between_them_even_where_they_are_not_cut(change
 @pytest.mark.parametrize(
     "settings",
     [
-        BarSettings.checked({"substructures": 1}),
-        BarSettings.checked({"substructures": 3}),
+        BarSettings.checked({"method": "paper", "substructures": 1}),
+        BarSettings.checked({"method": "paper", "substructures": 3}),
         BlockSettings.checked({"substructures": 1, "substructures_up": 1}),
         LayersSettings.checked({"substructures": 1, "layers": 2}),
     ],

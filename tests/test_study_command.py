@@ -61,7 +61,7 @@ def course(method, kind, seconds, errors):
 
 
 def study_of(*courses):
-    return Study(BarSettings.checked({}), 1, "machine", courses, (), ())
+    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses, (), ())
 
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
@@ -205,7 +205,9 @@ def test_absent_solvers_are_named(monkeypatch, tmp_path, capsys):
 def test_public_solvers_agree_with_the_incremental_solver(peer, changes):
     if not peer.installed:
         pytest.skip(f"{peer.module} is not installed")
-    problem = discretise(BarSettings.checked({"elements": 20, "instants": 21, **changes}))
+    problem = discretise(
+        BarSettings.checked({"method": "paper", "elements": 20, "instants": 21, **changes})
+    )
     distance = distance_to(incremental(problem), problem)
     fields = solve_by_peer(problem, peer, peer.tolerances[-1])
     assert distance.of_friction_force(fields) < WHAT_PEERS_REACH[peer.name]
@@ -216,7 +218,9 @@ def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):
     monkeypatch.setattr(peers, "TIME_LIMIT", -1.0)
     idle = replace(PEERS[0], prepare=lambda *given: lambda lower, upper: 0.0 * lower)
     with pytest.raises(PeerError, match="at instant 1"):
-        solve_by_peer(discretise(BarSettings.checked({"substructures": 2})), idle, 1.0)
+        solve_by_peer(
+            discretise(BarSettings.checked({"method": "paper", "substructures": 2})), idle, 1.0
+        )
 
 
 def test_the_exponent_is_the_slope_and_needs_two_sizes():
@@ -230,7 +234,9 @@ def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     monkeypatch.setattr(
         "solver.study.growth.SIZES", {"elements": (2, 8, 16), "substructures": (1, 4)}
     )
-    found = growth(BarSettings.checked({"elements": 8, "instants": 5, "substructures": 3}))
+    found = growth(
+        BarSettings.checked({"method": "paper", "elements": 8, "instants": 5, "substructures": 3})
+    )
     assert {one.setting: [size.size for size in one.sizes] for one in found} == {
         "elements": [8, 16],
         "substructures": [1, 4],
@@ -256,7 +262,9 @@ def test_every_method_of_a_study_has_a_color_of_its_own():
     names = [(name, "latin") for name in FORMS]
     names += [(INCREMENTAL, "incremental"), *((peer.name, "peer") for peer in PEERS)]
     courses = tuple(course(name, kind, [0.1, 0.2], [0.1, 0.01]) for name, kind in names)
-    for panel in error_panels(Study(BarSettings.checked({}), 1, "", courses, (), ())):
+    for panel in error_panels(
+        Study(BarSettings.checked({"method": "paper"}), 1, "", courses, (), ())
+    ):
         hues = [curve.hue for curve in panel.curves]
         assert len(set(hues)) == len(hues) == len(names)
         assert max(hues) <= len(HUES)

@@ -27,7 +27,7 @@ FORMS: dict[str, dict[str, Any]] = {
 
 
 def made(**changes: Any) -> tuple[Problem, Settings]:
-    settings = BarSettings.checked({**SIZE, **changes})
+    settings = BarSettings.checked({"method": "paper", **SIZE, **changes})
     return discretise(settings), settings
 
 

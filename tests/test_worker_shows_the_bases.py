@@ -200,7 +200,7 @@ def test_checkpoints_count_their_bases_as_memory() -> None:
 
 def test_views_draw_a_run_on_bases_and_what_they_draw_is_bounded() -> None:
     found = told(SMALL, watch=ALL)
-    recording = Recording(1, BarSettings.checked(SMALL), "")
+    recording = Recording(1, BarSettings.checked({"method": "paper", **SMALL}), "")
     for report in found.reports:
         if not isinstance(report, Waiting):
             recording.take(report)

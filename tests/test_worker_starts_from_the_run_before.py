@@ -23,7 +23,7 @@ NEAR = {**STALLING, "friction": 0.3001}
 
 def warm_records(number: int) -> list[Record]:
     """Give the records of NEAR, started from the end of STALLING, without the worker."""
-    settings = BarSettings.checked(NEAR)
+    settings = BarSettings.checked({"method": "paper", **NEAR})
     problem = discretise(settings)
     distance = distance_to(incremental(problem), problem)
     start, run = choose_start(problem, settings, direct(STALLING).iterate)
@@ -41,7 +41,7 @@ def test_warm_run_starts_from_the_run_that_it_takes_the_place_of(line: Line) -> 
     for number in (1, 17):
         line.send(Seek(2, number))
         line.until(Waiting, ticket=2)
-    settings = BarSettings.checked(NEAR)
+    settings = BarSettings.checked({"method": "paper", **NEAR})
     _, run = choose_start(discretise(settings), settings, direct(STALLING).iterate)
     iterates = list(islice(run, 17))
     sought = [frame for frame in line.all(Frame, ticket=2) if frame.sought]

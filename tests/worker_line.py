@@ -56,7 +56,7 @@ class Line:
 
 
 def shown(iterate: Iterate) -> Frame:
-    sampler = Sampler(iterate.problem, BarSettings.checked({}), Look())
+    sampler = Sampler(iterate.problem, BarSettings.checked({"method": "paper"}), Look())
     return sampler.frame(1, iterate, frozenset(), Look())
 
 

@@ -10,6 +10,7 @@ from app.views.drawing import (
     BLUE,
     GREEN,
     GREY,
+    ORANGE,
     PURPLE,
     VERMILION,
     Picture,
@@ -28,13 +29,14 @@ from solver.settings import Settings
 CURVES = (
     ("indicator", GREY, "η", "dashed"),
     ("behaviour", PURPLE, "k-free indicator", "dashed"),
+    ("estimated_error", ORANGE, "estimated force error", "dashed"),
     ("error_displacement", GREEN, "displacement error", "solid"),
     ("error_force", BLUE, "force error", "solid"),
 )
 FLOOR = 1e-18
 LEAST_SPAN = (1e-2, 10.0)
 """What is shown at least; a curve beyond it widens it by whole decades."""
-ERRORS = 2
+ERRORS = 3
 """First of them that is an error, and needs a reference."""
 
 

@@ -30,7 +30,7 @@ class Beside:
         resume: ResumeBeside | None,
         start: Start | None,
     ) -> None:
-        full = settings.replace(linear_stage="full")
+        full = settings.replace(linear_stage="full", finish="none")
         self._checkpoint = resume.checkpoint if resume else None
         self._rules = resume.rules if resume else StopRules(full)
         self._ended = resume.ended if resume else False
@@ -41,12 +41,12 @@ class Beside:
         records: list[Record] = []
         while not self._ended and self._number < number:
             iterate = next(self._generator)
-            entry = record(iterate, distance)
-            status = self._rules.judge(iterate.number, entry.indicator, entry.behaviour)
+            verdict = self._rules.judge(iterate)
+            status = verdict.status
             self._ended = status is not None
             if status is None or status.ending is not Ending.DIVERGED:
                 self._checkpoint = iterate.checkpoint
-                records.append(entry)
+                records.append(record(iterate, verdict, distance))
         return records
 
     @property

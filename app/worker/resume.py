@@ -57,6 +57,8 @@ class Resume:
         The full stage beside the run, if there is one.
     start
         Where the run started, if that was chosen.
+    is_finished
+        Whether a status step ended it, in the place of that iterate.
     """
 
     before: Checkpoint | None
@@ -67,6 +69,7 @@ class Resume:
     due: float
     beside: ResumeBeside | None = None
     start: Start | None = None
+    is_finished: bool = False
 
 
 def without_problem(found: incremental.Reference) -> Callable[[Problem], incremental.Reference]:

@@ -18,7 +18,7 @@ from app.worker.seeking import Seeking
 from app.worker.tempo import Tempo
 from solver.discrete import discretise
 from solver.files import scene_settings
-from solver.latin import Checkpoint, Ending, Iterate, StopRules, record
+from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.warm import choose_start, iterations_from
 from solver.reference import incremental
@@ -143,6 +143,7 @@ class WorkerRun:
                 self._tempo.due,
                 self._beside.resume if self._beside else None,
                 self._start,
+                self._newest.residual is not None,
             )
         pace, pause_after = self._tempo.carried(done)
         order = replace(
@@ -163,6 +164,8 @@ class WorkerRun:
         """Do the first iteration, or the last one again, and show it: the picture comes first."""
         resume = self._order.resume
         newest = self._first()
+        if resume is not None and resume.is_finished:
+            newest = self._rules.finish(newest)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(
                 "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
@@ -245,20 +248,30 @@ class WorkerRun:
 
     def _account(self, newest: Iterate, iterate: Iterate) -> None:
         """Record and judge an iterate; one that is not finite does not become the newest."""
-        entry = record(iterate, self._distance)
-        self._status = self._rules.judge(iterate.number, entry.indicator, entry.behaviour)
+        verdict = self._rules.judge(iterate)
+        self._status = verdict.status
         if self._status is None or self._status.ending is not Ending.DIVERGED:
-            if iterate is not newest:
-                self._before = newest.checkpoint
-                self._outbox.owe_frame()
-            self._newest = newest = iterate
-            beside = self._beside
-            self._outbox.add(entry, beside.follow(iterate.number, self._distance) if beside else ())
+            newest = self._take(newest, iterate, verdict)
             self._seeking.keep(iterate.checkpoint)
+            if verdict.finished is not None:
+                verdict, finished = self._rules.close(verdict.finished), verdict.finished
+                self._status = verdict.status
+                newest = self._take(newest, finished, verdict)
         if self._rest_of_iterations(newest.number) is None:
             self._publish()
         if self._status is not None:
             self._send(End(self.ticket, self._status, newest.number))
+
+    def _take(self, newest: Iterate, iterate: Iterate, verdict: Verdict) -> Iterate:
+        """Record an iterate, which becomes the newest."""
+        if iterate is not newest:
+            self._before = newest.checkpoint
+            self._outbox.owe_frame()
+        self._newest = iterate
+        beside = self._beside
+        more = beside.follow(iterate.number, self._distance) if beside else ()
+        self._outbox.add(record(iterate, verdict, self._distance), more)
+        return iterate
 
     def _seek(self, iteration: int) -> None:
         newest = self._newest

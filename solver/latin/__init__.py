@@ -2,7 +2,7 @@
 
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
-from solver.latin.solve import Record, Solution, record, solve
+from solver.latin.solve import Record, Solution, judged, record, solve
 from solver.latin.stop import Ending, Status, StopRules, Verdict
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "StopRules",
     "Verdict",
     "iterations",
+    "judged",
     "record",
     "solve",
 ]

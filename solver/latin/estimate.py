@@ -20,9 +20,9 @@ SAFETY = 5.0
 1 / (LOOK_BACK^-0.5 - 1). Nothing slower was seen; the common rates are faster."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
-NEAR = 0.5
-"""Estimate by the change at which the status step is worth its first trial: the force has then
-changed by a tenth in the last third of the iterations."""
+NEAR = 0.2
+"""Estimate by the change at which the status step is worth its first trial: the force has changed
+by 4 % in the last third of the iterations, and most statuses are right."""
 AGAIN = 1.5
 """Ratio of the iteration at which a failed status step is tried again."""
 

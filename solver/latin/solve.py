@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
@@ -95,6 +95,25 @@ def record(
     )
 
 
+def judged(
+    problem: Problem, settings: Settings, start: Checkpoint | None = None
+) -> Iterator[tuple[Iterate, Verdict]]:
+    """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
+
+    Parameters
+    ----------
+    problem, settings, start
+        As for `iterations`, which goes on though a verdict says that the run ends.
+    """
+    rules = StopRules(settings)
+    for iterate in iterations(problem, settings, start):
+        verdict = rules.judge(iterate)
+        yield iterate, verdict
+        if verdict.finished is not None:
+            yield verdict.finished, rules.close(verdict.finished)
+            return
+
+
 def solve(
     problem: Problem,
     settings: Settings,
@@ -117,22 +136,16 @@ def solve(
     cancelled
         Asked after every iteration.
     """
-    rules = StopRules(settings)
     records: list[Record] = []
     last = None
-    for iterate in iterations(problem, settings, start):
-        verdict = rules.judge(iterate)
+    for iterate, verdict in judged(problem, settings, start):
         status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)
         records.append(record(iterate, verdict, distance, watch=watch))
         last = iterate
-        if verdict.finished is not None:
-            last, verdict = verdict.finished, rules.close(verdict.finished)
-            records.append(record(last, verdict, distance))
-            status = verdict.status
         if status is None and cancelled():
             status = CANCELLED
         if status is not None:
-            return Solution(last, records, status)
+            return Solution(iterate, records, status)
     raise AssertionError("the iteration has no end of its own")

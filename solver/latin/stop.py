@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from solver.latin.estimate import ErrorEstimate
@@ -129,6 +129,14 @@ class StopRules:
         behaviour = behaviour_indicator(finish)
         status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
         return Verdict(seconds, latin_indicator(finish), behaviour, residual, status)
+
+    def finish(self, iterate: Iterate) -> Iterate:
+        """Put the certified solution in the place of an iterate, from which a step found it."""
+        self._estimate.try_step(iterate)
+        found = self._estimate.certificate
+        return (
+            iterate if found is None else replace(finished(iterate, found), number=iterate.number)
+        )
 
     def _finished(self, iterate: Iterate, status: Status | None) -> Iterate | None:
         """Give the certified solution in the place of an iterate, if the run may end with it."""

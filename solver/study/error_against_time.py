@@ -18,7 +18,7 @@ import numpy as np
 
 from solver.discrete import discretise
 from solver.discrete.problem import Array, Problem
-from solver.latin import iterations
+from solver.latin import judged
 from solver.laws import Friction
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
@@ -41,6 +41,7 @@ PLAIN: dict[str, Any] = {
     "acceleration": "none",
     "start": "zero",
     "k_update": "none",
+    "finish": "none",
 }
 AUTO: dict[str, Any] = {**PLAIN, "search_direction": "auto"}
 NESTED: dict[str, Any] = {**AUTO, "start": "nested", "acceleration": "anderson"}
@@ -50,6 +51,7 @@ FORMS: dict[str, dict[str, Any]] = {
     "LATIN auto k, nested": {**AUTO, "start": "nested"},
     "LATIN auto k, nested, Anderson": NESTED,
     "LATIN auto k, nested, Anderson, k updated": {**NESTED, "k_update": "status"},
+    "LATIN fast": {**NESTED, "finish": "status"},
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
 """Settings that make the forms of LATIN; all others are those of the run."""
@@ -59,6 +61,7 @@ PLANE_FORMS: dict[str, dict[str, Any]] = {
     "LATIN auto k": AUTO,
     "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
     "LATIN auto k, Anderson, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
+    "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "status"},
     "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
 }
 """The same in the plane, where no run starts from coarser meshes."""
@@ -215,7 +218,7 @@ def _latin_entry(
 ) -> _Entry:
     """Find the errors of a form of LATIN, until its friction force is as near as the goal."""
     errors: list[tuple[float, float]] = []
-    for iterate in islice(iterations(discretise(settings), settings), most):
+    for iterate, _ in islice(judged(discretise(settings), settings), most):
         errors.append((distance.of_displacement(iterate), distance.of_friction_force(iterate)))
         force = errors[-1][1]
         if not math.isfinite(force) or (force <= goal and iterate.number >= least):
@@ -225,11 +228,12 @@ def _latin_entry(
 
 
 def _by_iterations(settings: Settings, number: int) -> list[float]:
-    """Give the time after every iteration; that of discretising is not on the method's clock."""
+    """Give the time after every iteration, with all that the run needs to end, and discretising."""
     start = time.perf_counter()
     problem = discretise(settings)
     before = time.perf_counter() - start
-    return [before + found.seconds for found in islice(iterations(problem, settings), number)]
+    found = islice(judged(problem, settings), number)
+    return [before + verdict.seconds for _, verdict in found]
 
 
 def by_increments(settings: Settings) -> float:

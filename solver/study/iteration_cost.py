@@ -55,7 +55,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     repeats
         Measurements of each, whose median is taken.
     """
-    settings = BarSettings.checked({"elements": nodes - 1, "instants": instants})
+    settings = BarSettings.checked({"method": "paper", "elements": nodes - 1, "instants": instants})
     problem = discretise(settings)
     k = search_direction(problem, settings)
     local = LocalStage(problem, k)

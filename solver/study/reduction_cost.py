@@ -174,6 +174,7 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
         for form, changes in FORMS.items():
             settings = BarSettings.checked(
                 {
+                    "method": "paper",
                     "linear_stage": "pgd",
                     "elements": nodes - 1,
                     "instants": instants,
@@ -221,10 +222,17 @@ def print_reduction_cost(repeats: int) -> None:
     print("in brackets: with a pair added and one dropped in every substructure")
     print(f"{'operator':<11} {'rows x instants':>15} {'full':>9}", *(f"{n:>15}" for n in MODES))
     for nodes, instants in BARS:
-        bar = BarSettings.checked({"elements": nodes - 1, "instants": instants, "substructures": 5})
+        bar = BarSettings.checked(
+            {
+                "method": "paper",
+                "elements": nodes - 1,
+                "instants": instants,
+                "substructures": 5,
+            }
+        )
         _print(reduction_cost("bar", discretise(bar), bar, MODES, repeats))
     for instants in HALF_PLANES:
-        settings = BarSettings.checked({"substructures": 1})
+        settings = BarSettings.checked({"method": "paper", "substructures": 1})
         problem = half_plane(HALF_PLANE_POINTS, instants)
         _print(reduction_cost("half plane", problem, settings, MODES, repeats))
 

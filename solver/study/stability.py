@@ -24,20 +24,11 @@ from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.scenes.plane import PlaneSettings
 from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, TOLD, UNCLEAR, Case, cases
 from solver.study.stability_plane import plane_cases
 from solver.study.stability_strand import strand_cases
 
-METHODS: dict[str, dict[str, object]] = {
-    "default": {},
-    "accelerated": {"search_direction": "auto", "acceleration": "anderson", "start": "nested"},
-}
-PLANE_METHODS: dict[str, dict[str, object]] = {
-    "default": {},
-    "paper": {"search_direction": "paper", "acceleration": "none"},
-}
-"""The defaults of the plane are the automatic k and Anderson acceleration."""
+METHODS: dict[str, dict[str, object]] = {"fast": {}, "paper": {"method": "paper"}}
 RIGHT_UP_TO = 1e-6
 """Error of displacement and friction force up to which an answer is right."""
 WRONG_FROM = 1e-3
@@ -77,11 +68,6 @@ ALLOWED = {
 """What may come of a case, by what is expected of it."""
 LARGEST_DENSE = 2000
 """Degrees of freedom up to which condition numbers of other than tridiagonal matrices are found."""
-
-
-def methods_of(scene: str) -> dict[str, dict[str, object]]:
-    """Give the two methods that run a scene's cases: options by name."""
-    return PLANE_METHODS if issubclass(CATALOGUE[scene].settings, PlaneSettings) else METHODS
 
 
 def cases_of(scene: str | None = None, *, quick: bool = False) -> list[Case]:
@@ -176,10 +162,10 @@ def judge(outcome: Outcome) -> Verdict:
 def stability(
     matrix: Iterable[Case], report: Callable[[Row], None] = lambda row: None
 ) -> list[Row]:
-    """Run cases by both methods of their scene; `report` is told of each row when it is done."""
+    """Run cases by both methods; `report` is told of each row when it is done."""
     rows = []
     for case in matrix:
-        for method in methods_of(case.scene):
+        for method in METHODS:
             outcome = run_case(case, method)
             rows.append(Row(case, method, outcome, judge(outcome)))
             report(rows[-1])
@@ -188,7 +174,7 @@ def stability(
 
 def run_case(case: Case, method: str) -> Outcome:
     """Run a case to its stop rule, and measure it."""
-    options = methods_of(case.scene)[method]
+    options = METHODS[method]
     try:
         settings = CATALOGUE[case.scene].settings.checked({**PRECISE, **options, **case.changes})
     except SettingError as refusal:

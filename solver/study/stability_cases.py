@@ -13,7 +13,7 @@ RIGHT = "right answer"
 TOLD = "right answer, or told that it is not"
 REFUSED = "refused in words"
 UNCLEAR = "right answer, or told that the reference has several or none"
-PRECISE = {"tolerance": 1e-20, "max_iterations": 1500}
+PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 SMALL = {"elements": 20, "substructures": 4, "instants": 41}
 """A quarter of the work of Table 1."""

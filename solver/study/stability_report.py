@@ -11,8 +11,6 @@ from pathlib import Path
 
 from solver.study.stability import (
     MEANING,
-    METHODS,
-    PLANE_METHODS,
     SAME_UP_TO,
     Row,
     Verdict,
@@ -127,19 +125,11 @@ def notes(apart: Mapping[str, float]) -> list[str]:
         "A run passes if it does not fail and, where the right answer is expected, comes to it. "
         "Errors are distances to the incremental reference, over space and time, relative to it; "
         "to the load or absolute where it is zero.",
-        f"Methods of the bar and the strand: {_methods(METHODS)}. Of the block and the layers: "
-        f"{_methods(PLANE_METHODS)}. Condition numbers: of the assembled stiffness with its "
+        "Condition numbers: of the assembled stiffness with its "
         "support but no contact (K; infinite where contact alone holds a body), and the largest of "
         "the substructures' operators K + B' k B (E).",
         *([_invariance(apart)] if apart else []),
     ]
-
-
-def _methods(methods: Mapping[str, Mapping[str, object]]) -> str:
-    return "; ".join(
-        f"{name}: {', '.join(f'{key}={value}' for key, value in options.items()) or 'the defaults'}"
-        for name, options in methods.items()
-    )
 
 
 def _invariance(apart: Mapping[str, float]) -> str:
