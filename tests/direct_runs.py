@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -14,13 +15,13 @@ from solver.scenes.bar import BarSettings
 
 
 def direct(values: dict[str, Any]) -> Solution:
-    settings = BarSettings.checked({"method": "paper", **values})
+    settings = BarSettings.checked(values)
     problem = discretise(settings)
     return solve(problem, settings, distance=distance_to(incremental(problem), problem))
 
 
 def iterate_number(number: int, values: dict[str, Any]) -> Iterate:
-    settings = BarSettings.checked({"method": "paper", **values})
+    settings = BarSettings.checked(values)
     for iterate in iterations(discretise(settings), settings):
         if iterate.number == number:
             return iterate
@@ -28,5 +29,10 @@ def iterate_number(number: int, values: dict[str, Any]) -> Iterate:
 
 
 def timeless(records: Iterable[Record]) -> list[Record]:
-    """Give records without what is measured, and without what there is of separated bases."""
-    return [replace(entry, seconds=0.0, reduction=()) for entry in records]
+    """Give records without what is measured, what there is of separated bases, and NaN."""
+    plain = []
+    for entry in records:
+        known = math.isfinite(entry.estimated_error)
+        estimated = entry.estimated_error if known else -1.0
+        plain.append(replace(entry, seconds=0.0, reduction=(), estimated_error=estimated))
+    return plain

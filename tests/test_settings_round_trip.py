@@ -65,7 +65,7 @@ def valid_settings(draw):
     if not isinstance(sections, str):
         # Sections are positive, within eight decades of each other.
         values["section_profile"] = [(place, 1.0 + abs(size) % 1e7) for place, size in sections]
-    return BarSettings.checked({"method": "paper", **values})
+    return BarSettings.checked(values)
 
 
 def another(definition):
@@ -129,10 +129,7 @@ def test_result_files_hold_the_same_settings(chosen):
 
 def test_a_saved_file_takes_changes_from_the_command_line(tmp_path):
     saved = tmp_path / "saved.toml"
-    saved.write_text(
-        dump(BarSettings.checked({"method": "paper", "peak": 700.0, "elements": 20})),
-        encoding="utf-8",
-    )
+    saved.write_text(dump(BarSettings.checked({"peak": 700.0, "elements": 20})), encoding="utf-8")
     found = settings_from_command(str(saved), ["peak=800", "load=ramp"])
     assert (found.peak, found.elements, found.load) == (800.0, 20, "ramp")
 
@@ -156,7 +153,7 @@ def test_numbers_out_of_range_or_of_another_kind_are_refused(name):
     assert f"{low:g} to {high:g}" in span
     beyond = [low - 1, high * 2 + 1, 10**400, -(10**400)]
     for value in [*beyond, math.nan, math.inf, -math.inf, True, "many", None, [1.0], {"a": 1}]:
-        text = refusal(lambda value=value: BarSettings.checked({"method": "paper", name: value}))
+        text = refusal(lambda value=value: BarSettings.checked({name: value}))
         assert_names(text, name, json.dumps(value)[:57], span)
 
 
@@ -166,10 +163,10 @@ def test_numbers_out_of_range_or_of_another_kind_are_refused(name):
 def test_whole_numbers_may_be_written_with_a_point_and_nothing_behind_it(name):
     low, _ = DEFINITIONS[name].bounds
     base = {"elements": 100, "substructures": 1}
-    good = BarSettings.checked({"method": "paper", **base, name: low + 1.0}).values()[name]
+    good = BarSettings.checked({**base, name: low + 1.0}).values()[name]
     assert type(good) is int
     assert_names(
-        refusal(lambda: BarSettings.checked({"method": "paper", name: low + 1.5})),
+        refusal(lambda: BarSettings.checked({name: low + 1.5})),
         name,
         str(low + 1.5),
         allowed(DEFINITIONS[name]),
@@ -178,14 +175,14 @@ def test_whole_numbers_may_be_written_with_a_point_and_nothing_behind_it(name):
 
 @pytest.mark.parametrize("value", [1, 0.0, "true", None, []])
 def test_only_true_and_false_are_switches(value):
-    text = refusal(lambda: BarSettings.checked({"method": "paper", "multiscale": value}))
+    text = refusal(lambda: BarSettings.checked({"multiscale": value}))
     assert_names(text, "multiscale", json.dumps(value), "true or false")
 
 
 @pytest.mark.parametrize("name", CHOICES)
 @pytest.mark.parametrize("value", ["nothing", 3, True, None, ["none"], {"a": 1}])
 def test_only_the_names_of_a_choice_are_taken(name, value):
-    text = refusal(lambda: BarSettings.checked({"method": "paper", name: value}))
+    text = refusal(lambda: BarSettings.checked({name: value}))
     assert_names(text, name, json.dumps(value), ", ".join(DEFINITIONS[name].objects))
 
 
@@ -211,7 +208,7 @@ def test_only_the_names_of_a_choice_are_taken(name, value):
     ids=str,
 )
 def test_bad_tables_are_refused_with_their_row(name, value, remedy):
-    text = refusal(lambda: BarSettings.checked({"method": "paper", name: value}))
+    text = refusal(lambda: BarSettings.checked({name: value}))
     assert_names(text, name, json.dumps(value)[:57], ", ".join(DEFINITIONS[name].presets))
     assert remedy in text
 
@@ -263,12 +260,12 @@ def test_a_csv_that_is_missing_binary_or_a_folder_is_refused(tmp_path):
 
 
 def test_unknown_names_are_refused_with_the_nearest_one():
-    text = refusal(lambda: BarSettings.checked({"method": "paper", "friktion": 0.3}))
+    text = refusal(lambda: BarSettings.checked({"friktion": 0.3}))
     assert_names(text, "friktion", "0.3", "substructures, multiscale")
     assert "did you mean friction?" in text
     for name in ("scene", "name", "param", "checked"):
         assert "there is no such setting" in refusal(
-            lambda name=name: BarSettings.checked({"method": "paper", name: "x"})
+            lambda name=name: BarSettings.checked({name: "x"})
         )
 
 
@@ -324,15 +321,11 @@ def test_text_that_is_no_number_is_refused_by_every_front(text):
 
 
 def test_values_that_do_not_fit_together_are_refused():
-    text = refusal(lambda: BarSettings.checked({"method": "paper", "elements": 5}))
+    text = refusal(lambda: BarSettings.checked({"elements": 5}))
     assert_names(text, "substructures", "10", "1 to elements (5)")
-    text = refusal(
-        lambda: BarSettings.checked({"method": "paper", "elements": 20_000, "instants": 20_001})
-    )
+    text = refusal(lambda: BarSettings.checked({"elements": 20_000, "instants": 20_001}))
     assert_names(text, "instants", "20001", "at most 1249")
-    text = refusal(
-        lambda: BarSettings.checked({"method": "paper", "friction_profile": [[0.0, -1.0]]})
-    )
+    text = refusal(lambda: BarSettings.checked({"friction_profile": [[0.0, -1.0]]}))
     assert_names(text, "friction_profile", "-1.0", "factors of at least 0")
 
 
@@ -375,7 +368,7 @@ def test_an_uploaded_file_never_names_another():
 
 @pytest.mark.parametrize("name", list(DEFINITIONS))
 def test_settings_are_immutable(name):
-    chosen = BarSettings.checked({"method": "paper", "load": [[0.0, 1.0], [1.0, 2.0]]})
+    chosen = BarSettings.checked({"load": [[0.0, 1.0], [1.0, 2.0]]})
     before = chosen.values()
     other = another(DEFINITIONS[name])
     for change in (
@@ -389,7 +382,7 @@ def test_settings_are_immutable(name):
 
 
 def test_a_change_gives_new_settings_and_leaves_the_old_ones():
-    chosen = BarSettings.checked({"method": "paper", "load": [[0.0, 1.0], [1.0, 2.0]]})
+    chosen = BarSettings.checked({"load": [[0.0, 1.0], [1.0, 2.0]]})
     changed = chosen.replace(load="ramp")
     assert (chosen.load, changed.load) == (((0.0, 1.0), (1.0, 2.0)), "ramp")
     fewer = chosen.with_change("elements", 4)
@@ -404,6 +397,4 @@ def test_every_setting_says_what_it_is(name):
     default = definition.default
     again = parse(json.dumps(default))
     assert again == default
-    assert (
-        BarSettings.checked({"method": "paper", name: default}).values() == BarSettings().values()
-    )
+    assert BarSettings.checked({name: default}).values() == BarSettings().values()

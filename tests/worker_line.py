@@ -16,8 +16,14 @@ from app.worker.sampler import Sampler
 from solver.latin import Iterate, Record
 from solver.scenes.bar import BarSettings
 
-SHORT = {"tolerance": 1e-8, "max_iterations": 50}
-STALLING = {"tolerance": 1e-30, "elements": 20, "substructures": 4, "max_iterations": 150}
+SHORT = {"method": "paper", "tolerance": 1e-8, "max_iterations": 50}
+STALLING = {
+    "method": "paper",
+    "tolerance": 1e-30,
+    "elements": 20,
+    "substructures": 4,
+    "max_iterations": 150,
+}
 
 
 class Line:

@@ -23,6 +23,8 @@ SPACING = 1.1
 NEAR = 0.2
 """Estimate by the change at which the status step is worth its first trial: the force has changed
 by 4 % in the last third of the iterations, and most statuses are right."""
+ROUNDING = 1e-20
+"""LATIN indicator, a ratio of squares, that is worth a trial whatever has changed."""
 AGAIN = 1.5
 """Ratio of the iteration at which a failed status step is tried again."""
 
@@ -47,16 +49,25 @@ class ErrorEstimate:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._past: deque[tuple[int, Array]] = deque()
-        self._next_trial = 2
+        self._next_trial = 1
         self._step: StatusStep | None = None
         self._has_solver = True
         self.certificate: Certificate | None = None
 
-    def __call__(self, iterate: Iterate) -> float:
-        """Give the estimate; NaN while there is none."""
+    def __call__(self, iterate: Iterate, indicator: float) -> float:
+        """Give the estimate; NaN while there is none.
+
+        Parameters
+        ----------
+        iterate
+            The next one of the run.
+        indicator
+            Its LATIN indicator: where that is rounding, the iterate may be the solution.
+        """
         expected, accuracy = self._by_changes(iterate), self._settings.accuracy
         is_due = iterate.number >= self._next_trial
-        if self.certificate is None and is_due and expected <= max(NEAR, accuracy):
+        is_near = expected <= max(NEAR, accuracy) or indicator <= ROUNDING
+        if self.certificate is None and is_due and is_near:
             self.try_step(iterate)
         if self.certificate is None:
             return expected

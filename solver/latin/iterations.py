@@ -6,11 +6,12 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from numpy.linalg import LinAlgError
 
 from solver.definitions import SettingError
 from solver.discrete import coarser_problems
-from solver.discrete.problem import Array, Problem, space_time
+from solver.discrete.problem import Array, Problem
 from solver.latin.acceleration import Anderson, anderson
 from solver.latin.direction import search_direction
 from solver.latin.direction_update import DirectionUpdate
@@ -39,31 +40,30 @@ def iterations(
 
     Yields
     ------
-    Snapshots, one per iteration; the clock stands still while the consumer has one.
+    Snapshots, one per iteration; the clock bills them too, and stands still while the consumer has
+    one.
     """
-    clock = _Clock(start.seconds if start else 0.0)
-    engine = _Engine(problem, settings, start)
+    clock = Clock(start.seconds if start else 0.0)
+    engine = Engine(problem, settings, start)
     number = start.number if start else 0
-    clock.stop()
-    read = _frozen(engine.incoming)
+    read, outgoing = engine.incoming, engine.outgoing
     history = list(start.history) if start else []
-    outgoing = start.outgoing if start else _frozen(engine.outgoing)
     while True:
         number += 1
-        if engine.turn(clock):
-            read, outgoing, history = _frozen(engine.incoming), _frozen(engine.outgoing), []
+        if engine.turn():
+            read, outgoing, history = engine.incoming, engine.outgoing, []
         local_error = engine.step(number, clock)
-        given = _frozen(engine.incoming)
         history = [*history, outgoing][-engine.remembered :] if engine.remembered else []
-        outgoing = _frozen(engine.outgoing)
+        outgoing = engine.outgoing
+        clock.stop()
         yield Iterate(
             number=number,
             seconds=clock.seconds,
             problem=problem,
             k=engine.k,
             outgoing=outgoing,
-            incoming=given,
-            local_displacement=_frozen(engine.local_displacement),
+            incoming=engine.incoming,
+            local_displacement=engine.local_displacement,
             local_incoming=read,
             reduction=engine.reduction,
             references=engine.references,
@@ -72,7 +72,8 @@ def iterations(
             memory=engine.memory,
             course=engine.course,
         )
-        read = given
+        clock.go_on()
+        read = engine.incoming
 
 
 def _start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
@@ -84,8 +85,16 @@ def _start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
     return None
 
 
-class _Engine:
-    """Both stages at work, with what the options add to them."""
+class Engine:
+    """Both stages at work, with what the options add to them.
+
+    Attributes
+    ----------
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
+    incoming
+        W - F/k of the linear stage, shape (n_rows, n_instants); read-only, and new at every step.
+    """
 
     def __init__(self, problem: Problem, settings: Settings, start: Checkpoint | None) -> None:
         self._problem, self._settings = problem, settings
@@ -108,10 +117,9 @@ class _Engine:
             start = _start(problem, settings, self.k)
         stage: LinearStage[Any] = self._linear_stage
         self._state = stage.start(start)
-        self.incoming = space_time(problem.n_rows, problem.n_instants)
+        self.incoming = self._reflected()
         if start is not None:
             self._recall(start)
-        stage.incoming(self._state, self.incoming)
 
     def _make_stages(self, k: Array) -> None:
         problem, settings = self._problem, self._settings
@@ -131,26 +139,24 @@ class _Engine:
                 self._anderson = anderson(problem, full, settings.anderson_memory)
             self._linear_stage = full
 
-    def turn(self, clock: _Clock) -> bool:
+    def turn(self) -> bool:
         """Change k if it is time to, and say so; W and F stay, or go back to earlier ones."""
         if self._update is None or not self._update.is_due:
             return False
-        clock.go_on()
         outgoing = self.outgoing
         displacement = 0.5 * (outgoing + self.incoming)
         found = self._update.turn(displacement, self.k[:, None] * (outgoing - displacement))
-        if found is not None:
-            displacement, force = found
-            self._make_stages(self._update.course.k)
-            outgoing = displacement + force / self.k[:, None]
-            self._state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
-            self._linear_stage.incoming(self._state, self.incoming)
-        clock.stop()
-        return found is not None
+        if found is None:
+            return False
+        displacement, force = found
+        self._make_stages(self._update.course.k)
+        outgoing = displacement + force / self.k[:, None]
+        self._state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
+        self.incoming = self._reflected()
+        return True
 
-    def step(self, number: int, clock: _Clock) -> float:
+    def step(self, number: int, clock: Clock) -> float:
         """Do one iteration; give the error of a reduced local stage, or 0."""
-        clock.go_on()
         local_error = 0.0
         if self._sampled is not None and self._sampled.is_reduced(number):
             self._sampled(self._state)
@@ -166,22 +172,22 @@ class _Engine:
         self._advance()
         if self._sampled is not None:
             self._sampled.keep_up(number, self._state)
-            if self._sampled.is_reduced(number + 1):
-                # Read by the full local stage alone.
-                clock.stop()
-        self._linear_stage.incoming(self._state, self.incoming)
-        clock.stop()
+        self.incoming = self._reflected()
         return local_error
+
+    def _reflected(self) -> Array:
+        field = np.empty((self._problem.n_rows, self._problem.n_instants), order="F")
+        return _read_only(self._linear_stage.incoming(self._state, field))
 
     @property
     def outgoing(self) -> Array:
-        """W + F/k, shape (n_rows, n_instants)."""
-        return self._linear_stage.to_boundary(self._state)
+        """W + F/k of the linear stage, shape (n_rows, n_instants); new at every call."""
+        return _read_only(self._linear_stage.to_boundary(self._state))
 
     @property
     def local_displacement(self) -> Array:
-        """W^ of the local stage; the next step overwrites it."""
-        return self._local_stage.displacement
+        """W^ of the local stage, shape (n_rows, n_instants); new at every step."""
+        return _read_only(self._local_stage.displacement)
 
     @property
     def reduction(self) -> Reduction | None:
@@ -228,15 +234,15 @@ class _Engine:
         for outgoing in start.history:
             state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
             before = [part.copy(order="F") for part in state]
-            self._linear_stage.incoming(state, self.incoming)
-            self._linear_stage.read(self._local_stage(self.incoming))
+            incoming = self._linear_stage.incoming(state, np.empty_like(self.incoming))
+            self._linear_stage.read(self._local_stage(incoming))
             self._linear_stage.advance(state, self._settings.relaxation)
             self._anderson.observe(before, state)
         self._anderson.seen, self._anderson.count = seen, count
         self._anderson.smallest = smallest
 
 
-class _Clock:
+class Clock:
     """Time that the method takes; it runs from birth until stopped."""
 
     def __init__(self, seconds: float) -> None:
@@ -244,15 +250,16 @@ class _Clock:
         self.go_on()
 
     def go_on(self) -> None:
+        """Run again."""
         self._since: float | None = time.perf_counter()
 
     def stop(self) -> None:
+        """Stand still."""
         if self._since is not None:
             self.seconds += time.perf_counter() - self._since
         self._since = None
 
 
-def _frozen(field: Array) -> Array:
-    copy = field.copy(order="F")
-    copy.flags.writeable = False
-    return copy
+def _read_only(field: Array) -> Array:
+    field.flags.writeable = False
+    return field

@@ -32,7 +32,7 @@ class LocalStage:
     Attributes
     ----------
     displacement
-        W^ of the last call, shape (n_rows, n_instants); the next call overwrites it.
+        W^ of the last call, shape (n_rows, n_instants); the next call gives a new one.
     """
 
     def __init__(
@@ -44,6 +44,7 @@ class LocalStage:
         shape = (len(rows), len(instants))
         self.displacement = space_time(*shape)
         self._outgoing = space_time(*shape)
+        self._given: list[tuple[slice | Indices, Array]] = []
         self._laws = [
             _law(law, place, k[rows], len(instants)) for law in together(problem.rubbing.values())
         ]
@@ -61,7 +62,7 @@ class LocalStage:
         ]
         for law in problem.of_law(Dirichlet):
             assert isinstance(law, Dirichlet)
-            self.displacement[place[law.rows]] = law.displacement[:, instants]
+            self._given.append((as_slice(place[law.rows]), law.displacement[:, instants]))
 
     def __call__(self, incoming: Array) -> Array:
         """Obey all laws.
@@ -75,7 +76,9 @@ class LocalStage:
         -------
         W^ + F^/k, same shape; the next call overwrites it.
         """
-        found = self.displacement
+        found = self.displacement = np.empty_like(self._outgoing)
+        for rows, displacement in self._given:
+            found[rows] = displacement
         for law in self._laws:
             law(incoming, found)
         if self._cuts is not None:

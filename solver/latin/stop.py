@@ -111,12 +111,12 @@ class StopRules:
         status: Status | None = _diverged(iterate.number)
         behaviour, finish, estimated = None, None, math.nan
         if math.isfinite(indicator):
-            estimated = self._estimate(iterate)
+            estimated = self._estimate(iterate, indicator)
             behaviour = self._agreement_asked(iterate, indicator, estimated)
             status = self._ending(iterate, indicator, estimated, behaviour)
             finish = self._finished(iterate, status)
             if finish is not None:
-                estimated = self._estimate(iterate)
+                estimated = self._estimate(iterate, indicator)
                 status = None
         self.seconds += time.perf_counter() - began
         seconds = iterate.seconds + self.seconds
