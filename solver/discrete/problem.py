@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.laws import Contact, Dirichlet, Friction, Interface, Neumann, Perfect
+from solver.laws.friction import as_slice
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -223,6 +224,12 @@ class Problem:
         pairs = [(rows, law.weights) for law in self.rubbing.values() for rows in sliding_rows(law)]
         rows, weights = zip(*pairs, strict=True)
         return np.concatenate(rows), np.concatenate(weights)
+
+    @cached_property
+    def rubbing_rows(self) -> slice | Indices:
+        """Rows of all components of the bodies above at interfaces with friction."""
+        parts = [rows for law in self.rubbing.values() for rows in components(law)]
+        return as_slice(np.unique(np.concatenate(parts)))
 
     @cached_property
     def friction(self) -> Friction:

@@ -105,9 +105,15 @@ class ErrorEstimate:
         self.certificate = found
         return True
 
+    @property
+    def level(self) -> float:
+        """What the estimate has to fall below for anything to be done."""
+        accuracy = float(self._settings.accuracy)
+        return accuracy if self.is_proven or not self._has_solver else max(NEAR, accuracy)
+
     def _by_changes(self, iterate: Iterate) -> float:
         """Give what is left, if the force goes on to change as it did."""
-        force, number = iterate.contact_force, iterate.number
+        force, number = _force_on_rows(iterate), iterate.number
         past = self._past
         while len(past) > 1 and past[1][0] <= LOOK_BACK * number:
             past.popleft()
@@ -123,3 +129,11 @@ class ErrorEstimate:
     def __getstate__(self) -> dict[str, object]:
         """Go elsewhere without what belongs to one problem: it is found again there."""
         return {**self.__dict__, "_step": None, "certificate": None, "_past": deque()}
+
+
+def _force_on_rows(iterate: Iterate) -> Array:
+    """Give the forces on the rows of the bodies above that rub, in a row, scaled."""
+    rows = iterate.problem.rubbing_rows
+    difference = iterate.outgoing[rows] - iterate.incoming[rows]
+    difference *= 0.5 * iterate.k[rows, None]
+    return difference.reshape(-1, order="F")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
-from solver.latin.indicators import behaviour_indicator
+from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
 from solver.latin.stop import CANCELLED, Ending, Status, StopRules, Verdict
@@ -27,9 +27,9 @@ class Record:
     indicator
         LATIN indicator eta (paper, eq. 2).
     behaviour, behaviour_largest
-        The k-free indicator, and the largest entry of its map; NaN where nobody asked.
+        The k-free indicator, and the largest entry of its map.
     estimated_error
-        Of the contact force, relative, without a reference; NaN where there is no estimate yet.
+        Of the contact force, relative, without a reference; NaN where it is not estimated.
     error_displacement, error_force
         Relative L2 distance to the reference over space and time.
     reduction
@@ -76,18 +76,23 @@ def record(
     distance
         To a reference, or None.
     watch
-        Whether anybody wants the k-free indicator of every iteration.
+        Whether anybody wants indicators and estimate of every iteration.
     """
-    behaviour = verdict.behaviour
-    if behaviour is None and watch:
-        behaviour = behaviour_indicator(iterate)
+    indicator, behaviour = verdict.indicator, verdict.behaviour
+    estimated = verdict.estimated_error
+    if watch:
+        behaviour = behaviour or behaviour_indicator(iterate)
+        if math.isnan(indicator):
+            indicator = latin_indicator(iterate)
+        if math.isnan(estimated) and verdict.certificate is not None:
+            estimated = verdict.certificate.distance.of_friction_force(iterate)
     return Record(
         iteration=iterate.number,
         seconds=verdict.seconds,
-        indicator=verdict.indicator,
+        indicator=indicator,
         behaviour=behaviour.total if behaviour else math.nan,
         behaviour_largest=behaviour.largest if behaviour else math.nan,
-        estimated_error=verdict.estimated_error,
+        estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
         reduction=iterate.reduction.records if iterate.reduction else (),
@@ -132,7 +137,7 @@ def solve(
     distance
         To a reference, for the errors in the records.
     watch
-        Whether the records shall hold the k-free indicator of every iteration.
+        Whether the records shall hold the indicators of every iteration.
     cancelled
         Asked after every iteration.
     """

@@ -11,10 +11,14 @@ from solver.latin.estimate import ErrorEstimate
 from solver.latin.finish import finished
 from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
+from solver.latin.lookout import Lookout
+from solver.latin.status_step import Certificate
 from solver.settings import Settings
 
 STALL_WINDOW = 200
 STALL_FACTOR = 0.99
+SELDOM = 16
+"""Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
 ROUNDING = 1e-24
 LARGEST_VIOLATION = 1e-2
 SMALLEST_VIOLATION = 1e-12
@@ -61,11 +65,13 @@ class Verdict:
     seconds
         Time that the run took so far, the stop rules' own included, s.
     indicator, behaviour, estimated_error
-        As in `Record`; the k-free indicator is None unless the rules needed it.
+        As in `Record`; NaN, or None, where the rules did not need them.
     status
         How the run ends, or None if it goes on.
+    certificate
+        The solution of the discrete problem, if a status step has found it.
     finished
-        The certified solution that a status step made of the iterate, if one did.
+        The iterate that it makes, where the run ends with it.
     """
 
     seconds: float
@@ -73,6 +79,7 @@ class Verdict:
     behaviour: BehaviourIndicator | None
     estimated_error: float
     status: Status | None
+    certificate: Certificate | None = None
     finished: Iterate | None = None
 
 
@@ -100,6 +107,7 @@ class StopRules:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._estimate = ErrorEstimate(settings)
+        self._of_estimate, self._of_indicator = Lookout(), Lookout()
         self._best = math.inf
         self._best_at = 0
         self.seconds = 0.0
@@ -107,20 +115,39 @@ class StopRules:
     def judge(self, iterate: Iterate) -> Verdict:
         """Say whether the run ends after an iterate, and how."""
         began = time.perf_counter()
-        indicator = latin_indicator(iterate)
-        status: Status | None = _diverged(iterate.number)
-        behaviour, finish, estimated = None, None, math.nan
-        if math.isfinite(indicator):
-            estimated = self._estimate(iterate, indicator)
-            behaviour = self._agreement_asked(iterate, indicator, estimated)
-            status = self._ending(iterate, indicator, estimated, behaviour)
-            finish = self._finished(iterate, status)
-            if finish is not None:
-                estimated = self._estimate(iterate, indicator)
-                status = None
+        verdict = self._judged(iterate)
         self.seconds += time.perf_counter() - began
-        seconds = iterate.seconds + self.seconds
-        return Verdict(seconds, indicator, behaviour, estimated, status, finish)
+        return replace(verdict, seconds=iterate.seconds + self.seconds)
+
+    def _judged(self, iterate: Iterate) -> Verdict:
+        if not math.isfinite(float(iterate.incoming.sum())):
+            return Verdict(0.0, math.nan, None, math.nan, _diverged(iterate.number))
+        indicator, estimated = self._figures(iterate)
+        behaviour = self._agreement_asked(iterate, indicator, estimated)
+        status = self._ending(iterate, indicator, estimated, behaviour)
+        finish = self._finished(iterate, status)
+        certificate = self._estimate.certificate
+        if finish is not None and certificate is not None:
+            estimated = certificate.distance.of_friction_force(iterate)
+            return Verdict(0.0, indicator, behaviour, estimated, None, certificate, finish)
+        return Verdict(0.0, indicator, behaviour, estimated, status, certificate)
+
+    def _figures(self, iterate: Iterate) -> tuple[float, float]:
+        """Compute the LATIN indicator and the estimate, or NaN where they cannot matter yet."""
+        settings, number = self._settings, iterate.number
+        indicator = estimated = math.nan
+        is_last = number in (1, settings.max_iterations)
+        if is_last or number % SELDOM == 0:
+            indicator = latin_indicator(iterate)
+        if self._of_estimate.is_due(number) or is_last:
+            estimated = self._estimate(iterate, indicator)
+            self._of_estimate.saw(number, estimated, self._estimate.level)
+        if estimated <= settings.accuracy:
+            if math.isnan(indicator):
+                indicator = latin_indicator(iterate)
+            self._of_indicator.saw(number, indicator, settings.tolerance)
+            self._of_estimate.next = self._of_indicator.next
+        return indicator, estimated
 
     def close(self, finish: Iterate) -> Verdict:
         """Judge the certified solution that ends a run."""
@@ -128,7 +155,8 @@ class StopRules:
         residual = finish.residual or 0.0
         behaviour = behaviour_indicator(finish)
         status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
-        return Verdict(seconds, latin_indicator(finish), behaviour, residual, status)
+        indicator = latin_indicator(finish)
+        return Verdict(seconds, indicator, behaviour, residual, status, self._estimate.certificate)
 
     def finish(self, iterate: Iterate) -> Iterate:
         """Put the certified solution in the place of an iterate, from which a step found it."""
@@ -154,7 +182,8 @@ class StopRules:
         """Compute the k-free indicator, which is dear, where all else says converged or stalled."""
         settings = self._settings
         is_low = indicator <= settings.tolerance
-        is_last = iterate.number in (settings.max_iterations, self._best_at + STALL_WINDOW)
+        is_stalled = math.isfinite(indicator) and iterate.number >= self._best_at + STALL_WINDOW
+        is_last = is_stalled or iterate.number >= settings.max_iterations
         if (is_low and estimated <= settings.accuracy) or is_last:
             return behaviour_indicator(iterate)
         return None
@@ -175,7 +204,7 @@ class StopRules:
                 return Status(Ending.CONVERGED, _EXPECTED)
         if indicator < STALL_FACTOR * self._best:
             self._best, self._best_at = indicator, iteration
-        if iteration - self._best_at >= STALL_WINDOW:
+        if math.isfinite(indicator) and iteration - self._best_at >= STALL_WINDOW:
             return Status(Ending.STALLED, self._stall_advice(agreed))
         if iteration >= settings.max_iterations:
             still = indicator <= settings.tolerance

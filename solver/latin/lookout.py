@@ -1,0 +1,34 @@
+"""When to look again at a figure that falls towards a level: seldom while that is far off."""
+
+from __future__ import annotations
+
+import math
+
+SHARE = 8
+"""At the latest after this part of the iterations done so far."""
+
+
+class Lookout:
+    """The next iteration at which a figure is worth computing.
+
+    Half way to where the last two values would have it cross its level, so that it is missed by
+    nothing but a sudden fall.
+    """
+
+    def __init__(self) -> None:
+        self.next = 1
+        self._last = (0, math.nan)
+
+    def is_due(self, iteration: int) -> bool:
+        """Tell whether to look at this iteration."""
+        return iteration >= self.next
+
+    def saw(self, iteration: int, value: float, level: float) -> None:
+        """Take in a value of the figure."""
+        before, last = self._last
+        self._last = iteration, value
+        self.next = iteration + 1
+        if level < value < last and iteration > before:
+            rate = math.log(last / value) / (iteration - before)
+            left = 0.5 * math.log(value / level) / rate
+            self.next += int(min(left, iteration / SHARE))
