@@ -29,7 +29,7 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
-from solver.study.iteration_cost import print_iteration_cost
+from solver.study.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
 from solver.study.stability import cases_of, invariance, stability
@@ -197,6 +197,8 @@ def _benchmark(chosen: argparse.Namespace) -> int:
     _check_repeats(chosen)
     measure = print_reduction_cost if chosen.reduction else print_iteration_cost
     measure(chosen.repeats)
+    if not chosen.reduction:
+        print_overheads(chosen.repeats)
     return 0
 
 

@@ -39,6 +39,8 @@ class ErrorEstimate:
     ----------
     settings
         Of the run.
+    proves
+        Whether status steps are tried at all.
 
     Attributes
     ----------
@@ -46,12 +48,12 @@ class ErrorEstimate:
         The solution, once it is known.
     """
 
-    def __init__(self, settings: Settings) -> None:
-        self._settings = settings
+    def __init__(self, settings: Settings, *, proves: bool = True) -> None:
+        self._accuracy, self._is_reduced = float(settings.accuracy), settings.is_reduced
         self._past: deque[tuple[int, Array]] = deque()
         self._next_trial = 1
         self._step: StatusStep | None = None
-        self._has_solver = True
+        self._has_solver = proves
         self.certificate: Certificate | None = None
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
@@ -64,7 +66,7 @@ class ErrorEstimate:
         indicator
             Its LATIN indicator: where that is rounding, the iterate may be the solution.
         """
-        expected, accuracy = self._by_changes(iterate), self._settings.accuracy
+        expected, accuracy = self._by_changes(iterate), self._accuracy
         is_due = iterate.number >= self._next_trial
         is_near = expected <= max(NEAR, accuracy) or indicator <= ROUNDING
         if self.certificate is None and is_due and is_near:
@@ -87,7 +89,7 @@ class ErrorEstimate:
         if not self._has_solver:
             return False
         # Bases that are too small converge to something else, which no change shows.
-        return self._settings.is_reduced or is_affordable(iterate.problem, iterate.number)
+        return self._is_reduced or is_affordable(iterate.problem, iterate.number)
 
     def try_step(self, iterate: Iterate) -> bool:
         """Try the status step from an iterate, unless it costs too much; tell whether it holds."""
@@ -100,7 +102,7 @@ class ErrorEstimate:
         except NoReferenceError:
             self._has_solver = False
             return False
-        if found is None or found.residual > self._settings.accuracy:
+        if found is None or found.residual > self._accuracy:
             return False
         self.certificate = found
         return True
@@ -108,8 +110,8 @@ class ErrorEstimate:
     @property
     def level(self) -> float:
         """What the estimate has to fall below for anything to be done."""
-        accuracy = float(self._settings.accuracy)
-        return accuracy if self.is_proven or not self._has_solver else max(NEAR, accuracy)
+        is_known = self.is_proven or not self._has_solver
+        return self._accuracy if is_known else max(NEAR, self._accuracy)
 
     def _by_changes(self, iterate: Iterate) -> float:
         """Give what is left, if the force goes on to change as it did."""

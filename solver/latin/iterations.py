@@ -98,6 +98,8 @@ class Engine:
 
     def __init__(self, problem: Problem, settings: Settings, start: Checkpoint | None) -> None:
         self._problem, self._settings = problem, settings
+        # A setting takes longer to read than the law of friction to obey.
+        self._relaxation: float = settings.relaxation
         k = search_direction(problem, settings)
         k.flags.writeable = False
         self._update: DirectionUpdate | None = None
@@ -217,10 +219,10 @@ class Engine:
 
     def _advance(self) -> None:
         if self._anderson is None:
-            self._linear_stage.advance(self._state, self._settings.relaxation)
+            self._linear_stage.advance(self._state, self._relaxation)
             return
         before = [part.copy(order="F") for part in self._state]
-        self._linear_stage.advance(self._state, self._settings.relaxation)
+        self._linear_stage.advance(self._state, self._relaxation)
         self._anderson(before, self._state)
 
     def _recall(self, start: Checkpoint) -> None:
@@ -236,7 +238,7 @@ class Engine:
             before = [part.copy(order="F") for part in state]
             incoming = self._linear_stage.incoming(state, np.empty_like(self.incoming))
             self._linear_stage.read(self._local_stage(incoming))
-            self._linear_stage.advance(state, self._settings.relaxation)
+            self._linear_stage.advance(state, self._relaxation)
             self._anderson.observe(before, state)
         self._anderson.seen, self._anderson.count = seen, count
         self._anderson.smallest = smallest

@@ -11,8 +11,8 @@ SHARE = 8
 class Lookout:
     """The next iteration at which a figure is worth computing.
 
-    Half way to where the last two values would have it cross its level, so that it is missed by
-    nothing but a sudden fall.
+    Half way to where the last two values would have it cross its level; while it does not fall,
+    after half of the longest wait. So it is missed by little, and only if it falls suddenly.
     """
 
     def __init__(self) -> None:
@@ -27,8 +27,9 @@ class Lookout:
         """Take in a value of the figure."""
         before, last = self._last
         self._last = iteration, value
-        self.next = iteration + 1
+        left = 0.0
         if level < value < last and iteration > before:
             rate = math.log(last / value) / (iteration - before)
             left = 0.5 * math.log(value / level) / rate
-            self.next += int(min(left, iteration / SHARE))
+        least = 0 if value <= level else iteration // (2 * SHARE)
+        self.next = iteration + 1 + max(int(min(left, iteration / SHARE)), least)

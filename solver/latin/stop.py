@@ -98,15 +98,26 @@ class StopRules:
     A run has converged when the estimated error of its contact force is below `accuracy` and both
     indicators agree, or when a status step ends it with a certified solution.
 
+    Parameters
+    ----------
+    settings
+        Of the run.
+    proves
+        Whether status steps are tried at all.
+
     Attributes
     ----------
     seconds
         Time that they took so far.
     """
 
-    def __init__(self, settings: Settings) -> None:
-        self._settings = settings
-        self._estimate = ErrorEstimate(settings)
+    def __init__(self, settings: Settings, *, proves: bool = True) -> None:
+        # Plain values: a setting takes longer to read than an iteration has for all of this.
+        self._accuracy, self._tolerance = float(settings.accuracy), float(settings.tolerance)
+        self._most, self._relaxation = settings.max_iterations, settings.relaxation
+        self._is_reduced = settings.is_reduced
+        self._may_finish = settings.finish == "status" and not settings.is_reduced
+        self._estimate = ErrorEstimate(settings, proves=proves)
         self._of_estimate, self._of_indicator = Lookout(), Lookout()
         self._best = math.inf
         self._best_at = 0
@@ -115,37 +126,38 @@ class StopRules:
     def judge(self, iterate: Iterate) -> Verdict:
         """Say whether the run ends after an iterate, and how."""
         began = time.perf_counter()
-        verdict = self._judged(iterate)
-        self.seconds += time.perf_counter() - began
-        return replace(verdict, seconds=iterate.seconds + self.seconds)
-
-    def _judged(self, iterate: Iterate) -> Verdict:
         if not math.isfinite(float(iterate.incoming.sum())):
-            return Verdict(0.0, math.nan, None, math.nan, _diverged(iterate.number))
+            status = _diverged(iterate.number)
+            return Verdict(self._billed(iterate, began), math.nan, None, math.nan, status)
         indicator, estimated = self._figures(iterate)
         behaviour = self._agreement_asked(iterate, indicator, estimated)
-        status = self._ending(iterate, indicator, estimated, behaviour)
-        finish = self._finished(iterate, status)
+        status_now = self._ending(iterate, indicator, estimated, behaviour)
+        finish = self._finished(iterate, status_now)
         certificate = self._estimate.certificate
         if finish is not None and certificate is not None:
-            estimated = certificate.distance.of_friction_force(iterate)
-            return Verdict(0.0, indicator, behaviour, estimated, None, certificate, finish)
-        return Verdict(0.0, indicator, behaviour, estimated, status, certificate)
+            estimated, status_now = certificate.distance.of_friction_force(iterate), None
+        seconds = self._billed(iterate, began)
+        return Verdict(seconds, indicator, behaviour, estimated, status_now, certificate, finish)
+
+    def _billed(self, iterate: Iterate, began: float) -> float:
+        """Put the time since `began` on the bill; give the whole of it."""
+        self.seconds += time.perf_counter() - began
+        return iterate.seconds + self.seconds
 
     def _figures(self, iterate: Iterate) -> tuple[float, float]:
         """Compute the LATIN indicator and the estimate, or NaN where they cannot matter yet."""
-        settings, number = self._settings, iterate.number
+        number = iterate.number
         indicator = estimated = math.nan
-        is_last = number in (1, settings.max_iterations)
+        is_last = number in (1, self._most)
         if is_last or number % SELDOM == 0:
             indicator = latin_indicator(iterate)
         if self._of_estimate.is_due(number) or is_last:
             estimated = self._estimate(iterate, indicator)
             self._of_estimate.saw(number, estimated, self._estimate.level)
-        if estimated <= settings.accuracy:
+        if estimated <= self._accuracy:
             if math.isnan(indicator):
                 indicator = latin_indicator(iterate)
-            self._of_indicator.saw(number, indicator, settings.tolerance)
+            self._of_indicator.saw(number, indicator, self._tolerance)
             self._of_estimate.next = self._of_indicator.next
         return indicator, estimated
 
@@ -168,7 +180,7 @@ class StopRules:
 
     def _finished(self, iterate: Iterate, status: Status | None) -> Iterate | None:
         """Give the certified solution in the place of an iterate, if the run may end with it."""
-        if self._settings.finish != "status" or self._settings.is_reduced:
+        if not self._may_finish:
             return None
         gives_up = status is not None and status.ending is not Ending.CONVERGED
         if self._estimate.certificate is None and gives_up:
@@ -180,11 +192,10 @@ class StopRules:
         self, iterate: Iterate, indicator: float, estimated: float
     ) -> BehaviourIndicator | None:
         """Compute the k-free indicator, which is dear, where all else says converged or stalled."""
-        settings = self._settings
-        is_low = indicator <= settings.tolerance
+        is_low = indicator <= self._tolerance
         is_stalled = math.isfinite(indicator) and iterate.number >= self._best_at + STALL_WINDOW
-        is_last = is_stalled or iterate.number >= settings.max_iterations
-        if (is_low and estimated <= settings.accuracy) or is_last:
+        is_last = is_stalled or iterate.number >= self._most
+        if (is_low and estimated <= self._accuracy) or is_last:
             return behaviour_indicator(iterate)
         return None
 
@@ -195,19 +206,19 @@ class StopRules:
         estimated: float,
         behaviour: BehaviourIndicator | None,
     ) -> Status | None:
-        settings, iteration = self._settings, iterate.number
-        agreed = behaviour is not None and behaviour.total <= agreement(settings.tolerance)
-        if indicator <= settings.tolerance and agreed and estimated <= settings.accuracy:
+        iteration = iterate.number
+        agreed = behaviour is not None and behaviour.total <= agreement(self._tolerance)
+        if indicator <= self._tolerance and agreed and estimated <= self._accuracy:
             if self._estimate.is_proven:
                 return Status(Ending.CONVERGED, _PROVEN)
-            if not settings.is_reduced and not self._estimate.can_be_proven(iterate):
+            if not self._is_reduced and not self._estimate.can_be_proven(iterate):
                 return Status(Ending.CONVERGED, _EXPECTED)
         if indicator < STALL_FACTOR * self._best:
             self._best, self._best_at = indicator, iteration
         if math.isfinite(indicator) and iteration - self._best_at >= STALL_WINDOW:
             return Status(Ending.STALLED, self._stall_advice(agreed))
-        if iteration >= settings.max_iterations:
-            still = indicator <= settings.tolerance
+        if iteration >= self._most:
+            still = indicator <= self._tolerance
             laws = " before the contact force is known to be accurate" if still else ""
             return Status(Ending.EXHAUSTED, f"The iterations are used up{laws}. {self._remedy()}")
         return None
@@ -221,17 +232,17 @@ class StopRules:
                 "friction force is too small beside the load, or k too far from the stiffness, "
                 "for more digits. Bring friction, the load and k_scale nearer to each other."
             )
-        if self._best <= self._settings.tolerance:
+        if self._best <= self._tolerance:
             return (
                 "The LATIN indicator is below the tolerance, but the interface laws do not hold: "
                 "the k-free indicator says so. Try another k_scale."
             )
-        if self._settings.relaxation > 0.9:
+        if self._relaxation > 0.9:
             return "The indicator does not fall any more. Lower the relaxation to 0.8."
         return f"The indicator does not fall any more. {self._remedy()}"
 
     def _remedy(self) -> str:
-        if self._settings.is_reduced:
+        if self._is_reduced:
             return "The separated bases may be too small: raise pgd_modes, lower pgd_tolerance."
         return "Raise max_iterations, loosen the tolerance, or try another k_scale."
 

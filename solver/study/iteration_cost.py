@@ -6,15 +6,20 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from solver.discrete import discretise
 from solver.discrete.problem import Problem, space_time
+from solver.files import scene_settings
+from solver.latin import StopRules, iterations, solve
 from solver.latin.direction import search_direction
+from solver.latin.iterations import Clock, Engine
 from solver.latin.linear import DenseResponse, FullLinearStage
 from solver.latin.local import LocalStage
 from solver.scenes.bar import BarSettings
+from solver.settings import Settings
 
 SIZES = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
 
@@ -136,3 +141,70 @@ def print_iteration_cost(repeats: int) -> None:
         cells = " ".join(f"{1e3 * part:8.3f}" for part in parts)
         each = 1e9 * cost.iteration / (nodes * instants)
         print(f"{nodes:>8} x {instants:<6} {cells} {cost.iteration / cost.floor:9.2f} {each:9.1f}")
+
+
+OVERHEADS: tuple[tuple[str, dict[str, object]], ...] = (
+    ("bar", {"method": "paper"}),
+    ("bar", {}),
+    ("block", {}),
+    ("layers", {}),
+)
+
+
+@dataclass(frozen=True)
+class Overhead:
+    """What a run pays beside both stages, as shares of an iteration's own work.
+
+    Attributes
+    ----------
+    own
+        Seconds of an iteration: both stages, the coarse problem, acceleration.
+    snapshot, stop
+        Of making an iterate that can be kept, and of the stop rules without the status step.
+    """
+
+    own: float
+    snapshot: float
+    stop: float
+
+
+def overhead(settings: Settings, repeats: int) -> Overhead:
+    """Measure a run up to its accuracy in three ways, interleaved: bare, with iterates, judged."""
+    settings = settings.replace(finish="none")
+    problem = discretise(settings)
+    number = len(solve(problem, settings, watch=False).records)
+
+    def bare() -> None:
+        engine, clock = Engine(problem, settings, None), Clock(0.0)
+        for count in range(1, number + 1):
+            engine.step(count, clock)
+
+    def kept() -> None:
+        for _ in islice(iterations(problem, settings), number):
+            pass
+
+    def judged_without_step() -> None:
+        rules = StopRules(settings, proves=False)
+        for iterate in islice(iterations(problem, settings), number):
+            rules.judge(iterate)
+
+    ways: list[Callable[[], object]] = [bare, kept, judged_without_step]
+    times = [[_seconds(way, 1) for way in ways] for _ in range(repeats)]
+    own, snapshot, stop = (
+        statistics.median(found)
+        for found in zip(*((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True)
+    )
+    return Overhead(own / number, snapshot, stop)
+
+
+def print_overheads(repeats: int) -> None:
+    """Print what runs pay for their snapshots and their stop rules."""
+    print(f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}")
+    print(f"{'scene':<8} {'method':<8} {'own, ms':>8} {'snapshot':>9} {'stop test':>9}")
+    for scene, changes in OVERHEADS:
+        settings = scene_settings(scene).checked(changes)
+        found = overhead(settings, repeats)
+        print(
+            f"{scene:<8} {settings.method:<8} {1e3 * found.own:8.3f} "
+            f"{100 * found.snapshot:7.0f} % {100 * found.stop:7.0f} %"
+        )
