@@ -27,6 +27,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
+from solver.study import survey_report
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
 from solver.study.iteration_cost import print_iteration_cost, print_overheads
@@ -37,6 +38,7 @@ from solver.study.stability_report import HEAD, line, notes, passes, prepare, wr
 from solver.study.stability_report import summary as summary_of
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
+from solver.study.survey import Verdict, survey
 
 REFUSED = 2
 
@@ -102,6 +104,14 @@ def _parser() -> argparse.ArgumentParser:
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
     stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
     stable.set_defaults(command=_stability)
+    random = commands.add_parser("survey", help="random runs of all scenes, each judged")
+    random.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
+    random.add_argument("--runs", type=int, default=100, help="number of runs")
+    random.add_argument("--first", type=int, default=0, help="number of the first row")
+    random.add_argument("--seed", type=int, default=1, help="of the draws")
+    random.add_argument("--row", type=int, help="this row of one scene alone")
+    random.add_argument("--out", type=Path, default=Path("survey"), metavar="DIR")
+    random.set_defaults(command=_survey)
     return parser
 
 
@@ -265,3 +275,27 @@ def _stability(chosen: argparse.Namespace) -> int:
         raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
     print("\n".join(["", summary_of(rows), *notes(apart), f"{len(files)} files in {chosen.out}"]))
     return 0 if passes(rows, apart) else 1
+
+
+def _survey(chosen: argparse.Namespace) -> int:
+    scenes = [scene_settings(scene).scene for scene in chosen.scenes] or list(CATALOGUE)
+    for name in ("runs", "first", "seed", "row"):
+        least, value = 1 if name == "runs" else 0, getattr(chosen, name)
+        if value is not None and value < least:
+            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
+    first, runs = (chosen.first, chosen.runs) if chosen.row is None else (chosen.row, 1)
+    numbers = range(first, first + runs)
+    try:
+        survey_report.prepare(chosen.out)
+        print(survey_report.HEAD)
+        rows = survey(scenes, numbers, chosen.seed, survey_report.tell)
+        files = survey_report.write_report(rows, chosen.out)
+    except BrokenPipeError:
+        raise
+    except OSError as problem:
+        allowed_folder = "a folder that can be made and written to"
+        raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
+    counts, summed = aligned(survey_report.table_of_counts(rows)), survey_report.summary(rows)
+    print("\n".join(["", counts, "", summed, *survey_report.wrong_lines(rows)]))
+    print(f"{len(files)} files in {chosen.out}")
+    return int(any(row.verdict is Verdict.WRONG for row in rows))

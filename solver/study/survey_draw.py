@@ -1,0 +1,218 @@
+"""Random settings of any scene: wide in mesh, cuts, loads, profiles and method, yet not senseless.
+
+Every setting is drawn by its own definition, over the range that its slider shows, so that a new
+one is drawn as well. What has to fit together is drawn together: mesh and cuts, elements and
+their aspect, and loads, which are measured by what friction can carry.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import param
+from numpy.random import Generator
+
+from solver.definitions import Curve, Parameter, SettingError, about
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+from solver.study.survey_loads import LOADS
+
+LARGEST_FIELD = 12_000
+"""Displacements times instants of a run, at most: a thousand iterations then stay within seconds;
+a matter of counts, not of clocks, so that a row is the same on every machine."""
+MOST_INSTANTS = 101
+MESHES = {
+    "bar": {"elements": (10, 800)},
+    "strand": {"elements": (10, 400), "wires": (2, 12)},
+    "block": {"elements": (4, 96), "elements_up": (1, 32)},
+    "layers": {"elements": (4, 96), "elements_up": (1, 4), "layers": (2, 6)},
+}
+"""Numbers of a mesh, all sizes alike; a scene without an entry has 10 to 800 elements."""
+CUTS = {"substructures": ("elements", 50), "substructures_up": ("elements_up", 6)}
+"""Numbers of parts, at most that of these elements, and this many."""
+WIDE = {"poisson": (0.0, 0.4999), "friction": (0.02, 2.0), "relaxation": (0.4, 1.0)}
+"""Ranges other than those of the sliders."""
+KEPT = {"max_iterations", "method"}
+"""Settings that are not drawn by their definition alone."""
+CHANGED = 0.15
+"""How often a setting differs from its default."""
+FOOLISH = 10.0
+"""Factor on k, or its inverse, from which on it counts as foolish."""
+TRIALS = 1000
+
+
+def draw(scene: str, seed: int, row: int) -> Settings:
+    """Draw the settings of one row of a survey; the same numbers give the same settings.
+
+    Parameters
+    ----------
+    scene
+        A name of the catalogue.
+    seed, row
+        Of the survey, and the row's number in it.
+
+    Raises
+    ------
+    SettingError
+        If the settings refused every draw.
+    """
+    generator = np.random.default_rng([seed, row, *scene.encode()])
+    kind = CATALOGUE[scene].settings
+    for _ in range(TRIALS):
+        try:
+            return _without_idle(kind.checked(_values(kind, generator)))
+        except SettingError as refusal:
+            last = refusal
+    raise last
+
+
+def is_foolish(settings: Settings) -> bool:
+    """Tell whether a factor on k, or what they make together, is far from one."""
+    factors = [
+        value
+        for name, value in settings.values().items()
+        if name.startswith("k_") and name.endswith("_scale")
+    ]
+    common, *others = [math.log(factor) for factor in factors]
+    sizes = [abs(common), *(abs(common + other) for other in others)]
+    return max(sizes) > math.log(FOOLISH) * (1.0 + 1e-12)
+
+
+def log_uniform(generator: Generator, low: float, high: float) -> float:
+    """Draw a positive number, all its decades alike."""
+    return float(np.exp(generator.uniform(math.log(low), math.log(high))))
+
+
+def _without_idle(settings: Settings) -> Settings:
+    """Take back what does nothing beside the other settings, so that a row says what matters."""
+    idle = [name for name in settings.changed() if not settings.applies(name)]
+    values = {name: value for name, value in settings.changed().items() if name not in idle}
+    return type(settings).checked({"method": settings.values()["method"], **values})
+
+
+def _values(kind: type[Settings], generator: Generator) -> dict[str, Any]:
+    definitions = kind.definitions()
+    values = _mesh(kind.scene, definitions, generator)
+    values["method"] = "paper" if generator.random() < 0.35 else "fast"
+    mixed = generator.random() < 0.5
+    for name, definition in definitions.items():
+        if name in values or name in KEPT:
+            continue
+        often = _often(name, about(definition).group, mixed)
+        if generator.random() < often:
+            values[name] = _drawn(name, definition, generator)
+    if "elements_up" in definitions:
+        _stretch(kind.scene, values, definitions, generator)
+    usual = {name: definition.default for name, definition in definitions.items()}
+    loads = LOADS.get(kind.scene)
+    sizes = loads({**usual, **values}, generator) if loads is not None else {}
+    for name, size in sizes.items():
+        if isinstance(definitions[name], Curve):
+            if generator.random() < CHANGED:
+                values[name] = _path(size, values.get("duration", 1.0), generator)
+        else:
+            values[name] = size
+    return values
+
+
+def _often(name: str, group: str, mixed: bool) -> float:
+    """Say how often a setting is drawn; those of the method seldom but in mixed ones."""
+    if name in ("linear_stage", "accuracy", "tolerance"):
+        return CHANGED
+    if name.startswith("k_") and name.endswith("_scale"):
+        return 2.0 * CHANGED if name == "k_scale" else 0.5 * CHANGED
+    if name.startswith(("pgd_", "local_")):
+        return 0.5  # taken back without separated bases
+    if group == "Method":
+        return 2.0 * CHANGED if mixed else 0.0
+    return 2.0 * CHANGED if name in ("load", "gap") or name.endswith("_profile") else CHANGED
+
+
+def _mesh(scene: str, definitions: dict[str, Parameter], generator: Generator) -> dict[str, Any]:
+    """Draw the mesh, its cuts, and as many instants as there is room for."""
+    found: dict[str, Any] = {}
+    while True:
+        for name, (low, high) in MESHES.get(scene, {"elements": (10, 800)}).items():
+            found[name] = min(int(log_uniform(generator, low, high + 1)), high)
+        unknowns = math.prod(found.values()) * (2 if "elements_up" in found else 1)
+        if unknowns <= LARGEST_FIELD // 3:
+            break
+    most = min(MOST_INSTANTS, LARGEST_FIELD // unknowns)
+    fewest = max(1, most // 3) if generator.random() < 0.7 else 1
+    found["instants"] = int(log_uniform(generator, fewest, most + 1))
+    for name, (elements, largest) in CUTS.items():
+        if name in definitions:
+            most_cuts = min(found[elements], largest)
+            found[name] = min(int(log_uniform(generator, 1, most_cuts + 1)), most_cuts)
+    return found
+
+
+def _stretch(
+    scene: str, values: dict[str, Any], definitions: dict[str, Parameter], generator: Generator
+) -> None:
+    """Draw the sides of a body by the aspect of its elements, up to a hundred."""
+    across = "thickness" if scene == "layers" else "height"
+    length = values.setdefault("length", definitions["length"].default)
+    power = 2.0 if generator.random() < 2.0 * CHANGED else 0.7
+    aspect = 10.0 ** generator.uniform(-power, power)
+    values[across] = length * values["elements_up"] / (values["elements"] * aspect)
+
+
+def _drawn(name: str, definition: Any, generator: Generator) -> object:
+    """Draw a value by the definition alone."""
+    if isinstance(definition, Curve):
+        if definition.abscissa == "position" and generator.random() < 0.4:
+            return _profile(name, generator)
+        return str(generator.choice(definition.presets))
+    if isinstance(definition, param.Boolean):
+        return bool(generator.random() < 0.5)
+    if isinstance(definition, param.Selector):
+        return str(generator.choice(definition.objects))
+    if name in SPECIAL:
+        return SPECIAL[name](generator)
+    low, high = WIDE.get(name, definition.softbounds)
+    if isinstance(definition, param.Integer):
+        return int(generator.integers(low, high + 1))
+    if about(definition).logarithmic:
+        return log_uniform(generator, low, high)
+    return float(generator.uniform(low, high))
+
+
+def _k_scale(generator: Generator) -> float:
+    """Draw a factor on k, every third time a foolish one."""
+    decades = 3.0 if generator.random() < 0.4 else 1.0
+    return float(10.0 ** generator.uniform(-decades, decades))
+
+
+def _poisson(generator: Generator) -> float:
+    """Draw Poisson's ratio, every second time near to one half."""
+    if generator.random() < 0.5:
+        return float(generator.uniform(0.0, 0.4999))
+    return 0.5 - log_uniform(generator, 1e-4, 1e-1)
+
+
+SPECIAL: dict[str, Callable[[Generator], float]] = {
+    "k_scale": _k_scale,
+    "poisson": _poisson,
+    "accuracy": lambda generator: log_uniform(generator, 1e-5, 0.1),
+    "tolerance": lambda generator: log_uniform(generator, 1e-12, 1.0),
+}
+
+
+def _profile(name: str, generator: Generator) -> list[list[float]]:
+    """Draw factors along a body, now and then zero but for a section."""
+    places = np.sort(generator.uniform(0.0, 1.0, int(generator.integers(2, 7))))
+    factors = 10.0 ** generator.uniform(-1.0, 1.0, len(places))
+    if name != "section_profile":
+        factors[generator.random(len(places)) < 0.2] = 0.0
+    return [[float(place), float(factor)] for place, factor in zip(places, factors, strict=True)]
+
+
+def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:
+    """Draw a path over time through a few points, reversals and jumps among them."""
+    times = np.sort(generator.uniform(0.0, duration, int(generator.integers(1, 8))))
+    values = abs(size) * generator.uniform(-1.0, 1.0, len(times))
+    return [[float(when), float(value)] for when, value in zip(times, values, strict=True)]

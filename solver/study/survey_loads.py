@@ -1,0 +1,105 @@
+"""Random loads for a survey, up to ten times what friction carries."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.random import Generator
+
+from solver.scenes.sides import AT_REST, COMPONENTS, LOADED_SIDES, PRESCRIBED
+
+SMALLEST, LARGEST = 0.03, 10.0
+"""Loads over what friction carries."""
+Values = Mapping[str, Any]
+Sizes = dict[str, float]
+
+
+def _share(generator: Generator) -> float:
+    """Draw a load over what friction carries, pushing as often as pulling."""
+    size = float(np.exp(generator.uniform(np.log(SMALLEST), np.log(LARGEST))))
+    return size if generator.random() < 0.7 else -size
+
+
+def bar_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw the loads of the bar; its end alone is loaded in two of three."""
+    length = values["length"]
+    carried = values["friction"] * values["pressure"] * length
+    peak = carried * _share(generator)
+    found = {"peak": peak, "load": peak}
+    if generator.random() < 0.2:
+        found["body_force"] = carried / length * _share(generator)
+    if generator.random() < 0.2:
+        stretched = carried * length / (values["young"] * values["section"])
+        found["support_displacement"] = stretched * _share(generator)
+    return found
+
+
+def strand_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw the tension of the strand; wires are not pushed."""
+    carried = values["friction"] * values["pressure"] * values["length"]
+    peak = carried * abs(_share(generator))
+    return {"peak": peak, "load": peak}
+
+
+def block_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw what presses and drags the block, and the radius under it to match.
+
+    What is pressed in is 1e-6 to 1e-3 of the height; other sides than the top are loaded alike.
+    """
+    strain = 10.0 ** generator.uniform(-6.0, -3.0)
+    height, young = values["height"], values["young"]
+    found: Sizes = {}
+    for side in LOADED_SIDES:
+        if values[side] in AT_REST:
+            continue
+        for component, prescribed in zip(COMPONENTS, PRESCRIBED[values[side]], strict=True):
+            share = values["friction"] * _share(generator)
+            if component == "normal":
+                # The top presses, but now and then.
+                share = -1.0 if generator.random() < 0.9 else 1.0
+            depth = height if side == "top" else values["length"]
+            kind, size = ("displacement", depth) if prescribed else ("traction", young)
+            found[f"{side}_{component}_{kind}"] = share * strain * size
+            found[f"{side}_{component}_load"] = share * strain * size
+    pressed_in = strain * height
+    found["radius"] = values["length"] ** 2 / (
+        8.0 * pressed_in * 10.0 ** generator.uniform(-1.5, 1.5)
+    )
+    if generator.random() < 0.1:
+        found["body_force_y"] = -strain * young / height
+    if generator.random() < 0.1:
+        found["body_force_x"] = values["friction"] * strain * young / height * _share(generator)
+    return found
+
+
+def layers_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw what bends and pulls the stack: by the shear that friction carries between layers."""
+    length, thickness = values["length"], values["thickness"]
+    height = thickness * values["layers"]
+    pressure = values["young"] * 10.0 ** generator.uniform(-7.0, -4.0)
+    carried = values["friction"] * pressure
+    # Shear in the middle of a cantilever, 3/2 of the mean, under a force at its end.
+    bent = carried * length**3 / (0.375 * values["young"] * height**2)
+    moment = carried * length * height / 3.0
+    found = {
+        "pressure": pressure,
+        "pressure_load": pressure,
+        "deflection": bent * _share(generator),
+        "moment": moment * _share(generator),
+    }
+    found["bend_load"] = found["deflection" if values["bending"] == "deflection" else "moment"]
+    if generator.random() < 0.3:
+        found["pull"] = carried * length / height * _share(generator)
+    return found
+
+
+LOADS: dict[str, Callable[[Values, Generator], Sizes]] = {
+    "bar": bar_loads,
+    "strand": strand_loads,
+    "block": block_loads,
+    "layers": layers_loads,
+}
+"""Sizes of loads by name, which depend on the other values; of curves, those of their tables. A
+scene without an entry has its loads drawn by their definitions alone."""

@@ -1,0 +1,68 @@
+"""Whether given fields solve the discrete problem, by its equations alone.
+
+Nothing here knows how the fields were found: equilibrium of the assembled structure, and the laws
+of every contact, at every instant.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import sparse
+
+from solver.discrete.problem import Array, Problem
+from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.condensation import jumps
+from solver.reference.distance import Fields, determinate_forces
+from solver.reference.states import rules_of
+
+
+def kkt_residual(fields: Fields, problem: Problem) -> float:
+    """Give the largest violation of equilibrium and laws, as a share of the forces in play.
+
+    Parameters
+    ----------
+    fields
+        Displacement and contact force, SI.
+    problem
+        Whose equations they should obey.
+
+    Returns
+    -------
+    Relative to the largest force, among those that the displacement alone makes in an element,
+    which are what rounding is a share of.
+    """
+    displacement = fields.displacement / problem.scales.displacement
+    force = fields.contact_force / problem.scales.force
+    stiffness, all_jumps = assembled_stiffness(problem), jumps(problem)
+    outer = external_force(problem)
+    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
+    inner = stiffness @ displacement
+    unbalanced = (inner - outer - all_jumps.T @ force)[free]
+    size = max(
+        float(np.abs(part).max(initial=0.0))
+        for part in (abs(stiffness) @ np.abs(displacement), outer, force)
+    )
+    broken = _broken_laws(problem, stiffness, all_jumps @ displacement, force)
+    largest = max(float(np.abs(part).max(initial=0.0)) for part in (unbalanced, broken))
+    return largest / size if size > 0.0 else largest
+
+
+def _broken_laws(problem: Problem, stiffness: sparse.csr_array, jump: Array, force: Array) -> Array:
+    """Give how far contacts are from their laws, as forces, shape (n_forces, n_instants).
+
+    A pair of quantities of which one vanishes, such as pressing force and opening, is as wrong as
+    the smaller one; lengths become forces by the stiffness of the jump's own degrees of freedom.
+    """
+    rules = rules_of(problem)
+    unit = (abs(jumps(problem)) @ stiffness.diagonal())[:, None]
+    opening = unit * (jump + rules.gap[:, None])
+    slip = unit * np.diff(jump, axis=1, prepend=0.0)
+    bound = rules.bounds(force)
+    overlap, tension = np.maximum(-opening, 0.0), np.maximum(-force, 0.0)
+    apart = np.minimum(np.maximum(opening, 0.0), np.maximum(force, 0.0))
+    of_normal = np.maximum(np.maximum(overlap, tension), apart)
+    beyond = np.maximum(np.abs(force) - bound, 0.0)
+    against = np.minimum(np.abs(slip), np.abs(force + bound * np.sign(slip)))
+    of_friction = np.maximum(beyond, against)
+    wrong = np.where(rules.normal[:, None], of_normal, of_friction)
+    return np.asarray(wrong * determinate_forces(problem))
