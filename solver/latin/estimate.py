@@ -23,8 +23,14 @@ SPACING = 1.1
 NEAR = 0.2
 """Estimate by the change at which the status step is worth its first trial: the force has changed
 by 4 % in the last third of the iterations, and most statuses are right."""
-ROUNDING = 1e-20
+SOLVED = 1e-20
 """LATIN indicator, a ratio of squares, that is worth a trial whatever has changed."""
+LAST = 10.0
+"""Times more that a run's last trial may cost: without it the run has no answer."""
+VANISHING = 1e-8
+"""Share of all forces at interfaces below which contact forces count as none, as in distances."""
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""Share of what a force is the difference of that rounding leaves of it."""
 AGAIN = 1.5
 """Ratio of the iteration at which a failed status step is tried again."""
 
@@ -51,6 +57,7 @@ class ErrorEstimate:
     def __init__(self, settings: Settings, *, proves: bool = True) -> None:
         self._accuracy, self._is_reduced = float(settings.accuracy), settings.is_reduced
         self._past: deque[tuple[int, Array]] = deque()
+        self._least = 0.0
         self._next_trial = 1
         self._step: StatusStep | None = None
         self._has_solver = proves
@@ -68,7 +75,7 @@ class ErrorEstimate:
         """
         expected, accuracy = self._by_changes(iterate), self._accuracy
         is_due = iterate.number >= self._next_trial
-        is_near = expected <= max(NEAR, accuracy) or indicator <= ROUNDING
+        is_near = expected <= max(NEAR, accuracy) or indicator <= SOLVED
         if self.certificate is None and is_due and is_near:
             self.try_step(iterate)
         if self.certificate is None:
@@ -84,21 +91,29 @@ class ErrorEstimate:
         """Whether the last estimate was the distance to a certified solution."""
         return self.certificate is not None
 
-    def can_be_proven(self, iterate: Iterate) -> bool:
-        """Tell whether a status step is worth its cost by now."""
+    def is_proven_within(self, share: float, iterate: Iterate) -> bool:
+        """Tell whether displacement and contact force are that near to a certified solution."""
+        if self.certificate is None:
+            return False
+        distance = self.certificate.distance
+        errors = distance.of_friction_force(iterate), distance.of_displacement(iterate)
+        return max(errors) <= share
+
+    def can_be_proven(self, iterate: Iterate, patience: float = 1.0) -> bool:
+        """Tell whether a status step is worth its cost by now, or if it may cost times more."""
         if not self._has_solver:
             return False
         # Bases that are too small converge to something else, which no change shows.
-        return self._is_reduced or is_affordable(iterate.problem, iterate.number)
+        return self._is_reduced or is_affordable(iterate.problem, patience * iterate.number)
 
-    def try_step(self, iterate: Iterate) -> bool:
+    def try_step(self, iterate: Iterate, patience: float = 1.0) -> bool:
         """Try the status step from an iterate, unless it costs too much; tell whether it holds."""
-        if not self.can_be_proven(iterate):
+        if not self.can_be_proven(iterate, patience):
             return False
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
         self._step = self._step or StatusStep(iterate.problem)
         try:
-            found = self._step(iterate)
+            found = self._step(iterate, patience)
         except NoReferenceError:
             self._has_solver = False
             return False
@@ -122,15 +137,23 @@ class ErrorEstimate:
         before = past[0] if past and past[0][0] <= LOOK_BACK * number else None
         if not past or number >= SPACING * past[-1][0]:
             past.append((number, force))
+            self._least = _least(iterate)
         if before is None:
             return math.nan
-        size = float(np.linalg.norm(force))
         change = float(np.linalg.norm(force - before[1]))
+        size = max(float(np.linalg.norm(force)), self._least)
         return SAFETY * change / size if size > 0.0 else 0.0
 
     def __getstate__(self) -> dict[str, object]:
         """Go elsewhere without what belongs to one problem: it is found again there."""
         return {**self.__dict__, "_step": None, "certificate": None, "_past": deque()}
+
+
+def _least(iterate: Iterate) -> float:
+    """Give the norm of contact forces that count as none, scaled."""
+    around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
+    blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
+    return max(around, blurred)
 
 
 def _force_on_rows(iterate: Iterate) -> Array:

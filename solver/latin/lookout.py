@@ -16,7 +16,7 @@ class Lookout:
     """
 
     def __init__(self) -> None:
-        self.next = 1
+        self.next = 0
         self._last = (0, math.nan)
 
     def is_due(self, iteration: int) -> bool:

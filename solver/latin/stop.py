@@ -7,7 +7,9 @@ import time
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from solver.latin.estimate import ErrorEstimate
+import numpy as np
+
+from solver.latin.estimate import LAST, ErrorEstimate
 from solver.latin.finish import finished
 from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
@@ -126,7 +128,7 @@ class StopRules:
     def judge(self, iterate: Iterate) -> Verdict:
         """Say whether the run ends after an iterate, and how."""
         began = time.perf_counter()
-        if not math.isfinite(float(iterate.incoming.sum())):
+        if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             status = _diverged(iterate.number)
             return Verdict(self._billed(iterate, began), math.nan, None, math.nan, status)
         indicator, estimated = self._figures(iterate)
@@ -148,10 +150,10 @@ class StopRules:
         """Compute the LATIN indicator and the estimate, or NaN where they cannot matter yet."""
         number = iterate.number
         indicator = estimated = math.nan
-        is_last = number in (1, self._most)
-        if is_last or number % SELDOM == 0:
+        is_asked = self._of_estimate.next == 0 or number == self._most
+        if is_asked or number % SELDOM == 0:
             indicator = latin_indicator(iterate)
-        if self._of_estimate.is_due(number) or is_last:
+        if self._of_estimate.is_due(number) or is_asked:
             estimated = self._estimate(iterate, indicator)
             self._of_estimate.saw(number, estimated, self._estimate.level)
         if estimated <= self._accuracy:
@@ -184,7 +186,7 @@ class StopRules:
             return None
         gives_up = status is not None and status.ending is not Ending.CONVERGED
         if self._estimate.certificate is None and gives_up:
-            self._estimate.try_step(iterate)
+            self._estimate.try_step(iterate, LAST)
         found = self._estimate.certificate
         return finished(iterate, found) if found is not None else None
 
@@ -207,7 +209,7 @@ class StopRules:
         behaviour: BehaviourIndicator | None,
     ) -> Status | None:
         iteration = iterate.number
-        agreed = behaviour is not None and behaviour.total <= agreement(self._tolerance)
+        agreed = behaviour is not None and self._agrees(iterate, behaviour)
         if indicator <= self._tolerance and agreed and estimated <= self._accuracy:
             if self._estimate.is_proven:
                 return Status(Ending.CONVERGED, _PROVEN)
@@ -222,6 +224,14 @@ class StopRules:
             laws = " before the contact force is known to be accurate" if still else ""
             return Status(Ending.EXHAUSTED, f"The iterations are used up{laws}. {self._remedy()}")
         return None
+
+    def _agrees(self, iterate: Iterate, behaviour: BehaviourIndicator) -> bool:
+        """Tell whether the k-free indicator says converged, or the solution itself does.
+
+        The indicator is a share of what contact carries, which is nothing where all contacts open.
+        """
+        enough = agreement(self._tolerance)
+        return behaviour.total <= enough or self._estimate.is_proven_within(enough, iterate)
 
     def _stall_advice(self, agreed: bool) -> str:
         if self._best < ROUNDING and agreed:
