@@ -12,12 +12,12 @@ import numpy as np
 
 from solver.discrete import discretise
 from solver.discrete.problem import Problem, space_time
-from solver.files import scene_settings
 from solver.latin import StopRules, iterations, solve
 from solver.latin.direction import search_direction
 from solver.latin.iterations import Clock, Engine
 from solver.latin.linear import DenseResponse, FullLinearStage
 from solver.latin.local import LocalStage
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 
@@ -202,7 +202,7 @@ def print_overheads(repeats: int) -> None:
     print(f"\nbeside the stages, as shares of an iteration's own work; medians of {repeats}")
     print(f"{'scene':<8} {'method':<8} {'own, ms':>8} {'snapshot':>9} {'stop test':>9}")
     for scene, changes in OVERHEADS:
-        settings = scene_settings(scene).checked(changes)
+        settings = CATALOGUE[scene].settings.checked(changes)
         found = overhead(settings, repeats)
         print(
             f"{scene:<8} {settings.method:<8} {1e3 * found.own:8.3f} "
