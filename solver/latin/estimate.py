@@ -25,6 +25,9 @@ NEAR = 0.2
 by 4 % in the last third of the iterations, and most statuses are right."""
 SOLVED = 1e-20
 """LATIN indicator, a ratio of squares, that is worth a trial whatever has changed."""
+LONG = 100
+"""Iterations from which on it is tried whatever has changed, at every doubling: a contact force
+that dies out changes by much of itself for ever."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
 VANISHING = 1e-8
@@ -58,7 +61,7 @@ class ErrorEstimate:
         self._accuracy, self._is_reduced = float(settings.accuracy), settings.is_reduced
         self._past: deque[tuple[int, Array]] = deque()
         self._least = 0.0
-        self._next_trial = 1
+        self._last_trial, self._next_trial = 0, 1
         self._step: StatusStep | None = None
         self._has_solver = proves
         self.certificate: Certificate | None = None
@@ -76,6 +79,7 @@ class ErrorEstimate:
         expected, accuracy = self._by_changes(iterate), self._accuracy
         is_due = iterate.number >= self._next_trial
         is_near = expected <= max(NEAR, accuracy) or indicator <= SOLVED
+        is_near |= iterate.number >= max(LONG, 2 * self._last_trial)
         if self.certificate is None and is_due and is_near:
             self.try_step(iterate)
         if self.certificate is None:
@@ -110,6 +114,7 @@ class ErrorEstimate:
         """Try the status step from an iterate, unless it costs too much; tell whether it holds."""
         if not self.can_be_proven(iterate, patience):
             return False
+        self._last_trial = iterate.number
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
         self._step = self._step or StatusStep(iterate.problem)
         try:
