@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
 
+import numpy as np
+
+from app.worker.resume import without_problem
 from app.worker.shown import has_reference
-from solver.definitions import about
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
+from solver.reference.fingerprint import fingerprint
 from solver.reference.incremental import Reference
 from solver.settings import Settings
 
-METHOD_GROUPS = frozenset({"Decomposition", "Method", "Stop"})
-"""Groups of settings that lead to the same solution."""
-
 
 class References:
-    """The references last used, by the settings that define the physics.
+    """The references last used, by what they depend on.
+
+    They are kept without their problems, whose matrices take many times as much.
 
     Parameters
     ----------
@@ -29,7 +33,10 @@ class References:
     def __init__(self, entries: int = 8, budget: int = 200_000_000) -> None:
         self._entries = entries
         self._budget = budget
-        self._kept: OrderedDict[tuple[object, ...], Reference] = OrderedDict()
+        self._kept: OrderedDict[bytes, _Kept] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._kept)
 
     def of(
         self, settings: Settings, problem: Problem, stop: Callable[[], bool]
@@ -41,47 +48,37 @@ class References:
         Interrupted
             As soon as `stop` gives True.
         """
-        key = physics(settings)
-        found = self._kept.pop(key, None) or find_reference(settings, problem, stop)
-        if found is None:
+        if not has_reference(settings):
             return None
-        self._kept[key] = found
-        while (
-            len(self._kept) > self._entries or sum(map(_size, self._kept.values())) > self._budget
-        ):
+        key = fingerprint(problem)
+        kept = self._kept.pop(key, None)
+        if kept is None:
+            found = _find(problem, stop)
+            if found is None:
+                return None
+            kept = _Kept(found)
+        self._kept[key] = kept
+        while len(self) > self._entries or self._size > self._budget:
             self._kept.popitem(last=False)
-        return found
+        return kept.of(problem)
+
+    @property
+    def _size(self) -> int:
+        return sum(kept.size for kept in self._kept.values())
 
 
-def find_reference(
-    settings: Settings, problem: Problem, stop: Callable[[], bool]
-) -> Reference | None:
-    """Compute the reference of a problem, or give None where there is none.
+class _Kept:
+    """A reference without its problem, and the bytes of its fields."""
 
-    Raises
-    ------
-    Interrupted
-        As soon as `stop` gives True.
-    """
-    if not has_reference(settings):
-        return None
+    def __init__(self, found: Reference) -> None:
+        values: list[Any] = [getattr(found, one.name) for one in fields(found)]
+        self.of = without_problem(found)
+        self.size = sum(value.nbytes for value in values if isinstance(value, np.ndarray))
+
+
+def _find(problem: Problem, stop: Callable[[], bool]) -> Reference | None:
     try:
         found = reference_of(problem, stop)
     except NotHeldError:
         return None
     return found if found.converged.all() else None
-
-
-def physics(settings: Settings) -> tuple[object, ...]:
-    """Give the scene and the values of the settings on which its solution depends."""
-    values = settings.values()
-    return settings.scene, *(
-        (name, values[name])
-        for name, definition in settings.definitions().items()
-        if about(definition).group not in METHOD_GROUPS
-    )
-
-
-def _size(reference: Reference) -> int:
-    fields = (reference.displacement, reference.friction_force, reference.status)
-    return sum(field.nbytes for field in fields)

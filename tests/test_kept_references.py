@@ -1,0 +1,146 @@
+"""A reference is used again only where the problem asks for just that, and kept only as it pays."""
+
+from __future__ import annotations
+
+import gc
+import sys
+import weakref
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.worker.rivals import References
+from solver.discrete import Problem, discretise
+from solver.reference.choice import reference_of
+from solver.reference.fingerprint import fingerprint
+from solver.reference.incremental import Reference
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+
+SIZES: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 20, "instants": 11, "substructures": 4},
+    "strand": {"elements": 12, "instants": 11, "substructures": 3},
+    "block": {"elements": 12, "elements_up": 4, "instants": 11},
+    "layers": {"elements": 12, "layers": 3, "instants": 11},
+}
+OF_THE_METHOD = {"k_scale": 3.0, "multiscale": False, "tolerance": 1e-3, "linear_stage": "pgd"}
+OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
+    "bar": {
+        "peak": 901.0,
+        "friction": 0.31,
+        "friction_profile": "rising",
+        "young": 2e11,
+        "duration": 2.0,
+        "length": 1.1,
+        "support_displacement": 1e-4,
+        "body_force": 10.0,
+        "instants": 12,
+        "elements": 21,
+    },
+    "strand": {"pressure": 5001.0, "break_position": 0.25, "grip": "displacement", "broken": 1},
+    "block": {
+        "gap": "flat",
+        "radius": 4.0,
+        "poisson": 0.31,
+        "top": "traction",
+        "top_normal_displacement": -5e-5,
+        "body_force_y": -1e6,
+        "left": "roller",
+        "interpolation": "biquadratic",
+        "substructures": 2,
+        "substructures_up": 1,
+    },
+    "layers": {"contrast": 2.0, "pull": 1e6, "substructures": 2, "friction": 0.31},
+}
+
+
+def made(scene: str, **changes: Any) -> tuple[Settings, Problem]:
+    settings = CATALOGUE[scene].settings.checked({**SIZES[scene], **changes})
+    return settings, discretise(settings)
+
+
+def never() -> bool:
+    return False
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_what_the_method_does_leaves_the_fingerprint(scene: str) -> None:
+    own = fingerprint(made(scene)[1])
+    for name, value in OF_THE_METHOD.items():
+        assert fingerprint(made(scene, **{name: value})[1]) == own
+
+
+def test_cuts_of_a_bar_leave_the_fingerprint() -> None:
+    found = {fingerprint(made("bar", substructures=count)[1]) for count in (1, 2, 4, 5, 20)}
+    assert len(found) == 1
+
+
+@pytest.mark.parametrize(
+    ("scene", "name"), [(scene, name) for scene, all_ in OF_THE_PHYSICS.items() for name in all_]
+)
+def test_what_the_solution_depends_on_changes_the_fingerprint(scene: str, name: str) -> None:
+    if name == "top":
+        other = made(scene, top="traction", left="clamped")[1]
+    else:
+        other = made(scene, **{name: OF_THE_PHYSICS[scene][name]})[1]
+    assert fingerprint(other) != fingerprint(made(scene)[1])
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+@pytest.mark.parametrize("cuts", [1, 2, 4])
+def test_reference_found_after_the_cuts_have_changed_is_that_of_the_problem(
+    scene: str, cuts: int
+) -> None:
+    references = References()
+    references.of(*made(scene), never)
+    settings, problem = made(scene, substructures=cuts)
+    kept, fresh = references.of(settings, problem, never), reference_of(problem)
+    assert kept is not None
+    assert kept.problem is problem
+    assert kept.displacement.shape == fresh.displacement.shape
+    assert (
+        np.abs(kept.displacement - fresh.displacement).max()
+        < 1e-9 * np.abs(fresh.displacement).max()
+    )
+    name = next(iter(problem.rubbing))
+    assert kept.contact(name).tangential_force == pytest.approx(
+        fresh.contact(name).tangential_force, abs=1e-6 * np.abs(fresh.contact_force).max()
+    )
+
+
+def test_a_reference_is_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    found: list[Reference] = []
+
+    def count(*arguments: Any) -> Reference:
+        found.append(reference_of(*arguments))
+        return found[-1]
+
+    monkeypatch.setattr(sys.modules[References.__module__], "reference_of", count)
+    references = References()
+    for changes in ({}, {"k_scale": 2.0}, {"friction": 0.2}, {"acceleration": "none"}):
+        references.of(*made("block", **changes), never)
+    assert len(found) == 2
+
+
+def test_what_is_kept_keeps_no_problem_alive() -> None:
+    references = References()
+    settings, problem = made("block")
+    references.of(settings, problem, never)
+    watched = weakref.ref(problem)
+    del problem
+    gc.collect()
+    assert watched() is None
+    assert references.of(*made("block", k_scale=2.0), never) is not None
+
+
+def test_the_budget_counts_all_fields_that_are_kept() -> None:
+    settings, problem = made("bar")
+    found = reference_of(problem)
+    arrays = (found.displacement, found.contact_force, found.status, found.converged)
+    whole = sum(array.nbytes for array in (*arrays, found.ambiguous))
+    for budget, kept in ((whole, 1), (whole - 1, 0), (2 * whole, 2)):
+        references = References(budget=budget)
+        references.of(settings, problem, never)
+        references.of(*made("bar", friction=0.2), never)
+        assert len(references) == kept
