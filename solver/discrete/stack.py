@@ -298,7 +298,8 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
             friction, gap = scene.friction, np.zeros(len(node))
         upper = np.concatenate([part.rows["bottom"] for part in above])
         lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
-        bases = [_macro_basis(scene, part, "bottom") for part in above]
+        # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
+        bases = [sparse.coo_array(_macro_basis(scene, part, "bottom")) for part in above]
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
             Contact(

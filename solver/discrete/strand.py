@@ -196,7 +196,10 @@ def _contact(scene: Strand, pieces: _Pieces, number: int) -> Friction:
         weights=weights,
         bound=scene.bound * weights / scene.stiffness,
         below=pieces.contact_rows(number, 0),
-        macro=sparse.csr_array(sparse.block_diag([_polynomials(len(own)) for own in rubbing])),
+        # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
+        macro=sparse.csr_array(
+            sparse.block_diag([sparse.coo_array(_polynomials(len(own))) for own in rubbing])
+        ),
     )
 
 
