@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+# isort: off
+import one_thread  # noqa: F401  # before NumPy, which asks but once
+# isort: on
+
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 
