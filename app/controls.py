@@ -87,6 +87,8 @@ class Control:
             "description": self.definition.doc,
             "sizing_mode": "stretch_width",
             "size": "small",
+            # Labels repeat, as those of the left and the right side; what looks for one needs this.
+            "css_classes": [f"setting-{self.name}"],
         }
 
 

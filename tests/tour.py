@@ -87,10 +87,25 @@ def ends(settings: Settings, name: str) -> list[Any]:
     return [values[0], values[-1]]
 
 
+def farthest(settings: Settings, name: str, end: Any) -> Any:
+    """Give the value nearest to an end that is refused, as a slider has it, that is taken."""
+    near, far = getattr(settings, name), end
+    whole = isinstance(near, int)
+    while abs(far - near) > (1 if whole else 0.01 * abs(end)):
+        middle = (near + far) // 2 if whole else float(f"{0.5 * (near + far):.4g}")
+        try:
+            settings.with_change(name, middle)
+            near = middle
+        except SettingError:
+            far = middle
+    return near
+
+
 def tour(base: Settings, reach: Reach) -> Iterator[Move]:
     """Move every control that applies, or can be made to, through its reach and back.
 
-    What a move brings along is brought back after it. The tour ends where it began.
+    Where an end is refused, the farthest value towards it is taken. What a move brings along is
+    brought back after it. The tour ends where it began.
     """
     for preparation, names in _openings(base):
         there = base
@@ -100,6 +115,8 @@ def tour(base: Settings, reach: Reach) -> Iterator[Move]:
             now = there
             for value in reach(there, name):
                 now = yield from _step(now, name, value)
+                if getattr(now, name) != value and isinstance(value, int | float):
+                    now = yield from _step(now, name, farthest(now, name, value))
             yield from _back(now, there)
         yield from _back(there, base)
 
