@@ -88,12 +88,12 @@ class Session:
     def start(
         self, settings: Settings | None = None, *, waits: bool = False, warm: bool = False
     ) -> None:
-        """Start a run, with new settings or the same, in place of the one at work.
+        """Start a run, with new settings or those that are wanted, in place of the one at work.
 
         A run that `waits` does one iteration until the page is connected; a `warm` one starts
         from the last iterate of the run at work, where that is better.
         """
-        settings = settings or self.settings
+        settings = settings or self.wanted
         if settings.scene == self.settings.scene:
             self._retire()
         else:

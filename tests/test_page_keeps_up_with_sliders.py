@@ -89,6 +89,14 @@ def test_a_move_that_waits_is_made_before_the_scene_is_left(
     assert session.wanted.peak == 920.0
 
 
+def test_reset_keeps_a_change_that_waits_for_the_first_picture(session: Session) -> None:
+    session.start()
+    session.change("friction", 0.5)
+    assert session.settings.friction == 0.3
+    session.start()
+    assert session.settings.friction == session.wanted.friction == 0.5
+
+
 def test_a_refused_move_is_told_and_the_others_are_made(
     sidebar: Sidebar, session: Session, complaints: list[str]
 ) -> None:
