@@ -12,7 +12,8 @@ from app.address import query_of
 from app.controls import GATHER_MS, Control, make_control
 from app.samples import points_of
 from app.session import Session
-from solver.definitions import Curve, SettingError, about, read_table
+from app.uploads import load_in
+from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.settings import Settings, dump
@@ -262,24 +263,11 @@ class Sidebar:
             if event.obj.filename.endswith(".toml"):
                 self._adopt(settings_from_toml(text))
             else:
-                name, definition = self._load()
-                self._on_setting(name, read_table(text, definition, name, event.obj.filename))
+                self._on_setting(*load_in(text, event.obj.filename, self._session.wanted))
         except SettingError as refusal:
             self._complain(str(refusal))
         except UnicodeDecodeError:
             self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
-
-    def _load(self) -> tuple[str, Curve]:
-        """Find the load path that a table is for: the first one that stands in the open."""
-        settings = self._session.wanted
-        paths = [
-            (name, definition)
-            for name, definition in settings.definitions().items()
-            if isinstance(definition, Curve)
-            and definition.abscissa == "time"
-            and settings.applies(name)
-        ]
-        return max(paths, key=lambda path: about(path[1]).essential)
 
     def _saved(self) -> StringIO:
         run = self._session.run

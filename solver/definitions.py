@@ -262,8 +262,8 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
     Parameters
     ----------
     text
-        CSV whose rows are abscissa, value; a first row of their names and empty lines are passed
-        over.
+        CSV whose rows are abscissa, value; empty lines are passed over, and a first row of their
+        names, of which the second may be the setting's.
     definition, name, source
         The setting it is for, and where the text comes from, used in messages.
 
@@ -280,7 +280,8 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
         raise SettingError(name, source, allowed(definition), str(problem)) from None
     for number, cells in enumerate(table, start=1):
         names = [cell.strip().lower() for cell in cells]
-        if not any(names) or (not rows and names == [definition.abscissa, definition.ordinate]):
+        is_head = names in [[definition.abscissa, other] for other in (definition.ordinate, name)]
+        if not any(names) or (not rows and is_head):
             continue
         try:
             first, second = cells

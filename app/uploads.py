@@ -1,0 +1,53 @@
+"""A table of points that a user brings, and the load path that it is for."""
+
+from __future__ import annotations
+
+from solver.definitions import Curve, SettingError, read_table
+from solver.settings import Settings
+
+
+def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[float]]]:
+    """Read a table for the load path that its head names, or for the only one that applies.
+
+    Parameters
+    ----------
+    text, source
+        CSV of time and value, and the name of its file.
+    settings
+        Those in force, which say what applies.
+
+    Returns
+    -------
+    Name of the setting, and its points.
+
+    Raises
+    ------
+    SettingError
+        If no path applies, several do and the head names none of them, or the table is refused.
+    """
+    paths = {
+        name: definition
+        for name, definition in settings.definitions().items()
+        if isinstance(definition, Curve)
+        and definition.abscissa == "time"
+        and settings.applies(name)
+    }
+    names = ", ".join(paths)
+    if not paths:
+        raise SettingError(
+            "the table",
+            source,
+            "a load path, of which none applies",
+            "have a side displaced or loaded first",
+        )
+    head = [cell.strip() for cell in text.lstrip().partition("\n")[0].split(",")]
+    chosen = [name for name in paths if len(paths) == 1 or name in head]
+    if len(chosen) != 1:
+        raise SettingError(
+            "the table",
+            source,
+            f"a table of one of {names}",
+            f"name the one in its first line, as in time,{next(iter(paths))}",
+        )
+    (name,) = chosen
+    return name, read_table(text, paths[name], name, source)
