@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.definitions import SettingError
 from solver.discrete.problem import Array, Indices, Problem, sliding_rows
 from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
 from solver.scenes.plane import PlaneSettings
@@ -40,8 +41,7 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
 
     It is the paper's, or the automatic one, times the settings' factors.
     """
-    is_paper = settings.search_direction == "paper"
-    k: Array = settings.k_scale * (problem.direction if is_paper else automatic(problem))
+    k: Array = settings.k_scale * _by_rule(problem, settings.search_direction)
     for law in problem.rubbing.values():
         for rows in sliding_rows(law):
             k[rows] *= settings.k_friction_scale
@@ -49,6 +49,16 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
             for rows in pressing_rows(law):
                 k[rows] *= settings.k_normal_scale
     return np.ascontiguousarray(k)
+
+
+def _by_rule(problem: Problem, rule: str) -> Array:
+    match rule:
+        case "paper":
+            return problem.direction
+        case "auto":
+            return automatic(problem)
+        case _:
+            raise SettingError("search_direction", rule, "paper, auto", "choose one of these")
 
 
 def automatic(problem: Problem) -> Array:

@@ -108,7 +108,7 @@ class Engine:
             k = self._update.course.k
         try:
             self._make_stages(k)
-        except LinAlgError:
+        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
             raise SettingError(
                 "k_scale",
                 settings.k_scale,

@@ -146,12 +146,12 @@ class Group(ABC, Generic[State]):
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
         self.response = response(parts[0].elasticity, self.k)
-        inside = [part.body_force for part in parts if part.body_force is not None]
-        self.body = (
-            np.stack([self.response.of_body_force(force) for force in inside], axis=1)
-            if inside
-            else None
-        )
+        self.body: Array | None = None
+        if any(part.body_force is not None for part in parts):
+            self.body = self.field()
+            for member, part in enumerate(parts):
+                if part.body_force is not None:
+                    self.body[:, member] = self.response.of_body_force(part.body_force)
         self.target = self.field()
         self._reflected = self.field()
         self._order = np.ascontiguousarray(self.rows.T.ravel())
