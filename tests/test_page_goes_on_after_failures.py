@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from lone_seat import Seat
+from pool_sessions import Session as PoolSession
 
 from app.errand import Errand
 from app.session import Session
@@ -18,6 +19,7 @@ from app.worker.bench import Bench
 from app.worker.job import STOPPED
 from app.worker.member import Member
 from app.worker.orders import Run, Step
+from app.worker.pool import Pool
 from app.worker.reports import Died, Refused, Report
 from solver.scenes.bar import BarSettings
 
@@ -90,12 +92,73 @@ def test_a_job_whose_process_does_not_start_says_so(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(job, "start", no_fork_server)
     errand = Errand(Bench())
     errand.ask("any", print)
+    await_end(errand)
+    assert errand.notice == STOPPED
+
+
+def await_end(errand: Errand) -> None:
     end = time.monotonic() + PATIENCE
     while errand.is_busy:
         assert time.monotonic() < end
         errand.collect()
         time.sleep(0.01)
-    assert errand.notice == STOPPED
+
+
+def not_to_be_sent(send: Any) -> Any:
+    return _CannotBeRead()
+
+
+class _CannotBeRead:
+    def __reduce__(self) -> Any:
+        return _refuse, ()
+
+
+def _refuse() -> None:
+    raise LookupError("made to break")
+
+
+def test_a_job_whose_result_cannot_be_read_says_so_and_is_logged(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    bench = Bench()
+    errand = Errand(bench)
+    errand.ask("any", not_to_be_sent)
+    await_end(errand)
+    assert "made to break" in errand.notice
+    assert "_refuse" in caplog.text
+    errand.ask("another", _refused)
+    await_end(errand)
+    assert "made to break" in errand.notice
+
+
+def _refused(send: Any) -> Any:
+    raise LookupError("made to break")
+
+
+def test_a_job_that_cannot_be_sent_says_so() -> None:
+    errand = Errand(Bench())
+    errand.ask("any", lambda send: None)
+    await_end(errand)
+    assert "It broke" in errand.notice
+
+
+def test_where_a_run_broke_is_logged(pool: Pool, caplog: pytest.LogCaptureFixture) -> None:
+    session = PoolSession(pool)
+    nowhere: Any = None
+    session.seat.run(Run(1, "bar", {}, look=nowhere))
+    refused = session.until(Refused)
+    assert "AttributeError" in refused.reason
+    assert "Traceback" in caplog.text
+    assert "app/worker/run.py" in caplog.text
+
+
+def test_settings_that_are_refused_leave_no_trace_in_the_log(
+    pool: Pool, caplog: pytest.LogCaptureFixture
+) -> None:
+    session = PoolSession(pool)
+    session.seat.run(Run(1, "bar", {"friction": -1.0}))
+    session.until(Refused)
+    assert caplog.text == ""
 
 
 def test_a_worker_whose_process_does_not_start_counts_as_gone(

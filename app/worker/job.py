@@ -7,9 +7,11 @@ nothing more once it was cancelled
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import signal
 import threading
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -18,6 +20,8 @@ from typing import Any
 
 from app.worker.member import start
 from app.worker.process import NICENESS
+
+_log = logging.getLogger(__name__)
 
 STOPPED = "Its process stopped unexpectedly; start it again."
 
@@ -51,9 +55,10 @@ class Done:
 
 @dataclass(frozen=True)
 class Broke:
-    """There is no result: a sentence for the user."""
+    """There is no result: a sentence for the user, and for the server's log where it broke."""
 
     reason: str
+    trace: str = ""
 
 
 Said = Started | Doing | Part | Done | Broke
@@ -112,20 +117,27 @@ class Job:
     def _live(self) -> None:
         try:
             self._say(Started())
-            started, ours = start(main, self._work)
-            with self._lock:
-                self._process = started
-                if self._cancelled:
-                    started.kill()
-            with ours:
-                self._listen(ours)
-            started.kill()
-            started.join()
+            self._converse()
         except (OSError, EOFError):
             # The process is gone; or, where the fork server was gone, it has never been there.
             self._say(Broke(STOPPED))
+        except Exception as problem:
+            self._say(Broke(_sentence(problem), traceback.format_exc()))
         finally:
+            if self._process is not None:
+                self._process.kill()
+                self._process.join()
             self._ended(self)
+
+    def _converse(self) -> None:
+        """Start the process, and pass on what it says."""
+        started, ours = start(main, self._work)
+        with self._lock:
+            self._process = started
+            if self._cancelled:
+                started.kill()
+        with ours:
+            self._listen(ours)
 
     def _listen(self, connection: Connection) -> None:
         """Pass on what is said, until the end or, as an EOFError, the end of the process."""
@@ -135,6 +147,8 @@ class Job:
             self._say(said)
 
     def _say(self, said: Said) -> None:
+        if isinstance(said, Broke) and said.trace:
+            _log.error("A job broke.\n%s", said.trace)
         # What was read while it was being cancelled is for nobody.
         if not self._cancelled:
             self._listener(said)
@@ -150,9 +164,13 @@ def main(connection: Connection, work: Work) -> None:
     try:
         end = Done(work(connection.send))
     except Exception as problem:
-        end = Broke(f"It broke ({type(problem).__name__}: {problem}).")
+        end = Broke(_sentence(problem), traceback.format_exc())
     with contextlib.suppress(OSError):
         connection.send(end)
+
+
+def _sentence(problem: Exception) -> str:
+    return f"It broke ({type(problem).__name__}: {problem})."
 
 
 def _end_with(connection: Connection) -> None:

@@ -27,11 +27,13 @@ from time import monotonic
 
 from app.worker.member import Member
 from app.worker.orders import Run
-from app.worker.reports import Ready, Report
+from app.worker.reports import Ready, Refused, Report
 from app.worker.roster import Delivery, Roster
 from app.worker.seat import Change, Listener, Seat
 
 PATIENCE_AT_CLOSE = 5.0
+
+_log = logging.getLogger(__name__)
 
 
 class Pool:
@@ -124,6 +126,8 @@ class Pool:
         return Member(self._received, self._gone)
 
     def _received(self, member: Member, report: Report | Ready) -> None:
+        if isinstance(report, Refused) and report.trace:
+            _log.error("A run broke.\n%s", report.trace)
         with self._roster_in_order() as roster:
             delivery = roster.report(member, report) if roster else None
         _deliver(delivery)
@@ -145,7 +149,7 @@ def _deliver(delivery: Delivery | None) -> None:
     try:
         seat.listener(report)
     except Exception:
-        logging.getLogger(__name__).exception("A session failed to take a report.")
+        _log.exception("A session failed to take a report.")
 
 
 _shared: list[Pool] = []

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import traceback
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -101,7 +102,9 @@ class Worker:
             action()
         except Exception as problem:
             self._run = None
-            self._send(Refused(ticket, _sentence(problem)))
+            told = isinstance(problem, SettingError | FloatingPointError)
+            trace = "" if told else traceback.format_exc()
+            self._send(Refused(ticket, _sentence(problem), trace))
 
 
 class Inbox:

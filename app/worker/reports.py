@@ -70,6 +70,8 @@ class Begun:
         Of plane bodies.
     wires
         Of a strand.
+    is_idle
+        Whether nothing acts on the structure, so that nothing moves.
     """
 
     ticket: int
@@ -88,6 +90,7 @@ class Begun:
     start: StartChoice | None = None
     mesh: Mesh | None = None
     wires: Wires | None = None
+    is_idle: bool = False
 
 
 @dataclass(frozen=True)
@@ -199,10 +202,17 @@ class Parked:
 
 @dataclass(frozen=True)
 class Refused:
-    """The run could not start, or broke: a sentence for the user."""
+    """The run could not start, or broke: a sentence for the user.
+
+    Attributes
+    ----------
+    trace
+        Where it broke, for the server's log; empty for settings that were refused.
+    """
 
     ticket: int
     reason: str
+    trace: str = ""
 
 
 @dataclass(frozen=True)
