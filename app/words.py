@@ -17,6 +17,8 @@ ENDINGS = {
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
+AT_REST = "■ at rest"
+NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
 HEADS = (
     "Iteration",
     "LATIN indicator η",
@@ -62,9 +64,11 @@ def status_line(
         else (f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}")
     )
     done = run.iteration or (run.newest.iteration if run.newest else 0)
+    idle = run.begun is not None and run.begun.is_idle
     if run.status is not None:
         counted = "iteration" if run.iteration == 1 else "iterations"
-        state = f"<b>{ENDINGS[run.status.ending]}</b> after {run.iteration} {counted}"
+        ending = AT_REST if idle else ENDINGS[run.status.ending]
+        state = f"<b>{ending}</b> after {run.iteration} {counted}"
     elif run.is_broken:
         state = f"<b>■ stopped</b> at iteration {run.iteration}"
     elif held:
@@ -91,7 +95,7 @@ def status_line(
     more = [f"<b>{escape(complaint)}</b>"] if complaint else []
     more += [start_line(run)] if run.is_warm else []
     if run.status is not None:
-        more.append(escape(run.status.advice))
+        more.append(NOTHING_ACTS if idle else escape(run.status.advice))
     elif run.notice:
         more.append(escape(run.notice))
     return f"{line}<br>{' '.join(more)}" if more else line

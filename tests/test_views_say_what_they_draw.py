@@ -31,7 +31,9 @@ SMALL: dict[str, dict[str, Any]] = {
 }
 
 
-def recorded(scene: str, ticket: int, **changes: Any) -> Recording:
+def recorded(
+    scene: str, ticket: int, watch: frozenset[str] = frozenset({"axial"}), **changes: Any
+) -> Recording:
     """Do a short run and keep what a page keeps of it."""
     values = {**SMALL[scene], "max_iterations": 4, **changes}
     kept = Recording(ticket, CATALOGUE[scene].settings.checked(values), "")
@@ -40,7 +42,7 @@ def recorded(scene: str, ticket: int, **changes: Any) -> Recording:
         if not isinstance(report, Waiting):
             kept.take(report)
 
-    order = Run(ticket, scene, values, watch=frozenset({"axial"}), look=Look())
+    order = Run(ticket, scene, values, watch=watch, look=Look())
     run = WorkerRun(order, take, lambda: False, References())
     while run.rest() is not None:
         run.advance()

@@ -134,7 +134,7 @@ class Deformed:
             factor = self._fitting = fitting(mesh, field.largest, self._fitting)
         moved = mesh.nodes + np.float32(factor) * field.displacement
         self._draw_scale(mesh, field, factor)
-        self._fit(mesh, round_up(factor * field.largest))
+        self._fit(mesh, round_up(factor * field.largest) if field.largest > 0.0 else 0.0)
         if self._drawn is not mesh:
             self._drawn = mesh
             self._mesh.data = {"corners": mesh.quads.ravel()}

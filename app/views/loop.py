@@ -31,6 +31,8 @@ Curve = tuple[np.ndarray, np.ndarray]
 
 
 LATIN = Key(BLUE, "line", "LATIN")
+STILL = 1e-6
+"""Displacement that an axis reaches where nothing moves, m."""
 
 
 class Loop:
@@ -85,7 +87,11 @@ class Loop:
         if settled is None:
             self._across, self._up = _held(self._across, x), _held(self._up, y)
         else:
-            self._across, self._up = (_around(values) for values in settled)
+            axes = run.begun.loop
+            self._across, self._up = (
+                _around(values, unit)
+                for values, (_, unit) in zip(settled, (axes.across, axes.up), strict=True)
+            )
         known = (run.ticket, run.reference is None, self._across, self._up)
         if known != self._drawn:
             self._drawn = known
@@ -169,7 +175,7 @@ def _held(old: Limits | None, values: np.ndarray) -> Limits:
     return held(old, float(values.min()), float(values.max()))
 
 
-def _around(values: np.ndarray) -> Limits:
+def _around(values: np.ndarray, unit: str) -> Limits:
     low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
-    margin = 0.12 * (high - low) or 1.0
+    margin = 0.12 * (high - low) or (STILL if unit == "m" else 1.0)
     return low - margin, high + margin

@@ -26,6 +26,7 @@ from app.worker.shown import (
 from app.worker.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.contact_fields import mean_by_point
+from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import Fields, loop_of
 from solver.latin import Checkpoint, Iterate
 from solver.laws import Contact
@@ -102,6 +103,7 @@ class Sampler:
             closed_form_end=None,
             mesh=self._mesh.mesh if self._mesh else None,
             wires=self._wires.base if self._wires else None,
+            is_idle=nothing_acts(problem),
         )
 
     def completed(self, begun: Begun) -> Begun:
