@@ -1,0 +1,41 @@
+"""A start that cannot be says why in a line: a port in use, a browser that is not there."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import ROOT, chromium
+
+
+def test_a_port_in_use_is_named_in_a_line() -> None:
+    panel = str(Path(sys.executable).with_name("panel"))
+    with socket.socket() as taken:
+        taken.bind(("", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        found = subprocess.run(
+            [panel, "serve", "app", "--port", port],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    assert found.returncode != 0
+    assert f"port {port} is already in use" in found.stderr.splitlines()[-1]
+    assert "Traceback" not in found.stderr
+
+
+def test_a_browser_that_is_missing_is_asked_for_in_a_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nowhere(name: str, **options: Any) -> None:
+        return None
+
+    monkeypatch.setattr(shutil, "which", nowhere)
+    with pytest.raises(pytest.fail.Exception, match="apt-get install chromium") as caught:
+        chromium()
+    assert not caught.value.pytrace
