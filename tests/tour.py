@@ -9,7 +9,11 @@ from typing import Any
 import param
 
 from app.samples import points_of
+from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError
+from solver.discrete import discretise
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NotHeldError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
@@ -62,6 +66,16 @@ def small(scene: str) -> Settings:
 
 def never_apply(scene: str) -> set[str]:
     return NEVER[scene].union(*(DEPENDENT[name] for name in NEVER[scene]))
+
+
+def has_errors(settings: Settings) -> bool:
+    """Tell whether the page can measure the errors of a run with such settings."""
+    if not has_reference(settings):
+        return False
+    try:
+        return bool(reference_of(discretise(settings)).converged.all())
+    except NotHeldError:
+        return False
 
 
 def has_choice(definition: Parameter) -> bool:
