@@ -1,4 +1,4 @@
-"""Every setting of every scene moves to both ends and back, and no run breaks on it."""
+"""Every setting of every scene moves to both ends and back, and no run or view breaks on it."""
 
 from __future__ import annotations
 
@@ -7,46 +7,52 @@ import math
 import pytest
 from tour import Move, ends, has_errors, never_apply, small, tour
 
+from app.cards import Cards
+from app.recording import Recording
+from app.views.drawing import Picture
 from app.worker.orders import Run
-from app.worker.reports import Begun, Frame, Progress, Reference, Report, Unrivalled
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
-from solver.latin import Record
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 WATCH = frozenset({"mesh", "axial", "spectra", "modes"})
+FEW = 3
 SMALL_ERROR = 0.02
 
 
-class Told:
-    """A run as the worker's process has it, with the references of those before."""
+class Page:
+    """Runs as the worker's process has them, one after the other, and all views of a page."""
 
-    def __init__(self, settings: Settings, references: References, iterations: int | None) -> None:
-        self.reports: list[Report] = []
-        order = Run(1, settings.scene, settings.values(), pause_after=iterations, watch=WATCH)
-        self.run = WorkerRun(order, self.reports.append, lambda: False, references)
-        while self.run.rest() is not None:
-            self.run.advance()
+    def __init__(self) -> None:
+        self._references = References()
+        self._cards = Cards("", lambda time: None, lambda number: None, lambda: None)
+        self._before: Recording | None = None
 
-    def kinds(self) -> set[type]:
-        return {type(report) for report in self.reports}
+    def run(self, settings: Settings, iterations: int | None = FEW) -> Recording:
+        """Do some iterations, or all, and draw them beside the run before."""
+        before = self._before
+        found = Recording(before.ticket + 1 if before else 1, settings, "")
+        values = settings.values()
+        order = Run(found.ticket, settings.scene, values, pause_after=iterations, watch=WATCH)
+        run = WorkerRun(order, found.take, lambda: False, self._references)
+        while run.rest() is not None:
+            run.advance()
+        picture = Picture(found, before, [before] if before else [], found.newest, 5)
+        for view in self._cards.fitting(settings):
+            view.draw(picture)
+        self._before = found
+        return found
 
-    @property
-    def records(self) -> list[Record]:
-        parts = [report for report in self.reports if isinstance(report, Progress)]
-        return [record for part in parts for record in part.records]
 
-
-def goes_on(settings: Settings, references: References) -> None:
-    told = Told(settings, references, 3)
-    assert {Begun, Frame, Progress} <= told.kinds()
-    assert told.records
-    errors = [(entry.error_displacement, entry.error_force) for entry in told.records]
-    if Reference in told.kinds():
+def goes_on(page: Page, settings: Settings) -> None:
+    found = page.run(settings)
+    assert found.newest is not None
+    assert found.records
+    errors = [(entry.error_displacement, entry.error_force) for entry in found.records]
+    if found.reference is not None:
         assert all(math.isfinite(value) for pair in errors for value in pair)
     else:
-        assert Unrivalled in told.kinds()
         assert not has_errors(settings)
 
 
@@ -58,19 +64,19 @@ def described(move: Move) -> str:
 def test_every_setting_moves_to_both_ends_and_back_and_errors_are_small_at_the_end(
     scene: str,
 ) -> None:
-    references, base = References(), small(scene)
-    goes_on(base, references)
+    page, base = Page(), small(scene)
+    goes_on(page, base)
     moved: set[str] = set()
     broken: list[str] = []
     for move in tour(base, ends):
         moved.add(move.name)
         if move.starts_a_run:
             try:
-                goes_on(move.after, references)
+                goes_on(page, move.after)
             except Exception as problem:
                 broken.append(f"{described(move)}: {problem!r}")
     assert broken == []
     assert set(base.definitions()) - moved == never_apply(scene)
-    last = Told(base, references, None).records[-1]
+    last = page.run(base, None).records[-1]
     assert last.error_displacement < SMALL_ERROR
     assert last.error_force < SMALL_ERROR

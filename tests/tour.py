@@ -35,6 +35,7 @@ DEPENDENT = {
     "local_stage": {"local_points", "local_instants", "local_refresh"},
     "start": {"nested_iterations"},
 }
+HALVINGS = 8
 Reach = Callable[[Settings, str], list[Any]]
 
 
@@ -105,8 +106,8 @@ def farthest(settings: Settings, name: str, end: Any) -> Any:
     """Give the value nearest to an end that is refused, as a slider has it, that is taken."""
     near, far = getattr(settings, name), end
     whole = isinstance(near, int)
-    while abs(far - near) > (1 if whole else 0.01 * abs(end)):
-        middle = (near + far) // 2 if whole else float(f"{0.5 * (near + far):.4g}")
+    for _ in range(HALVINGS):
+        middle = round(0.5 * (near + far)) if whole else float(f"{0.5 * (near + far):.4g}")
         try:
             settings.with_change(name, middle)
             near = middle
