@@ -40,6 +40,7 @@ class Painter:
         self._pulse = pulse
         self._changed = False
         self._owed: list[View] = []
+        self._owes_the_rest = False
         self._drawn_ticket = -1
         self._sent_at = 0.0
         self._rest_until = 0.0
@@ -63,7 +64,7 @@ class Painter:
         ticket
             Of the run that has something to show, if any.
         """
-        if not (self._changed or self._owed):
+        if not (self._changed or self._owed or self._owes_the_rest):
             return None
         # The first picture of a run overtakes what is still on its way.
         first = ticket is not None and not self.has_drawn(ticket)
@@ -77,6 +78,7 @@ class Painter:
         if first and ticket is not None:
             self._drawn_ticket = ticket
             self._owed = list(shown)
+        self._owes_the_rest = first
         count = VIEWS_AT_FIRST if first else VIEWS_AT_ONCE
         views, self._owed = self._owed[:count], self._owed[count:]
         return Turn([view for view in views if view in shown], first)

@@ -62,6 +62,24 @@ def test_the_browser_has_twice_the_time_that_it_painted_to_itself(
     assert drawn(made) is not None
 
 
+@pytest.mark.parametrize("count", [0, 1])
+def test_the_rest_of_the_page_follows_the_first_picture_however_few_the_views(
+    pulse: Pulse, clock: list[float], count: int
+) -> None:
+    made = Painter(pulse)
+    made.mark()
+    first = made.turn(VIEWS[:count], 1)
+    assert first is not None
+    assert first.is_first
+    made.send()
+    pulse.painted = 1
+    rest = made.turn(VIEWS[:count], 1)
+    assert rest is not None
+    assert not rest.is_first
+    assert list(rest.views) == []
+    assert made.turn(VIEWS[:count], 1) is None
+
+
 def test_the_first_picture_of_a_run_overtakes_what_is_on_its_way(
     clock: list[float], pulse: Pulse
 ) -> None:
