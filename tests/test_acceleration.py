@@ -152,9 +152,9 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
     state = [np.zeros((6, 1, 1), order="F")]
     mix = Anderson([np.ones((6, 1, 1))], memory=10)
     for _ in range(9):
-        before = [part.copy() for part in state]
+        mix.start(state)
         state[0][:, 0, 0] = matrix @ state[0][:, 0, 0] + shift
-        mix(before, state)
+        mix(state)
     exact = np.linalg.solve(np.eye(6) - matrix, shift)
     assert np.allclose(state[0][:, 0, 0], exact, atol=1e-5)
 
@@ -162,8 +162,8 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
 def test_the_memory_is_given_up_when_the_residual_grows():
     mix = Anderson([np.ones((2, 1, 1))], memory=5)
     for size in (1.0, 0.5, 0.4, 0.41):
-        before = [np.zeros((2, 1, 1))]
-        mix(before, [np.full((2, 1, 1), size)])
+        mix.start([np.zeros((2, 1, 1))])
+        mix([np.full((2, 1, 1), size)])
     assert mix.seen == 1
     assert mix.count == 0
 

@@ -221,9 +221,9 @@ class Engine:
         if self._anderson is None:
             self._linear_stage.advance(self._state, self._relaxation)
             return
-        before = [part.copy(order="F") for part in self._state]
+        self._anderson.start(self._state)
         self._linear_stage.advance(self._state, self._relaxation)
-        self._anderson(before, self._state)
+        self._anderson(self._state)
 
     def _recall(self, start: Checkpoint) -> None:
         """Bring back what the options remember, from a checkpoint of the same run."""
@@ -235,11 +235,11 @@ class Engine:
         self._anderson.count = max(count - len(start.history) + 1, 0)
         for outgoing in start.history:
             state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
-            before = [part.copy(order="F") for part in state]
+            self._anderson.start(state)
             incoming = self._linear_stage.incoming(state, np.empty_like(self.incoming))
             self._linear_stage.read(self._local_stage(incoming))
             self._linear_stage.advance(state, self._relaxation)
-            self._anderson.observe(before, state)
+            self._anderson.observe(state)
         self._anderson.seen, self._anderson.count = seen, count
         self._anderson.smallest = smallest
 

@@ -61,9 +61,9 @@ def nested_start(
         enough = RESIDUAL / (points - 1) ** 2
         for _ in range(settings.nested_iterations):
             linear.read(local(incoming))
-            before = [part.copy(order="F") for part in state]
+            mix.start(state)
             linear.advance(state, RELAXATION)
-            mix(before, state)
+            mix(state)
             linear.incoming(state, incoming)
             if mix.relative_residual <= enough:
                 break
