@@ -98,3 +98,14 @@ def test_k_of_a_support_is_at_least_the_stiffness_of_what_is_squeezed_on_it():
         k = automatic(problem)
         np.testing.assert_allclose(k[law.normal].sum(), expected, rtol=1e-12)
         np.testing.assert_allclose(k[law.tangent].sum(), expected, rtol=1e-12)
+
+
+def test_k_of_a_support_grows_with_the_cube_root_of_its_points_on_fine_meshes_of_deep_bodies():
+    def total(**values):
+        _, problem = problem_of("block", elements_up=4, substructures=8, **values)
+        law = problem.rubbing["support"]
+        return automatic(problem)[law.normal].sum()
+
+    np.testing.assert_allclose(total(elements=96), 7.0, rtol=1e-12)
+    np.testing.assert_allclose(total(elements=768), 14.0, rtol=1e-12)
+    np.testing.assert_allclose(total(elements=768, height=1e-3), 100.0, rtol=1e-12)
