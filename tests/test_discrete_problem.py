@@ -17,11 +17,12 @@ from solver.latin import iterations
 from solver.latin.coarse import CoarseProblem
 from solver.latin.direction import search_direction
 from solver.latin.indicators import latin_indicator
-from solver.latin.linear import DenseResponse, FullLinearStage, SparseResponse
+from solver.latin.linear import FullLinearStage
+from solver.latin.response import DenseResponse, SparseResponse
 from solver.scenes.bar import BarSettings, bar
 
 ANY = settings(derandomize=True, deadline=None, max_examples=60)
-linear = importlib.import_module("solver.latin.linear")
+response = importlib.import_module("solver.latin.response")
 coarse = importlib.import_module("solver.latin.coarse")
 
 
@@ -146,7 +147,7 @@ def test_the_iteration_does_not_see_the_size_of_a_metre(length):
 def test_dense_and_sparse_boundary_responses_agree(monkeypatch, change, substructures):
     chosen = options(substructures=substructures, **change)
     dense = sample(chosen, 25)
-    monkeypatch.setattr(linear, "DENSE_UP_TO", 0)
+    monkeypatch.setattr(response, "DENSE_UP_TO", 0)
     sparse = sample(chosen, 25)
     assert relative(sparse.outgoing, dense.outgoing) < 1e-10
     assert relative(sparse.incoming, dense.incoming) < 1e-10
@@ -157,7 +158,7 @@ def test_the_size_of_a_substructure_chooses_its_response(monkeypatch):
     problem = discretise(chosen)
     k = search_direction(problem, chosen)
     for limit, kind in [(problem.n_rows, DenseResponse), (problem.n_rows - 1, SparseResponse)]:
-        monkeypatch.setattr(linear, "DENSE_UP_TO", limit)
+        monkeypatch.setattr(response, "DENSE_UP_TO", limit)
         (group,) = FullLinearStage(problem, k, multiscale=True).groups
         assert type(group.response) is kind
 

@@ -11,8 +11,9 @@ from solver.discrete import discretise
 from solver.discrete.problem import space_time
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear import DenseResponse, FullLinearStage
+from solver.latin.linear import FullLinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
+from solver.latin.response import DenseResponse
 from solver.scenes.bar import BarSettings
 from solver.study.reduction_cost import half_plane, reduction_cost, whole_iterations
 

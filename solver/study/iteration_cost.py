@@ -15,8 +15,9 @@ from solver.discrete.problem import Problem, space_time
 from solver.latin import StopRules, iterations, solve
 from solver.latin.direction import search_direction
 from solver.latin.iterations import Clock, Engine
-from solver.latin.linear import DenseResponse, FullLinearStage
+from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
+from solver.latin.response import DenseResponse
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
