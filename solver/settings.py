@@ -327,6 +327,15 @@ class Settings(param.Parameterized):
         title="Most iterations",
         logarithmic=True,
     )
+    threads = count(
+        1,
+        (1, 64),
+        (1, 4),
+        "Threads that share the work of an iteration on a large structure, for a machine with "
+        "nothing else to do. The iterates are the same to the bit.",
+        group="Method",
+        title="Threads",
+    )
 
     @property
     def n_substructures(self) -> int:
