@@ -39,6 +39,7 @@ from solver.study.stability_report import summary as summary_of
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
 from solver.study.survey import Verdict, survey
+from solver.study.thread_gain import print_thread_gain
 
 REFUSED = 2
 
@@ -85,6 +86,9 @@ def _parser() -> argparse.ArgumentParser:
     cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
     cost.add_argument(
         "--reduction", action="store_true", help="separated bases against full fields instead"
+    )
+    cost.add_argument(
+        "--threads", type=int, default=1, help="so many threads against one instead, on blocks"
     )
     cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
@@ -205,6 +209,9 @@ def _check_repeats(chosen: argparse.Namespace) -> None:
 
 def _benchmark(chosen: argparse.Namespace) -> int:
     _check_repeats(chosen)
+    if chosen.threads > 1:
+        print_thread_gain(chosen.threads, chosen.repeats)
+        return 0
     measure = print_reduction_cost if chosen.reduction else print_iteration_cost
     measure(chosen.repeats)
     if not chosen.reduction:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg.lapack import dposv
 
 from solver.discrete.problem import Array, Indices, Problem
+from solver.latin.blocks import Blocks, at_once
 from solver.latin.linear import FullLinearStage
 from solver.laws import Contact
 
@@ -29,7 +30,9 @@ force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1; layers 100
 wander for hundreds with 2 before they come within 1 % (25 with 1.1; measured)."""
 
 
-def anderson(problem: Problem, stage: FullLinearStage, memory: int) -> Anderson:
+def anderson(
+    problem: Problem, stage: FullLinearStage, memory: int, blocks: Blocks | None = None
+) -> Anderson:
     """Prepare the acceleration of a linear stage, with the norm of k over boundary and time."""
     weights = [
         np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
@@ -40,7 +43,7 @@ def anderson(problem: Problem, stage: FullLinearStage, memory: int) -> Anderson:
     if contacts:
         is_held = any(law.below is None for law in contacts)
         growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-    return Anderson(weights, memory, growth)
+    return Anderson(weights, memory, growth, blocks)
 
 
 class Anderson:
@@ -63,6 +66,8 @@ class Anderson:
     growth
         Of the residual over the smallest so far, from which the memory is given up. Where the bound
         of friction is known 1 is best (twice as much takes up to a third more iterations to 1e-6).
+    blocks
+        Of instants, the last axis of the parts, in which images are kept and mixed.
 
     Attributes
     ----------
@@ -70,8 +75,15 @@ class Anderson:
         States and differences since the memory was last given up, and the smallest residual.
     """
 
-    def __init__(self, weights: list[Array], memory: int, growth: float = 1.0) -> None:
+    def __init__(
+        self,
+        weights: list[Array],
+        memory: int,
+        growth: float = 1.0,
+        blocks: Blocks | None = None,
+    ) -> None:
         self._growth = growth
+        self._blocks = blocks or at_once(weights[0].shape[-1])
         sizes = [part.size for part in weights]
         self._places = _in_a_row(sizes)
         self._chosen = _sample(sizes)
@@ -124,8 +136,12 @@ class Anderson:
         if self.seen:
             self._remember()
         image = self._images[self._place_of(self.count)]
-        for part, place in zip(state, self._places, strict=True):
-            image[place] = _flat(part)
+
+        def keep(some: slice) -> None:
+            for part, place in zip(state, self._places, strict=True):
+                image[_within(place, part, some)] = _flat(part[..., some])
+
+        self._blocks.each(keep)
         self._residual, self._residual_before = self._residual_before, residual
         self.seen += 1
         return True
@@ -153,8 +169,13 @@ class Anderson:
         if failed:
             return
         shares = self._shares(scale * gamma)
-        for part, place in zip(state, self._places, strict=True):
-            np.matmul(shares, self._images[: used + 1, place], out=_flat(part))
+
+        def mix(some: slice) -> None:
+            for part, place in zip(state, self._places, strict=True):
+                images = self._images[: used + 1, _within(place, part, some)]
+                np.matmul(shares, images, out=_flat(part[..., some]))
+
+        self._blocks.each(mix)
 
     def _shares(self, gamma: Array) -> Array:
         """Give the weights of the images, which add up to one, from those of their differences."""
@@ -178,6 +199,13 @@ class Anderson:
 def _in_a_row(sizes: list[int]) -> list[slice]:
     ends = np.cumsum(sizes)
     return [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
+
+
+def _within(place: slice, part: Array, some: slice) -> slice:
+    """Give where some instants of a part stand, which itself stands at a place."""
+    each = part.size // part.shape[-1]
+    first, last, _ = some.indices(part.shape[-1])
+    return slice(place.start + first * each, place.start + last * each)
 
 
 def _sample(sizes: list[int]) -> list[slice | Indices]:

@@ -10,6 +10,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from solver.discrete.problem import Array, Indices, Problem
+from solver.latin.blocks import Blocks, at_once
 
 DENSE_UP_TO = 50
 """Macro unknowns up to which one dense product is no slower than the sparse factor (measured)."""
@@ -44,42 +45,89 @@ class CoarseProblem:
     group share the part of P that they see, so their macro forces are one product.
     """
 
-    def __init__(self, problem: Problem, groups: Sequence[Member]) -> None:
+    def __init__(
+        self, problem: Problem, groups: Sequence[Member], blocks: Blocks | None = None
+    ) -> None:
         basis, load = problem.macro
+        self._blocks = blocks or at_once(problem.n_instants)
         self._members = []
-        seen, blocks = [], []
+        seen, systems = [], []
         constant = load.astype(float)
         for group in groups:
             own, local, assembly = _local_basis(basis, group.rows)
             forces = local.T @ group.response.force_rows(own)
             seen.append(assembly)
             own_system = forces[:, own] @ local
-            blocks.append(np.broadcast_to(own_system, (group.rows.shape[1], *own_system.shape)))
+            systems.append(np.broadcast_to(own_system, (group.rows.shape[1], *own_system.shape)))
             if group.body is not None:
                 held = group.k[own, None, None] * group.body[own]
                 held = local.T @ held.reshape(len(own), -1, order="F")
                 constant += assembly @ held.reshape(-1, constant.shape[1], order="F")
-            self._members.append((group, own, local, np.asfortranarray(forces)))
+            self._members.append(_Member(group, own, local, np.asfortranarray(forces)))
         self._spread = seen[0] if len(seen) == 1 else sparse.csr_array(sparse.hstack(seen))
-        system = self._spread @ _diagonal(blocks) @ self._spread.T
+        system = self._spread @ _diagonal(systems) @ self._spread.T
         self._solve = _solver(sparse.csc_array(system), self._spread, constant)
+
+        self._places = _in_a_row([member.size for member in self._members])
 
     def add_multiplier(self) -> None:
         """Add W~ to the targets of all groups."""
-        n_instants = self._members[0][0].target.shape[2]
-        forces = [
-            np.matmul(rows, group.target.reshape(rows.shape[1], -1, order="F")).reshape(
-                -1, n_instants, order="F"
-            )
-            for group, _, _, rows in self._members
+        self._blocks.each(self._add_multiplier)
+
+    def _add_multiplier(self, some: slice) -> None:
+        forces = [member.macro_forces(some) for member in self._members]
+        multiplier = self._solve(np.concatenate(forces) if len(forces) > 1 else forces[0], some)
+        for member, place in zip(self._members, self._places, strict=True):
+            member.add(multiplier[place], some)
+
+
+class _Member:
+    """A group, and the part of the macro basis that its substructures see.
+
+    Parameters
+    ----------
+    group, own
+        The group, and the places of its rows that carry macro quantities, ascending.
+    local
+        The basis on these, shape (n_own, n_local).
+    forces
+        Macro forces of a target, shape (n_local, n_boundary).
+    """
+
+    def __init__(self, group: Member, own: Indices, local: Array, forces: Array) -> None:
+        self._group, self._local, self._forces = group, local, forces
+        self.size = local.shape[1] * group.rows.shape[1]
+        # Where they follow each other, adding to them copies nothing.
+        breaks = np.flatnonzero(np.diff(own) > 1) + 1
+        starts, ends = [0, *breaks], [*breaks, len(own)]
+        self._runs = [
+            (slice(own[start], own[start] + end - start), slice(start, end))
+            for start, end in zip(starts, ends, strict=True)
         ]
-        multiplier = self._solve(np.concatenate(forces) if len(forces) > 1 else forces[0])
-        first = 0
-        for group, own, local, _ in self._members:
-            size = local.shape[1] * group.rows.shape[1]
-            part = multiplier[first : first + size].reshape(local.shape[1], -1, order="F")
-            first += size
-            group.target[own] += (local @ part).reshape(len(own), -1, n_instants, order="F")
+
+    def macro_forces(self, some: slice) -> Array:
+        """Give the macro forces of the target at some instants, shape (size, n_some)."""
+        target = self._columns(some)
+        forces: Array = np.matmul(self._forces, target)
+        return forces.reshape(self.size, -1, order="F")
+
+    def add(self, multiplier: Array, some: slice) -> None:
+        """Add a multiplier, shape (size, n_some), to the target at some instants."""
+        target = self._columns(some)
+        part = multiplier.reshape(self._local.shape[1], -1, order="F")
+        change = np.empty((len(self._local), target.shape[1]), order="F")
+        np.matmul(self._local, part, out=change)
+        for run, own in self._runs:
+            target[run] += change[own]
+
+    def _columns(self, some: slice) -> Array:
+        target = self._group.target
+        return target[:, :, some].reshape(len(target), -1, order="F")
+
+
+def _in_a_row(sizes: list[int]) -> list[slice]:
+    ends = np.cumsum(sizes)
+    return [slice(end - size, end) for end, size in zip(ends, sizes, strict=True)]
 
 
 def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array, sparse.csr_array]:
@@ -130,12 +178,12 @@ def _diagonal(blocks: list[Array]) -> sparse.csr_array:
 
 def _solver(
     system: sparse.csc_array, spread: sparse.csr_array, constant: Array
-) -> Callable[[Array], Array]:
-    """Give the map from macro-row forces of the targets to W~ at these rows."""
+) -> Callable[[Array, slice], Array]:
+    """Give the map from macro-row forces of the targets at some instants to W~ at these rows."""
     factor = splu(system)
     if system.shape[0] > DENSE_UP_TO:
-        return lambda forces: spread.T @ factor.solve(constant - spread @ forces)
+        return lambda forces, some: spread.T @ factor.solve(constant[:, some] - spread @ forces)
     inverse = spread.T @ factor.solve(np.eye(system.shape[0]))
     shift = np.asfortranarray(inverse @ constant)
     product = np.asfortranarray(inverse @ spread)
-    return lambda forces: shift - product @ forces
+    return lambda forces, some: shift[:, some] - product @ forces

@@ -13,6 +13,7 @@ from solver.definitions import SettingError
 from solver.discrete import coarser_problems
 from solver.discrete.problem import Array, Problem
 from solver.latin.acceleration import Anderson, anderson
+from solver.latin.blocks import Blocks
 from solver.latin.direction import search_direction
 from solver.latin.direction_update import DirectionUpdate
 from solver.latin.iterate import Checkpoint, Course, Iterate
@@ -126,7 +127,8 @@ class Engine:
     def _make_stages(self, k: Array) -> None:
         problem, settings = self._problem, self._settings
         self.k = k
-        self._local_stage = LocalStage(problem, self.k)
+        blocks = Blocks(problem.n_rows, problem.n_instants, settings.threads)
+        self._local_stage = LocalStage(problem, self.k, blocks=blocks)
         self._sampled: ReducedLocalStage | None = None
         self._anderson: Anderson | None = None
         self._linear_stage: LinearStage[Any]
@@ -136,9 +138,9 @@ class Engine:
                 self._sampled = ReducedLocalStage(problem, self.k, settings, reduced)
             self._linear_stage = reduced
         else:
-            full = FullLinearStage(problem, self.k, multiscale=settings.multiscale)
+            full = FullLinearStage(problem, self.k, multiscale=settings.multiscale, blocks=blocks)
             if settings.acceleration == "anderson":
-                self._anderson = anderson(problem, full, settings.anderson_memory)
+                self._anderson = anderson(problem, full, settings.anderson_memory, blocks)
             self._linear_stage = full
 
     def turn(self) -> bool:

@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from solver.discrete.problem import Array, Indices, Problem, Substructure, space_time
+from solver.latin.blocks import ALL, Blocks, at_once
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
 from solver.latin.response import response
@@ -33,6 +34,8 @@ class LinearStage(Generic[State]):
         Whether the coarse problem is part of it.
     make_group
         Makes a group of identical substructures with the same k.
+    blocks
+        Of instants, in which it works; None for all at once.
     """
 
     def __init__(
@@ -42,12 +45,13 @@ class LinearStage(Generic[State]):
         *,
         multiscale: bool,
         make_group: Callable[[Problem, list[Substructure], Array], Group[State]],
+        blocks: Blocks | None = None,
     ) -> None:
         self.groups: list[Group[State]] = [
             make_group(problem, parts, k) for parts in _alike(problem, k)
         ]
         self._coarse = (
-            CoarseProblem(problem, self.groups) if multiscale and problem.has_cuts else None
+            CoarseProblem(problem, self.groups, blocks) if multiscale and problem.has_cuts else None
         )
         self._shape = (problem.n_rows, problem.n_instants)
 
@@ -146,18 +150,18 @@ class Group(ABC, Generic[State]):
         """Allocate a zero field of the group."""
         return np.zeros((*self.rows.shape, self._n_instants), order="F")
 
-    def gather(self, field: Array) -> None:
-        """Take the group's rows of a boundary field as its target."""
-        flat = self.target.T.reshape(self._n_instants, -1)
-        np.take(field.T, self._order, axis=1, out=flat, mode="clip")
+    def gather(self, field: Array, some: slice = ALL) -> None:
+        """Take the group's rows of a boundary field as its target, at some instants."""
+        flat = self.target.T.reshape(self._n_instants, -1)[some]
+        np.take(field.T[some], self._order, axis=1, out=flat, mode="clip")
 
-    def scatter(self, own: Array, field: Array) -> None:
-        """Write a field of the group into the rows of a boundary field."""
-        flat = own.T.reshape(self._n_instants, -1)
+    def scatter(self, own: Array, field: Array, some: slice = ALL) -> None:
+        """Write a field of the group into the rows of a boundary field, at some instants."""
+        flat = own.T.reshape(self._n_instants, -1)[some]
         if self._back is None:
-            field.T[:, self._order] = flat
+            field.T[some, self._order] = flat
         else:
-            np.take(flat, self._back, axis=1, out=field.T, mode="clip")
+            np.take(flat, self._back, axis=1, out=field.T[some], mode="clip")
 
     @abstractmethod
     def zero(self) -> State:
@@ -195,31 +199,70 @@ class FullGroup(Group[Array]):
         """Give the state itself."""
         return state
 
-    def relax(self, state: Array, relaxation: float) -> None:
-        """Mix the target into a state."""
+    def relax(self, state: Array, relaxation: float, some: slice = ALL) -> None:
+        """Mix the target into a state, at some instants."""
+        old, target = state[:, :, some], self.target[:, :, some]
         if relaxation == 1.0:
-            np.copyto(state, self.target)
+            np.copyto(old, target)
             return
-        np.subtract(self.target, state, out=self.target)
-        np.multiply(self.target, relaxation, out=self.target)
-        np.add(state, self.target, out=state)
+        np.subtract(target, old, out=target)
+        np.multiply(target, relaxation, out=target)
+        np.add(old, target, out=old)
 
-    def reflect(self, state: Array) -> Array:
-        """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it."""
+    def reflect(self, state: Array, some: slice = ALL) -> Array:
+        """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it.
+
+        Only some instants are up to date.
+        """
         flat = (len(self.k), -1)
+        reflected = self._reflected[:, :, some]
         self.response.reflect(
-            state.reshape(flat, order="F"), self._reflected.reshape(flat, order="F")
+            state[:, :, some].reshape(flat, order="F"), reflected.reshape(flat, order="F")
         )
         if self.body is not None:
-            self._reflected += 2.0 * self.body
+            reflected += 2.0 * self.body[:, :, some]
         return self._reflected
 
 
 class FullLinearStage(LinearStage[Array]):
-    """The linear stage with full space-time fields."""
+    """The linear stage with full space-time fields, all of which is local in time."""
 
-    def __init__(self, problem: Problem, k: Array, *, multiscale: bool) -> None:
-        super().__init__(problem, k, multiscale=multiscale, make_group=FullGroup)
+    def __init__(
+        self, problem: Problem, k: Array, *, multiscale: bool, blocks: Blocks | None = None
+    ) -> None:
+        super().__init__(problem, k, multiscale=multiscale, make_group=FullGroup, blocks=blocks)
+        self._full = [group for group in self.groups if isinstance(group, FullGroup)]
+        self._blocks = blocks or at_once(problem.n_instants)
+
+    def read(self, target: Array) -> None:
+        """Take W^ + F^/k of the local stage, shape (n_rows, n_instants), as all groups' target."""
+
+        def work(some: slice) -> None:
+            for group in self._full:
+                group.gather(target, some)
+
+        self._blocks.each(work)
+
+    def advance(self, state: list[Array], relaxation: float) -> None:
+        """Solve the linear stage and relax, as `LinearStage.advance` says."""
+        if self._coarse is not None:
+            self._coarse.add_multiplier()
+
+        def work(some: slice) -> None:
+            for group, own in zip(self._full, state, strict=True):
+                group.relax(own, relaxation, some)
+
+        self._blocks.each(work)
+
+    def incoming(self, state: list[Array], field: Array) -> Array:
+        """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
+
+        def work(some: slice) -> None:
+            for group, own in zip(self._full, state, strict=True):
+                group.scatter(group.reflect(own, some), field, some)
+
+        self._blocks.each(work)
+        return field
 
 
 def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:

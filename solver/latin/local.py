@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.discrete.problem import Array, Indices, Problem, space_time
+from solver.latin.blocks import Blocks, at_once
 from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
 from solver.laws.boundary import neumann
 from solver.laws.contact import ContactLaw
@@ -28,6 +29,8 @@ class LocalStage:
     where
         Rows and instants to which the laws are confined, or None for all. Only rows of `Friction`
         may be left out, together with those below; fields then have these rows and instants alone.
+    blocks
+        Of instants, for what is local in time; None for all at once.
 
     Attributes
     ----------
@@ -36,12 +39,17 @@ class LocalStage:
     """
 
     def __init__(
-        self, problem: Problem, k: Array, where: tuple[Indices, Indices] | None = None
+        self,
+        problem: Problem,
+        k: Array,
+        where: tuple[Indices, Indices] | None = None,
+        blocks: Blocks | None = None,
     ) -> None:
         rows, instants = where or (np.arange(problem.n_rows), np.arange(problem.n_instants))
         place = np.full(problem.n_rows, -1)
         place[rows] = np.arange(len(rows))
         shape = (len(rows), len(instants))
+        self._blocks = blocks or at_once(len(instants))
         self.displacement = space_time(*shape)
         self._outgoing = space_time(*shape)
         self._given: list[tuple[slice | Indices, Array]] = []
@@ -81,15 +89,21 @@ class LocalStage:
             found[rows] = displacement
         for law in self._laws:
             law(incoming, found)
+        self._blocks.each(lambda some: self._bonds(incoming[:, some], some))
+        return self._outgoing
+
+    def _bonds(self, incoming: Array, some: slice) -> None:
+        """Obey the laws that are local in time, at some instants, and reflect."""
+        found, outgoing = self.displacement[:, some], self._outgoing[:, some]
         if self._cuts is not None:
             first, second, share = self._cuts
             common = perfect(incoming[first], incoming[second], share)
             found[first] = common
             found[second] = common
         for rows, force_over_k in self._loads:
-            found[rows] = neumann(incoming[rows], force_over_k)
-        np.multiply(found, 2.0, out=self._outgoing)
-        return np.subtract(self._outgoing, incoming, out=self._outgoing)
+            found[rows] = neumann(incoming[rows], force_over_k[:, some])
+        np.multiply(found, 2.0, out=outgoing)
+        np.subtract(outgoing, incoming, out=outgoing)
 
 
 def together(laws: Iterable[Friction | Contact]) -> list[Friction | Contact]:
