@@ -7,6 +7,7 @@ import json
 import math
 import os
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -125,9 +126,11 @@ def _run(chosen: argparse.Namespace) -> int:
         _check_file(chosen.out)
     for remark in remarks(settings, chosen.changes):
         print(f"slipfront: {remark}", file=sys.stderr)
+    began = time.perf_counter()
     problem = discretise(settings)
+    spent = time.perf_counter() - began
     distance = _distance(problem) if chosen.reference else None
-    solution = solve(problem, settings, distance=distance, watch=chosen.reference)
+    solution = solve(problem, settings, distance=distance, watch=chosen.reference, spent=spent)
     _print_figures(settings, solution, chosen.json)
     if chosen.out is not None:
         try:

@@ -101,7 +101,7 @@ def record(
 
 
 def judged(
-    problem: Problem, settings: Settings, start: Checkpoint | None = None
+    problem: Problem, settings: Settings, start: Checkpoint | None = None, spent: float = 0.0
 ) -> Iterator[tuple[Iterate, Verdict]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
@@ -109,8 +109,10 @@ def judged(
     ----------
     problem, settings, start
         As for `iterations`, which goes on though a verdict says that the run ends.
+    spent
+        Seconds that the run took before, to make the problem.
     """
-    rules = StopRules(settings)
+    rules = StopRules(settings, spent=spent)
     for iterate in iterations(problem, settings, start):
         verdict = rules.judge(iterate)
         yield iterate, verdict
@@ -126,6 +128,7 @@ def solve(
     distance: Distance | None = None,
     start: Checkpoint | None = None,
     watch: bool = True,
+    spent: float = 0.0,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Solution:
     """Drive the iteration until a stop rule ends it.
@@ -138,12 +141,14 @@ def solve(
         To a reference, for the errors in the records.
     watch
         Whether the records shall hold the indicators of every iteration.
+    spent
+        As for `judged`.
     cancelled
         Asked after every iteration.
     """
     records: list[Record] = []
     last = None
-    for iterate, verdict in judged(problem, settings, start):
+    for iterate, verdict in judged(problem, settings, start, spent):
         status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)

@@ -106,14 +106,16 @@ class StopRules:
         Of the run.
     proves
         Whether status steps are tried at all.
+    spent
+        Seconds that the run took before its iterations, to make the problem.
 
     Attributes
     ----------
     seconds
-        Time that they took so far.
+        Time that the run took so far beside its iterations.
     """
 
-    def __init__(self, settings: Settings, *, proves: bool = True) -> None:
+    def __init__(self, settings: Settings, *, proves: bool = True, spent: float = 0.0) -> None:
         # Plain values: a setting takes longer to read than an iteration has for all of this.
         self._accuracy, self._tolerance = float(settings.accuracy), float(settings.tolerance)
         self._most, self._relaxation = settings.max_iterations, settings.relaxation
@@ -123,7 +125,7 @@ class StopRules:
         self._of_estimate, self._of_indicator = Lookout(), Lookout()
         self._best = math.inf
         self._best_at = 0
-        self.seconds = 0.0
+        self.seconds = spent
 
     def judge(self, iterate: Iterate) -> Verdict:
         """Say whether the run ends after an iterate, and how."""

@@ -231,9 +231,10 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
     """Give the time after every iteration, with all that the run needs to end, and discretising."""
     start = time.perf_counter()
     problem = discretise(settings)
-    before = time.perf_counter() - start
-    found = islice(judged(problem, settings), number)
-    return [before + verdict.seconds for _, verdict in found]
+    spent = time.perf_counter() - start
+    return [
+        verdict.seconds for _, verdict in islice(judged(problem, settings, None, spent), number)
+    ]
 
 
 def by_increments(settings: Settings) -> float:
