@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import math
 import os
@@ -39,7 +40,7 @@ from solver.study.stability_report import HEAD, line, notes, passes, prepare, wr
 from solver.study.stability_report import summary as summary_of
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
-from solver.study.survey import Verdict, survey
+from solver.study.survey import Row, Verdict, survey
 from solver.study.thread_gain import print_thread_gain
 
 REFUSED = 2
@@ -112,7 +113,6 @@ def _parser() -> argparse.ArgumentParser:
     random = commands.add_parser("survey", help="random runs of all scenes, each judged")
     random.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
     random.add_argument("--runs", type=int, default=100, help="number of runs")
-    random.add_argument("--first", type=int, default=0, help="number of the first row")
     random.add_argument("--seed", type=int, default=1, help="of the draws")
     random.add_argument("--row", type=int, help="this row of one scene alone")
     random.add_argument("--out", type=Path, default=Path("survey"), metavar="DIR")
@@ -289,23 +289,24 @@ def _stability(chosen: argparse.Namespace) -> int:
 
 def _survey(chosen: argparse.Namespace) -> int:
     scenes = [scene_settings(scene).scene for scene in chosen.scenes] or list(CATALOGUE)
-    for name in ("runs", "first", "seed", "row"):
-        least, value = 1 if name == "runs" else 0, getattr(chosen, name)
+    for name, least in (("runs", 1), ("seed", 0), ("row", 0)):
+        value = getattr(chosen, name)
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
-    first, runs = (chosen.first, chosen.runs) if chosen.row is None else (chosen.row, 1)
-    numbers = range(first, first + runs)
+    numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
+    rows: list[Row] = []
     try:
         survey_report.prepare(chosen.out)
         print(survey_report.HEAD)
-        rows = survey(scenes, numbers, chosen.seed, survey_report.tell)
+        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept
+            for row in survey(scenes, numbers, chosen.seed):
+                rows.append(row)
+                print(survey_report.line(row), flush=True)
         files = survey_report.write_report(rows, chosen.out)
     except BrokenPipeError:
         raise
     except OSError as problem:
         allowed_folder = "a folder that can be made and written to"
         raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None
-    counts, summed = aligned(survey_report.table_of_counts(rows)), survey_report.summary(rows)
-    print("\n".join(["", counts, "", summed, *survey_report.wrong_lines(rows)]))
-    print(f"{len(files)} files in {chosen.out}")
+    print("\n".join(["", *survey_report.ends(rows), f"{len(files)} files in {chosen.out}"]))
     return int(any(row.verdict is Verdict.WRONG for row in rows))

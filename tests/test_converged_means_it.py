@@ -103,6 +103,17 @@ def test_a_slender_stack_is_certified_up_to_the_rounding_of_its_own_forces():
     assert judge(outcome, settings.accuracy) is Verdict.RIGHT
 
 
+@pytest.mark.parametrize("finish", ["none", "status"])
+def test_a_contact_force_that_all_but_stands_still_far_from_the_solution_is_not_believed(finish):
+    settings = from_words(
+        "strand substructures=3 peak=1464.7 instants=9 wires=4 broken=3 elements=320",
+        finish=finish,
+    )
+    outcome = run(settings)
+    assert judge(outcome, settings.accuracy) in (Verdict.RIGHT, Verdict.TOLD), outcome
+    assert outcome.certified == (finish == "status")
+
+
 @pytest.mark.parametrize("method", ["fast", "paper"])
 def test_contacts_that_never_close_carry_a_force_that_is_known(method):
     settings = CATALOGUE["block"].settings.checked(

@@ -15,12 +15,13 @@ from solver.settings import Settings
 
 LOOK_BACK = 0.7
 """The change of the contact force is that since the iterate at this share of the iterations."""
-SAFETY = 5.0
-"""What is left over that change, for a force that converges as the inverse root of the iterations:
-1 / (LOOK_BACK^-0.5 - 1). Nothing slower was seen; the common rates are faster."""
+SAFETY = 20.0
+"""What is left over that change, for a force that converges as the iterations to the power of -1/7:
+1 / (LOOK_BACK^(-1/7) - 1). Of four wires of 320 elements it does (measured), and the statuses have
+been right since iteration 5; the common rates are faster."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
-NEAR = 0.2
+NEAR = 0.8
 """Estimate by the change at which the status step is worth its first trial: the force has changed
 by 4 % in the last third of the iterations, and most statuses are right."""
 SOLVED = 1e-20
@@ -28,6 +29,8 @@ SOLVED = 1e-20
 LONG = 100
 """Iterations from which on it is tried whatever has changed, at every doubling: a contact force
 that dies out changes by much of itself for ever."""
+WAIT = 2.0
+"""Seconds that a step may take before a run is called converged, whatever the iterations took."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
 VANISHING = 1e-8
@@ -81,7 +84,7 @@ class ErrorEstimate:
         is_near = expected <= max(NEAR, accuracy) or indicator <= SOLVED
         is_near |= iterate.number >= max(LONG, 2 * self._last_trial)
         if self.certificate is None and is_due and is_near:
-            self.try_step(iterate)
+            self.try_step(iterate, least=WAIT if expected <= accuracy else 0.0)
         if self.certificate is None:
             return expected
         found = self.certificate.distance.of_friction_force(iterate)
@@ -103,16 +106,27 @@ class ErrorEstimate:
         errors = distance.of_friction_force(iterate), distance.of_displacement(iterate)
         return max(errors) <= share
 
-    def can_be_proven(self, iterate: Iterate, patience: float = 1.0) -> bool:
-        """Tell whether a status step is worth its cost by now, or if it may cost times more."""
+    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
+        """Tell whether a status step is worth its cost by now.
+
+        Parameters
+        ----------
+        iterate
+            From which it would be tried.
+        patience
+            Times as much that it may cost.
+        least
+            What it may cost in any case, s.
+        """
         if not self._has_solver:
             return False
         # Bases that are too small converge to something else, which no change shows.
-        return self._is_reduced or is_affordable(iterate.problem, patience * iterate.number)
+        allowed = patience * iterate.number
+        return self._is_reduced or is_affordable(iterate.problem, allowed, least)
 
-    def try_step(self, iterate: Iterate, patience: float = 1.0) -> bool:
-        """Try the status step from an iterate, unless it costs too much; tell whether it holds."""
-        if not self.can_be_proven(iterate, patience):
+    def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
+        """Try the status step, unless it costs too much, as above; tell whether it holds."""
+        if not self.can_be_proven(iterate, patience, least):
             return False
         self._last_trial = iterate.number
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1

@@ -9,7 +9,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from solver.latin.estimate import LAST, ErrorEstimate
+from solver.latin.estimate import LAST, WAIT, ErrorEstimate
 from solver.latin.finish import finished
 from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
@@ -215,7 +215,8 @@ class StopRules:
         if indicator <= self._tolerance and agreed and estimated <= self._accuracy:
             if self._estimate.is_proven:
                 return Status(Ending.CONVERGED, _PROVEN)
-            if not self._is_reduced and not self._estimate.can_be_proven(iterate):
+            may_be_proven = self._estimate.can_be_proven(iterate, least=WAIT)
+            if not self._is_reduced and not may_be_proven:
                 return Status(Ending.CONVERGED, _EXPECTED)
         if indicator < STALL_FACTOR * self._best:
             self._best, self._best_at = indicator, iteration

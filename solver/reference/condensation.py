@@ -31,6 +31,9 @@ LOOSE = 1e-14
 SOFTEST = 1e-8
 """Spring at a pair, at least, as a share of the stiffest degree of freedom."""
 
+ROUNDING = 256.0 * float(np.finfo(float).eps)
+"""Share of the forces that displacements make inside elements that rounding leaves of them."""
+
 TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
 
@@ -138,6 +141,15 @@ class Condensation:
         """
         outer = self._force + self._jumps.T @ force
         return np.asarray((self._whole @ displacement - outer)[self._free])
+
+    def rounding(self, displacement: Array) -> float:
+        """Give what rounding alone may leave out of balance at any instant, scaled.
+
+        The forces inside a slender body are far larger than what acts on it; and what they were
+        once stays in the places where its contacts stick.
+        """
+        inside = abs(self._whole) @ np.abs(displacement)
+        return ROUNDING * float(inside.max(initial=0.0))
 
     @cached_property
     def largest_force(self) -> float:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from solver.discrete.contact_fields import OPEN
 from solver.discrete.problem import Array, Problem, components
 from solver.reference.condensation import Condensation, TooLargeError
+from solver.reference.residual import unbalanced_of
 from solver.reference.solution import Interrupted, Reference
 from solver.reference.states import HELD, Response, Rules, Sides, States, rules_of
 from solver.reference.unloading import unload
@@ -34,7 +35,7 @@ MOST_JUMPS = 5000
 """Jumps up to which there is a reference: its time grows with their cube (8 s for 1900, measured),
 and it keeps a few dense matrices of their size."""
 CONVERGED = 1e-9
-"""Relative KKT residual up to which an instant counts as solved."""
+"""Relative KKT residual up to which an instant counts as solved, where rounding allows it."""
 PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
 TOGETHER = 1e-10
@@ -126,10 +127,11 @@ class IncrementalContact:
         jumps = condensed.jump(displacement)
         jumps[condensed.moving] = jump
         forces = _all_forces(condensed, rules, jumps, force)
-        unbalanced = _unbalanced(condensed, rules, displacement, forces)
+        unbalanced = unbalanced_of(condensed, rules, displacement, forces)
+        blurred = condensed.rounding(displacement)
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         residual = unbalanced / size if size > 0.0 else unbalanced
-        converged = reached & (residual <= CONVERGED)
+        converged = reached & (unbalanced <= max(CONVERGED * size, blurred))
         return Reference(
             problem=problem,
             displacement=displacement * problem.scales.displacement,
@@ -137,6 +139,7 @@ class IncrementalContact:
             status=_status(rules, jumps, forces),
             residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * problem.scales.force,
+            rounding=blurred * problem.scales.force,
             converged=converged,
             ambiguous=ambiguous & converged,
             steps=newton.response.solutions,
@@ -268,32 +271,6 @@ def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Arra
     slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
     found[given] = (-rules.bounds(found) * slip)[given]
     return found
-
-
-def _unbalanced(
-    condensed: Condensation, rules: Rules, displacement: Array, forces: Array
-) -> NDArray[np.float64]:
-    """Give the KKT residual of every instant, a force, scaled.
-
-    The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
-    opening g, and of the friction force from f - r v cut to its bound, with the slip v. A stiffness
-    r of the pair makes a force of a length; the conditions hold if and only if both distances
-    vanish.
-    """
-    jumps = condensed.jump(displacement)
-    unit = np.zeros((len(jumps), 1))
-    unit[condensed.moving, 0] = condensed.springs
-    unit[unit == 0.0] = 1.0
-    opening = jumps + rules.gap[:, None]
-    slip = np.diff(jumps, axis=1, prepend=0.0)
-    bound = rules.bounds(forces)
-    pressed = np.maximum(forces - unit * opening, 0.0)
-    rubbed = np.clip(forces - unit * slip, -bound, bound)
-    wrong = np.abs(forces - np.where(rules.normal[:, None], pressed, rubbed))
-    # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
-    wrong[rules.normal & (np.isin(np.arange(len(jumps)), condensed.moving, invert=True))] = 0.0
-    unbalanced = np.abs(condensed.unbalanced(displacement, forces)).max(axis=0, initial=0.0)
-    return np.asarray(np.maximum(unbalanced, wrong.max(axis=0, initial=0.0)))
 
 
 def _status(rules: Rules, jumps: Array, forces: Array) -> NDArray[np.int8]:

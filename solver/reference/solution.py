@@ -48,6 +48,8 @@ class Reference:
         Newton steps, which are linear systems of full size, in all.
     seconds
         Time taken.
+    rounding
+        What rounding alone may leave of `unbalanced`, N; 0 of rods on a rigid support.
     """
 
     problem: Problem
@@ -60,6 +62,7 @@ class Reference:
     ambiguous: NDArray[np.bool_]
     steps: int
     seconds: float
+    rounding: float = 0.0
 
     @property
     def friction_force(self) -> Array:

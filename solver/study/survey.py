@@ -6,7 +6,7 @@ import json
 import math
 import shlex
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -123,6 +123,11 @@ class Row:
         return is_foolish(self.settings)
 
     @property
+    def may_finish(self) -> bool:
+        """Whether a status step may end it."""
+        return self.settings.finish == "status" and not self.settings.is_reduced
+
+    @property
     def changed(self) -> dict[str, Any]:
         """Settings that differ from their defaults, the method among them."""
         return self.settings.changed()
@@ -138,12 +143,7 @@ class Row:
         return " ".join([f"python -m solver run {self.scene}", *changes])
 
 
-def survey(
-    scenes: Sequence[str],
-    numbers: Sequence[int],
-    seed: int,
-    report: Callable[[Row], None] = lambda row: None,
-) -> list[Row]:
+def survey(scenes: Sequence[str], numbers: Sequence[int], seed: int) -> Iterator[Row]:
     """Run random settings of scenes in turn.
 
     Parameters
@@ -154,14 +154,13 @@ def survey(
         Of the rows to run; row n is of scene n modulo their number.
     seed
         Of the draws.
-    report
-        Told of each row when it is done.
+
+    Yields
+    ------
+    Every row as soon as it is done.
     """
-    rows = []
     for number in numbers:
-        rows.append(run_row(scenes[number % len(scenes)], seed, number))
-        report(rows[-1])
-    return rows
+        yield run_row(scenes[number % len(scenes)], seed, number)
 
 
 def run_row(scene: str, seed: int, number: int) -> Row:
@@ -239,10 +238,10 @@ def _reference(problem: Problem) -> tuple[Reference | None, str]:
     return reference, f"there are several solutions at {several} instants" if several else ""
 
 
-def ended_otherwise(rows: Sequence[Row]) -> tuple[int, int]:
-    """Give how many of those without a foolish k did not converge, and of how many."""
-    sound = [row for row in rows if not row.is_foolish and row.outcome.ending != REFUSED]
-    return sum(row.verdict is Verdict.TOLD for row in sound), len(sound)
+def is_sound(row: Row) -> bool:
+    """Tell whether a row could converge: it has a solution, and its k is not foolish."""
+    found = row.outcome
+    return not row.is_foolish and found.ending != REFUSED and not found.doubt
 
 
 def groups(rows: Sequence[Row]) -> Iterator[tuple[str, str, list[Row]]]:

@@ -10,7 +10,9 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from solver.study.survey import MEANING, Row, Verdict, ended_otherwise, groups
+from solver.latin import Ending
+from solver.study.study_report import aligned
+from solver.study.survey import MEANING, Row, Verdict, groups, is_sound
 
 COLOURS = {
     Verdict.RIGHT: "#0072B2",
@@ -19,6 +21,27 @@ COLOURS = {
     Verdict.WRONG: "#D55E00",
 }
 """Okabe and Ito's palette, told apart by the colour-blind."""
+COLUMNS = (
+    "scene",
+    "seed",
+    "row",
+    "method",
+    "foolish_k",
+    "may_finish",
+    "verdict",
+    "ending",
+    "certified",
+    "iterations",
+    "accuracy",
+    "estimated_error",
+    "error_force",
+    "error_displacement",
+    "residual",
+    "seconds",
+    "doubt",
+    "advice",
+    "settings",
+)
 FILES = ("survey.csv", "survey.html")
 PAGE = """<!DOCTYPE html>
 <html lang="en">
@@ -59,11 +82,6 @@ def line(row: Row) -> str:
     )
 
 
-def tell(row: Row) -> None:
-    """Print a row as soon as it is done."""
-    print(line(row), flush=True)
-
-
 HEAD = (
     f"{'row':>5} {'verdict':<7} {'scene':<6} {'method':<12} {'ending':<9} {'':<9} {'iter.':>5} "
     f"{'estimate':>8} {'error F':>8} {'accuracy':>8}"
@@ -75,15 +93,25 @@ def _number(value: float, digits: str = ".1e") -> str:
 
 
 def summary(rows: Sequence[Row]) -> str:
-    """Say in a sentence how many rows came to what."""
+    """Say in a few sentences how many rows came to what."""
     counts = Counter(row.verdict for row in rows)
     told = ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
-    missed, sound = ended_otherwise(rows)
-    share = f"{100.0 * missed / sound:.1f} %" if sound else "none"
+    sound = [row for row in rows if is_sound(row)]
+    finishing = [row for row in sound if row.may_finish]
+    others = [row for row in sound if not row.may_finish]
     return (
-        f"{len(rows)} runs: {told}. Of the {sound} without a foolish k, {missed} ({share}) ended "
-        "otherwise than converged."
+        f"{len(rows)} runs: {told}. Ended otherwise than converged, of those that have one "
+        f"solution and no foolish k: {_missed(sound)}; {_missed(finishing)} that a status step may "
+        f"finish, and {_missed(others)} others."
     )
+
+
+def _missed(rows: Sequence[Row]) -> str:
+    """Count those that did not converge, and among them those whose iterations were used up."""
+    missed = [row for row in rows if row.verdict is Verdict.TOLD]
+    exhausted = sum(row.outcome.ending == Ending.EXHAUSTED for row in missed)
+    share = f" ({100.0 * len(missed) / len(rows):.1f} %)" if rows else ""
+    return f"{len(missed)} of {len(rows)}{share}, {exhausted} by using up their iterations"
 
 
 def table_of_counts(rows: Sequence[Row]) -> list[list[str]]:
@@ -109,6 +137,11 @@ def wrong_lines(rows: Sequence[Row]) -> list[str]:
     return found
 
 
+def ends(rows: Sequence[Row]) -> list[str]:
+    """Give the lines that a survey ends with: counts, what they amount to, and what is wrong."""
+    return [aligned(table_of_counts(rows)), "", summary(rows), *wrong_lines(rows)]
+
+
 def values(row: Row) -> dict[str, object]:
     """Give the entries of a row by column."""
     found = row.outcome
@@ -118,6 +151,7 @@ def values(row: Row) -> dict[str, object]:
         "row": row.number,
         "method": row.method,
         "foolish_k": row.is_foolish,
+        "may_finish": row.may_finish,
         "verdict": str(row.verdict),
         "ending": found.ending,
         "certified": found.certified,
@@ -157,7 +191,7 @@ def write_report(rows: Sequence[Row], folder: Path) -> list[Path]:
     """
     table, page = (folder / name for name in FILES)
     with table.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, list(values(rows[0])))
+        writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
         writer.writerows(values(row) for row in rows)
     page.write_text(html(rows), encoding="utf-8")
@@ -173,7 +207,7 @@ def html(rows: Sequence[Row]) -> str:
         notes="\n".join(f"<li>{escape(note)}</li>" for note in notes),
         counts=_table(head, ["".join(f"<td>{cell}</td>" for cell in own) for own in counts]),
         rows=_table(
-            [column.replace("_", " ") for column in values(rows[0])],
+            [column.replace("_", " ") for column in COLUMNS],
             [_cells(row) for row in rows],
         ),
     )
