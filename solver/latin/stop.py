@@ -157,7 +157,8 @@ class StopRules:
             indicator = latin_indicator(iterate)
         if self._of_estimate.is_due(number) or is_asked:
             estimated = self._estimate(iterate, indicator)
-            self._of_estimate.saw(number, estimated, self._estimate.level)
+            falls = estimated if self._estimate.is_proven else math.nan
+            self._of_estimate.saw(number, falls, self._accuracy)
         if estimated <= self._accuracy:
             if math.isnan(indicator):
                 indicator = latin_indicator(iterate)
