@@ -185,11 +185,14 @@ class ErrorEstimate:
 
 def _still_needed(past: list[_Past], number: int) -> list[_Past]:
     """Give the entries that later iterations look back at; of the oldest the change is enough."""
-    oldest, first = LOOK_BACK**2 * number / SPACING**2, LOOK_BACK * number / SPACING
+    first = _at(past, LOOK_BACK * number)
+    if first is None:
+        return past
+    oldest = _at(past, LOOK_BACK * first.number) or past[0]
     return [
-        entry if entry.number >= first else entry._replace(force=_NOTHING)
+        entry if entry.number >= first.number else entry._replace(force=_NOTHING)
         for entry in past
-        if entry.number >= oldest
+        if entry.number >= oldest.number
     ]
 
 
