@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from tour import Move, ends, has_errors, never_apply, small, tour
+from tour import described, ends, has_errors, never_apply, small, tour
 
 from app.cards import Cards
 from app.recording import Recording
@@ -54,10 +54,6 @@ def goes_on(page: Page, settings: Settings) -> None:
         assert all(math.isfinite(value) for pair in errors for value in pair)
     else:
         assert not has_errors(settings)
-
-
-def described(move: Move) -> str:
-    return f"{move.name} = {move.value!r} after {move.before.changed()}"
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))

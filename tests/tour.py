@@ -21,7 +21,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "bar": {"elements": 12, "instants": 11, "substructures": 4},
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
-    "layers": {"elements": 12, "instants": 11},
+    "layers": {"elements": 12, "instants": 11, "layers": 2, "substructures": 2},
 }
 """Of every scene, so small that hundreds of runs take seconds."""
 NEVER = {
@@ -59,6 +59,10 @@ class Move:
     @property
     def starts_a_run(self) -> bool:
         return self.after is not None and self.after.values() != self.before.values()
+
+
+def described(move: Move) -> str:
+    return f"{move.name} = {move.value!r} after {move.before.changed()}"
 
 
 def small(scene: str) -> Settings:
