@@ -45,8 +45,10 @@ def from_words(command, **changes):
 def test_a_hard_command_ends_right_or_told(command, method):
     settings = from_words(command)
     if method == "paper":
-        # The paper's tolerance of 1e-10 hides what its accuracy says.
-        settings = settings.replace(method="paper", tolerance=settings.tolerance)
+        # Its own tolerance, 1e-10, would hide what the accuracy says, and take long.
+        settings = settings.replace(
+            method="paper", tolerance=settings.tolerance, max_iterations=1000
+        )
     outcome = run(settings)
     assert outcome.finite
     assert judge(outcome, settings.accuracy) is not Verdict.WRONG, outcome
@@ -132,7 +134,7 @@ def test_contacts_that_never_close_carry_a_force_that_is_known(method):
     assert not reference.contact_force.any()
     solution = solve(problem, settings, distance=distance_to(reference, problem))
     assert solution.status.ending is Ending.CONVERGED
-    assert solution.records[-1].error_force < 1e-6
+    assert solution.records[-1].error_force < 1e-7
 
 
 def test_a_body_that_lifts_off_a_clamped_side_is_known_to_by_the_papers_method():
@@ -144,3 +146,14 @@ def test_a_body_that_lifts_off_a_clamped_side_is_known_to_by_the_papers_method()
     outcome = run(settings)
     assert outcome.ending == Ending.CONVERGED, outcome
     assert outcome.error_force < 1e-4
+
+
+def test_a_step_that_costs_next_to_nothing_need_not_wait_until_the_force_is_near():
+    settings = from_words(
+        "layers substructures=1 multiscale=false k_friction_scale=0.37 instants=6 elements=12 "
+        "elements_up=4 pressure=404851 deflection=8.3e-4 bend_load=cycle layers=6 "
+        "thickness=0.002665"
+    )
+    outcome = run(settings)
+    assert outcome.certified, outcome
+    assert outcome.iterations < 150

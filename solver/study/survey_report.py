@@ -101,8 +101,8 @@ def summary(rows: Sequence[Row]) -> str:
     others = [row for row in sound if not row.may_finish]
     return (
         f"{len(rows)} runs: {told}. Ended otherwise than converged, of those that have one "
-        f"solution and no foolish k: {_missed(sound)}; {_missed(finishing)} that a status step may "
-        f"finish, and {_missed(others)} others."
+        f"solution and no foolish k: {_missed(sound)}. Of these, where a status step may finish: "
+        f"{_missed(finishing)}; elsewhere: {_missed(others)}."
     )
 
 
@@ -111,7 +111,7 @@ def _missed(rows: Sequence[Row]) -> str:
     missed = [row for row in rows if row.verdict is Verdict.TOLD]
     exhausted = sum(row.outcome.ending == Ending.EXHAUSTED for row in missed)
     share = f" ({100.0 * len(missed) / len(rows):.1f} %)" if rows else ""
-    return f"{len(missed)} of {len(rows)}{share}, {exhausted} by using up their iterations"
+    return f"{len(missed)} of {len(rows)}{share}, {exhausted} of them out of iterations"
 
 
 def table_of_counts(rows: Sequence[Row]) -> list[list[str]]:

@@ -1,0 +1,119 @@
+"""What the last changes of the contact force let expect of those to come."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.discrete.problem import Array
+from solver.latin.iterate import Iterate
+
+LOOK_BACK = 0.7
+"""A change of the contact force is that since the iterate at this share of the iterations."""
+SAFETY = 4.0
+"""On what is left, if the changes go on to fall from one such part of the iterations to the next as
+they did in the last three: by the slower of both ratios. A force that converges as a power of the
+iterations is foreseen by that as well as one that converges as a power of a number. From 10 % to
+0.05 % of error the estimate was 1 to 300 times the truth in all but a few of 1500 iterates, scenes
+and methods; a bar of 400 elements had one of 0.2 (measured)."""
+SLOWEST = 0.97
+"""Ratio at most: that of four wires of 320 elements, whose force converges as the iterations to the
+power of -1/7."""
+SPACING = 1.1
+"""Ratio of the iterations whose contact forces are kept to look back at."""
+VANISHING = 1e-8
+"""Share of all forces at interfaces below which contact forces count as none, as in distances."""
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""Share of what a force is the difference of that rounding leaves of it."""
+_NOTHING: Array = np.zeros(0)
+
+
+class _Past(NamedTuple):
+    """The forces on the rows that rub at an iteration, and how they had changed by then."""
+
+    number: int
+    force: Array
+    change: float
+
+
+class ForceChanges:
+    """How the contact force changes along a run.
+
+    Attributes
+    ----------
+    last
+        Relative change since the iterate looked back at; NaN while there is none.
+    """
+
+    def __init__(self) -> None:
+        self._past: list[_Past] = []
+        self._least = 0.0
+        self.last = math.nan
+
+    def left(self, iterate: Iterate) -> float:
+        """Give the relative error that is left, if changes go on to fall as they did, or NaN."""
+        force, number = _force_on_rows(iterate), iterate.number
+        before = _at(self._past, LOOK_BACK * number)
+        self.last = math.nan
+        if before is not None:
+            size = max(float(np.linalg.norm(force)), self._least)
+            change = float(np.linalg.norm(force - before.force))
+            self.last = change / size if size > 0.0 else 0.0
+        if not self._past or number >= SPACING * self._past[-1].number:
+            now = _Past(number, force, self.last)
+            self._past = [*_still_needed(self._past, number), now]
+            self._least = _least(iterate)
+        earlier = before and _at(self._past, LOOK_BACK * before.number)
+        if before is None or earlier is None:
+            return 0.0 if self.last == 0.0 else math.nan
+        fall = max(_ratio(self.last, before.change), _ratio(before.change, earlier.change))
+        fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
+        return SAFETY * self.last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
+
+
+def _still_needed(past: list[_Past], number: int) -> list[_Past]:
+    """Give the entries that later iterations look back at; of the oldest the change is enough."""
+    first = _at(past, LOOK_BACK * number)
+    if first is None:
+        return past
+    oldest = _at(past, LOOK_BACK * first.number) or past[0]
+    return [
+        entry if entry.number >= first.number else entry._replace(force=_NOTHING)
+        for entry in past
+        if entry.number >= oldest.number
+    ]
+
+
+def _at(past: Iterable[_Past], number: float) -> _Past | None:
+    """Give the last entry up to a number of iterations."""
+    found = None
+    for entry in past:
+        if entry.number > number:
+            break
+        found = entry
+    return found
+
+
+def _ratio(part: float, whole: float) -> float:
+    """Divide, where nothing of nothing has fallen as far as can be."""
+    if part == 0.0:
+        return 0.0
+    return part / whole if whole != 0.0 else math.inf
+
+
+def _least(iterate: Iterate) -> float:
+    """Give the norm of contact forces that count as none, scaled."""
+    around = VANISHING * float(np.linalg.norm(iterate.boundary_force))
+    blurred = ROUNDING * float(np.linalg.norm(iterate.k[:, None] * iterate.outgoing))
+    return max(around, blurred)
+
+
+def _force_on_rows(iterate: Iterate) -> Array:
+    """Give the forces on the rows of the bodies above that rub, in a row, scaled."""
+    rows = iterate.problem.rubbing_rows
+    difference = iterate.outgoing[rows] - iterate.incoming[rows]
+    difference *= 0.5 * iterate.k[rows, None]
+    return difference.reshape(-1, order="F")
