@@ -157,3 +157,12 @@ def test_a_step_that_costs_next_to_nothing_need_not_wait_until_the_force_is_near
     outcome = run(settings)
     assert outcome.certified, outcome
     assert outcome.iterations < 150
+
+
+def test_a_run_whose_k_was_changed_is_not_called_stalled_while_its_indicator_falls():
+    settings = from_words(
+        "bar method=paper k_update=status relaxation=0.51 k_scale=0.53 substructures=4 peak=-3085 "
+        "body_force=-11584 friction=1.234 elements=428 instants=17 max_iterations=400"
+    )
+    outcome = run(settings)
+    assert outcome.ending == Ending.EXHAUSTED, outcome

@@ -9,6 +9,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from solver.discrete.problem import Array
 from solver.latin.estimate import LAST, WAIT, ErrorEstimate
 from solver.latin.finish import finished
 from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
@@ -125,6 +126,7 @@ class StopRules:
         self._of_estimate, self._of_indicator = Lookout(), Lookout()
         self._best = math.inf
         self._best_at = 0
+        self._k: Array | None = None
         self.seconds = spent
 
     def judge(self, iterate: Iterate) -> Verdict:
@@ -133,6 +135,7 @@ class StopRules:
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             status = _diverged(iterate.number)
             return Verdict(self._billed(iterate, began), math.nan, None, math.nan, status)
+        self._heed_change_of_k(iterate)
         indicator, estimated = self._figures(iterate)
         behaviour = self._agreement_asked(iterate, indicator, estimated)
         status_now = self._ending(iterate, indicator, estimated, behaviour)
@@ -182,6 +185,12 @@ class StopRules:
         return (
             iterate if found is None else replace(finished(iterate, found), number=iterate.number)
         )
+
+    def _heed_change_of_k(self, iterate: Iterate) -> None:
+        """Begin anew to look for the smallest indicator, which is measured by k."""
+        if iterate.k is not self._k:
+            self._best, self._best_at = math.inf, iterate.number
+        self._k = iterate.k
 
     def _finished(self, iterate: Iterate, status: Status | None) -> Iterate | None:
         """Give the certified solution in the place of an iterate, if the run may end with it."""
