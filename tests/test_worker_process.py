@@ -14,13 +14,11 @@ import pytest
 from direct_runs import direct, timeless
 from worker_line import SHORT, STALLING, Line, is_same_picture, shown
 
-from app.worker import run
 from app.worker.orders import Run
 from app.worker.reports import Begun, End, Frame, Progress, Reference, Refused, Taken, Waiting
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
-from solver import latin
-from solver.latin import Ending, Iterate, Record
+from solver.latin import Ending, Iterate, StopRules, Verdict
 
 
 @pytest.mark.parametrize("values", [{}, STALLING, {"substructures": 1}])
@@ -46,7 +44,7 @@ def test_first_picture_comes_before_the_reference_and_every_record_after_it(line
 
 
 def test_run_that_ends_at_its_first_iteration_sends_its_record_and_its_end(line: Line) -> None:
-    line.send(Run(1, "bar", {"peak": 0.0}))
+    line.send(Run(1, "bar", {"method": "paper", "peak": 0.0}))
     line.until(Waiting)
     assert [record.iteration for record in line.records()] == [1]
     assert [frame.iteration for frame in line.all(Frame)] == [1]
@@ -75,12 +73,12 @@ def test_reference_is_computed_once_for_the_same_physics(line: Line) -> None:
 
 
 def test_run_that_diverges_keeps_its_last_good_iterate(monkeypatch: pytest.MonkeyPatch) -> None:
-    def record(iterate: Iterate, distance: Any) -> Record:
-        entry = plain(iterate, distance)
-        return replace(entry, indicator=math.nan) if iterate.number == 5 else entry
+    def judge(rules: StopRules, iterate: Iterate) -> Verdict:
+        nowhere = np.full_like(iterate.incoming, np.nan)
+        return plain(rules, replace(iterate, incoming=nowhere) if iterate.number == 5 else iterate)
 
-    plain = latin.record
-    monkeypatch.setattr(run, "record", record)
+    plain = StopRules.judge
+    monkeypatch.setattr(StopRules, "judge", judge)
     said: list[Any] = []
     work = WorkerRun(Run(1, "bar", SHORT), said.append, lambda: False, References())
     while work.rest() is not None:

@@ -26,6 +26,7 @@ from solver.latin import Record
 from solver.scenes.bar import BarSettings
 
 SMALL: dict[str, Any] = {
+    "method": "paper",
     "linear_stage": "pgd",
     "elements": 20,
     "instants": 31,
@@ -160,12 +161,13 @@ def test_numbers_of_modes_are_sent_for_a_screenful_of_substructures() -> None:
     [
         pytest.param({}, id="as long as the bases"),
         pytest.param({"max_iterations": 400, "tolerance": 1e-6, "pgd_modes": 2}, id="ends before"),
+        pytest.param({"method": "fast"}, id="fast"),
     ],
 )
 def test_full_stage_beside_the_bases_is_a_run_of_its_own(change: dict[str, Any]) -> None:
     values = {**SMALL, **change}
     found = told(values)
-    full = direct({**values, "linear_stage": "full"})
+    full = direct({**values, "linear_stage": "full", "finish": "none"})
     assert timeless(found.beside) == timeless(full.records)[: len(found.records)]
     assert timeless(found.records) == timeless(direct(values).records)
 
@@ -200,7 +202,7 @@ def test_checkpoints_count_their_bases_as_memory() -> None:
 
 def test_views_draw_a_run_on_bases_and_what_they_draw_is_bounded() -> None:
     found = told(SMALL, watch=ALL)
-    recording = Recording(1, BarSettings.checked({"method": "paper", **SMALL}), "")
+    recording = Recording(1, BarSettings.checked(SMALL), "")
     for report in found.reports:
         if not isinstance(report, Waiting):
             recording.take(report)

@@ -145,5 +145,5 @@ class ErrorEstimate:
         return self._costs
 
     def __getstate__(self) -> dict[str, object]:
-        """Go elsewhere without what belongs to one problem: it is found again there."""
-        return {**self.__dict__, "_step": None, "certificate": None, "_changes": ForceChanges()}
+        """Go elsewhere without what is condensed of the problem: it is found again there."""
+        return {**self.__dict__, "_step": None}

@@ -30,8 +30,8 @@ def finished(iterate: Iterate, certificate: Certificate) -> Iterate:
         The solution.
     """
     problem, scales = iterate.problem, iterate.problem.scales
-    displacement = certificate.reference.displacement / scales.displacement
-    force = row_forces(problem, displacement, certificate.reference.contact_force / scales.force)
+    displacement = certificate.displacement / scales.displacement
+    force = row_forces(problem, displacement, certificate.contact_force / scales.force)
     moved = displacement[problem.row_dofs]
     stretched = force / iterate.k[:, None]
     outgoing, incoming, local = map(_frozen, (moved + stretched, moved - stretched, moved))

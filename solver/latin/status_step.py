@@ -15,12 +15,12 @@ from functools import cached_property
 import numpy as np
 
 from solver.discrete.contact_fields import OPEN, jumps_of
-from solver.discrete.problem import Problem
+from solver.discrete.problem import Array, Problem
 from solver.latin.iterate import Iterate
 from solver.laws import Contact
 from solver.reference.choice import Incremental, incremental_solver
 from solver.reference.distance import Distance, distance_to
-from solver.reference.solution import Reference, States
+from solver.reference.solution import States
 
 STILL = 1e-3
 """Share of the largest slip of an interface below which a point counts as stuck, at most. A point
@@ -45,8 +45,10 @@ class Certificate:
 
     Attributes
     ----------
-    reference
-        Its fields.
+    displacement
+        Shape (n_dofs, n_instants), m.
+    contact_force
+        Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), N.
     distance
         To it.
     residual
@@ -54,7 +56,8 @@ class Certificate:
         if it were that of each.
     """
 
-    reference: Reference
+    displacement: Array
+    contact_force: Array
     distance: Distance
     residual: float
 
@@ -87,7 +90,7 @@ class StatusStep:
         residual = found.unbalanced * np.sqrt(len(found.contact_force)) / distance.force_size
         if residual > (BLURRED if found.unbalanced <= found.rounding else CERTIFIED):
             return None
-        return Certificate(found, distance, float(residual))
+        return Certificate(found.displacement, found.contact_force, distance, float(residual))
 
     @cached_property
     def _solver(self) -> Incremental:

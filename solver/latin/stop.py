@@ -139,12 +139,16 @@ class StopRules:
         indicator, estimated = self._figures(iterate)
         behaviour = self._agreement_asked(iterate, indicator, estimated)
         status_now = self._ending(iterate, indicator, estimated, behaviour)
-        finish = self._finished(iterate, status_now)
+        self._try_at_last(iterate, status_now)
         certificate = self._estimate.certificate
-        if finish is not None and certificate is not None:
-            estimated, status_now = certificate.distance.of_friction_force(iterate), None
         seconds = self._billed(iterate, began)
-        return Verdict(seconds, indicator, behaviour, estimated, status_now, certificate, finish)
+        if certificate is None or not self._may_finish:
+            return Verdict(seconds, indicator, behaviour, estimated, status_now, certificate)
+        began = time.perf_counter()
+        estimated = certificate.distance.of_friction_force(iterate)
+        finish = finished(iterate, certificate)
+        self._billed(iterate, began)
+        return Verdict(seconds, indicator, behaviour, estimated, None, certificate, finish)
 
     def _billed(self, iterate: Iterate, began: float) -> float:
         """Put the time since `began` on the bill; give the whole of it."""
@@ -179,8 +183,7 @@ class StopRules:
         return Verdict(seconds, indicator, behaviour, residual, status, self._estimate.certificate)
 
     def finish(self, iterate: Iterate) -> Iterate:
-        """Put the certified solution in the place of an iterate, from which a step found it."""
-        self._estimate.try_step(iterate)
+        """Put the certified solution that ended a run in the place of an iterate."""
         found = self._estimate.certificate
         return (
             iterate if found is None else replace(finished(iterate, found), number=iterate.number)
@@ -192,15 +195,11 @@ class StopRules:
             self._best, self._best_at = math.inf, iterate.number
         self._k = iterate.k
 
-    def _finished(self, iterate: Iterate, status: Status | None) -> Iterate | None:
-        """Give the certified solution in the place of an iterate, if the run may end with it."""
-        if not self._may_finish:
-            return None
+    def _try_at_last(self, iterate: Iterate, status: Status | None) -> None:
+        """Try a status step, whatever it costs, where a run that may end with it would give up."""
         gives_up = status is not None and status.ending is not Ending.CONVERGED
-        if self._estimate.certificate is None and gives_up:
+        if self._may_finish and self._estimate.certificate is None and gives_up:
             self._estimate.try_step(iterate, LAST)
-        found = self._estimate.certificate
-        return finished(iterate, found) if found is not None else None
 
     def _agreement_asked(
         self, iterate: Iterate, indicator: float, estimated: float
