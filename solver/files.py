@@ -82,11 +82,11 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
 
 def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
     """Say what of these settings a run does not heed: idle ones, and load tables that go on."""
-    definitions = settings.definitions()
+    definitions, idle = settings.definitions(), settings.usual("paper")
     found = [
         f"{name} does nothing with the other settings as they are"
         for name in dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
-        if not settings.applies(name) and getattr(settings, name) != definitions[name].default
+        if not settings.applies(name) and getattr(settings, name) != idle[name]
     ]
     duration = settings.values().get("duration")
     for name, value in settings.values().items():

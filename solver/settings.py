@@ -388,6 +388,12 @@ class Settings(param.Parameterized):
             found[name] = value if is_option else definition.default
         return found
 
+    @classmethod
+    def usual(cls, method: str) -> dict[str, Any]:
+        """Give every setting's value where nothing is said but the method."""
+        defaults = {name: definition.default for name, definition in cls.definitions().items()}
+        return {**defaults, **cls.of_method(method)}
+
     def check_together(self) -> None:
         """Check what no setting can check alone; a scene extends this."""
 
@@ -397,9 +403,7 @@ class Settings(param.Parameterized):
 
     def changed(self) -> dict[str, Any]:
         """Give the settings that differ from their defaults, or from what their method says."""
-        definitions = self.definitions()
-        usual = {name: definition.default for name, definition in definitions.items()}
-        usual |= self.of_method(self.method)
+        usual = self.usual(self.method)
         return {name: value for name, value in self.values().items() if value != usual[name]}
 
     def replace(self, **changes: object) -> Self:

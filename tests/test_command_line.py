@@ -19,7 +19,9 @@ from solver.settings import dump
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ["--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
+PAPER = ["--set", "method=paper"]
 FIGURES = ["scene", "status", "advice", "iterations", "indicator", "behaviour"]
+FIGURES += ["estimated_error", "certified", "residual"]
 FIGURES += ["error_displacement", "error_force", "seconds"]
 
 
@@ -34,22 +36,36 @@ def test_run_prints_the_key_figures_and_exits_0_when_converged(capsys):
     assert list(figures) == FIGURES
     assert (figures["scene"], figures["status"]) == ("bar", "converged")
     assert int(figures["iterations"]) > 1
-    assert 0.0 < float(figures["indicator"]) <= 1e-10
-    assert 0.0 < float(figures["error_displacement"]) < 1e-3
-    assert 0.0 < float(figures["error_force"]) < 1e-2
+    assert figures["certified"] == "True"
+    assert 0.0 < float(figures["residual"]) < 1e-8
+    assert float(figures["estimated_error"]) == float(figures["residual"])
+    assert float(figures["error_displacement"]) < 1e-9
+    assert float(figures["error_force"]) < 1e-9
     assert float(figures["seconds"]) > 0.0
     assert err == ""
 
 
+def test_the_papers_method_ends_where_its_indicator_says_and_gives_no_certificate(capsys):
+    assert main(["run", "bar", *SMALL, *PAPER]) == 0
+    figures = printed_figures(capsys.readouterr().out)
+    assert list(figures) == FIGURES
+    assert (figures["status"], figures["certified"]) == ("converged", "False")
+    assert figures["residual"] == "None"
+    assert 0.0 < float(figures["indicator"]) <= 1e-10
+    assert 0.0 < float(figures["error_displacement"]) < 1e-3
+    assert 0.0 < float(figures["error_force"]) < 1e-2
+    assert float(figures["estimated_error"]) <= 1e-2
+
+
 def test_run_exits_1_when_it_stops_otherwise(capsys):
-    assert main(["run", "bar", *SMALL, "--set", "max_iterations=4"]) == 1
+    assert main(["run", "bar", *SMALL, *PAPER, "--set", "max_iterations=4"]) == 1
     figures = printed_figures(capsys.readouterr().out)
     assert (figures["status"], figures["iterations"]) == ("exhausted", "4")
     assert "max_iterations" in figures["advice"]
 
 
 def test_json_is_strict_and_says_the_same_as_the_text(capsys):
-    command = ["run", "bar", *SMALL, "--set", "tolerance=1e-6"]
+    command = ["run", "bar", *SMALL, *PAPER, "--set", "tolerance=1e-6"]
     main(command)
     figures = printed_figures(capsys.readouterr().out)
     assert main([*command, "--json"]) == 0
@@ -61,13 +77,18 @@ def test_json_is_strict_and_says_the_same_as_the_text(capsys):
     assert list(found) == [*FIGURES, "settings"]
     assert found["iterations"] == int(figures["iterations"])
     assert found["indicator"] == pytest.approx(float(figures["indicator"]), rel=1e-5)
+    assert (found["certified"], found["residual"]) == (False, None)
     assert BarSettings.checked(found["settings"]).tolerance == 1e-6
 
 
 def test_a_bar_without_load_is_reported_in_strict_json(capsys):
-    assert main(["run", "bar", *SMALL, "--set", "peak=0", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert (found["iterations"], found["indicator"], found["error_force"]) == (1, 0.0, 0.0)
+    for method, iterations in (("paper", 1), ("fast", 2)):
+        changes = ["--set", f"method={method}", "--set", "peak=0"]
+        assert main(["run", "bar", *SMALL, *changes, "--json"]) == 0
+        found = json.loads(capsys.readouterr().out)
+        # The certified solution comes after the iterate that it was found from.
+        assert found["iterations"] == iterations
+        assert found["indicator"] == found["error_force"] == found["estimated_error"] == 0.0
 
 
 def test_the_result_file_holds_what_the_contract_names(tmp_path, capsys):
@@ -83,26 +104,30 @@ def test_the_result_file_holds_what_the_contract_names(tmp_path, capsys):
         "t": (instants,),
         "displacement": (points, instants),
         "friction_force": (points, instants),
+        "determinate": (points, instants),
         "status": (points, instants),
         "indicator": (iterations,),
         "behaviour": (iterations,),
+        "estimated_error": (iterations,),
         "seconds": (iterations,),
         "error_displacement": (iterations,),
         "error_force": (iterations,),
+        "certified": (),
+        "residual": (),
         "settings": (),
     }
     np.testing.assert_allclose(arrays["x"], np.linspace(0.0, 1.0, points))
     np.testing.assert_allclose(arrays["t"], np.linspace(0.0, 1.0, instants))
     assert set(np.unique(arrays["status"])) == {-1, 0, 1}
     assert np.all(np.diff(arrays["seconds"]) > 0.0)
-    for name in ("indicator", "error_displacement", "error_force", "seconds"):
+    for name in ("indicator", "estimated_error", "error_displacement", "error_force", "seconds"):
         assert arrays[name][-1] == printed[name]
+    assert arrays["determinate"].dtype == bool
+    assert arrays["certified"] == printed["certified"]
+    assert arrays["residual"] == printed["residual"]
     values = json.loads(str(arrays["settings"]))
     assert values.pop("scene") == "bar"
-    assert (
-        BarSettings.checked({"method": "paper", **values}).values()
-        == BarSettings.checked(printed["settings"]).values()
-    )
+    assert BarSettings.checked(values).values() == printed["settings"]
 
 
 def test_forces_in_the_result_are_in_newtons_and_act_on_the_bar(tmp_path):
@@ -186,7 +211,8 @@ def test_scenes_lists_all_scenes_with_their_source(capsys):
 def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, scene):
     assert main(["settings", scene]) == 0
     lines = capsys.readouterr().out.splitlines()
-    definitions = CATALOGUE[scene].settings.definitions()
+    kind = CATALOGUE[scene].settings
+    definitions, paper = kind.definitions(), kind.of_method("paper")
     assert len(lines) == 2 * len(definitions)
     for head, text, (name, definition) in zip(
         lines[::2], lines[1::2], definitions.items(), strict=True
@@ -194,6 +220,8 @@ def test_settings_lists_all_settings_with_unit_bounds_default_and_help(capsys, s
         assert head.split()[0] == name
         assert head.split()[1] == (about(definition).unit or "-")
         assert f"default {json.dumps(definition.default)}" in head
+        differs = paper.get(name, definition.default) != definition.default
+        assert (f"(method=paper: {json.dumps(paper.get(name))})" in head) == differs
         assert head.endswith(allowed(definition))
         assert text.strip() == definition.doc
 
@@ -214,10 +242,14 @@ def test_the_names_of_the_contract_are_settings_of_the_bar_with_their_defaults()
         "multiscale": True,
         "k_scale": 1.0,
         "linear_stage": "full",
-        "acceleration": "none",
         "k_update": "none",
+        "method": "fast",
+        "accuracy": 0.01,
     }
     assert {name: values[name] for name in promised} == promised
+    papers = BarSettings.checked({"method": "paper"}).values()
+    assert (papers["search_direction"], papers["acceleration"]) == ("paper", "none")
+    assert (papers["start"], papers["tolerance"]) == ("zero", 1e-10)
     others = {"young", "section", "length", "duration", "load", "peak", "k_friction_scale"}
     others |= {"relaxation", "tolerance", "max_iterations"}
     assert others <= set(values)
@@ -245,6 +277,10 @@ def test_a_file_saved_by_one_front_is_run_by_the_other(tmp_path, capsys):
         (["load=[[0,0],[5,900]]"], "set duration=5"),
         (["load=[[0,0],[5,900]]", "duration=5"], ""),
         (["acceleration=none", "peak=10"], ""),
+        (["method=paper", "linear_stage=pgd", "acceleration=anderson"], "acceleration does"),
+        (["method=paper", "linear_stage=pgd", "finish=status"], "finish does nothing"),
+        (["linear_stage=pgd", "acceleration=none", "finish=none"], ""),
+        (["linear_stage=pgd", "method=paper"], ""),
     ],
 )
 def test_what_a_run_does_not_heed_is_said(capsys, assignments, words):
