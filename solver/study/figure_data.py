@@ -10,9 +10,9 @@ from solver.discrete.problem import Array
 
 HUES = (
     *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"),
-    *("#7B5CE0", "#999933", "#8C564B", "#B3003C"),
+    *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#004D40"),
 )
-"""Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind, and four more
+"""Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind, and five more
 for panels of more curves, which have marks besides."""
 Line = Literal["solid", "dashed", "dotted", "points"]
 
