@@ -64,7 +64,7 @@ window.afterKey = (text) => new Promise((resolve) => {
 })"""
 
 # A run that goes on: no tolerance stops it, and nothing helps it to converge.
-ENDLESS = "tolerance=1e-30&max_iterations=100000&acceleration=none"
+ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
 SECONDS = 5
 WATCH = """(seconds) => new Promise((resolve) => {
   const seen = new Set()

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from browser import Server
 from playwright.sync_api import Browser, Locator, Page, expect
 
-ENDLESS = "max_iterations=100000&tolerance=1e-30"
+ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
 IGNORED = ("Failed to load resource", "favicon")
 OURS = re.compile(r'File ".*/(app|solver)/')
 """In a traceback; a page that is closed leaves those of the web server."""

@@ -15,8 +15,9 @@ from app.worker.reports import Died, Progress, Report
 from solver.latin import Record
 
 SOON = 2.0
-SHORT = {"elements": 20, "substructures": 4, "tolerance": 1e-30, "max_iterations": 60}
-ENDLESS = {"elements": 20, "substructures": 4, "tolerance": 1e-30, "max_iterations": 150}
+SMALL = {"method": "paper", "elements": 20, "substructures": 4, "tolerance": 1e-30}
+SHORT = {**SMALL, "max_iterations": 60}
+ENDLESS = {**SMALL, "max_iterations": 150}
 
 
 class Session:

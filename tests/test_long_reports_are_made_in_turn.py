@@ -193,9 +193,7 @@ def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
     assert set(found.files) == {"curves.csv", "levels.csv", "study.html"}
     rows = list(csv.DictReader(found.files["curves.csv"].decode().splitlines()))
     assert {row["method"] for row in rows} == {course.method for course in found.study.courses}
-    assert (
-        found.study.settings.values() == BarSettings.checked({"method": "paper", **TINY}).values()
-    )
+    assert found.study.settings.values() == BarSettings.checked(TINY).values()
     assert found.study.machine.count("BLAS threads: 1;") == 1
 
 
@@ -216,8 +214,8 @@ def test_stability_sends_every_row_and_gives_them_all(
 
 def row(**changes: Any) -> Row:
     case = Case("size", "tiny", {**TINY, **changes})
-    outcome = run_case(case, "default")
-    return Row(case, "default", outcome, judge(outcome))
+    outcome = run_case(case, "paper")
+    return Row(case, "paper", outcome, judge(outcome))
 
 
 def test_the_matrix_says_each_verdict_in_a_word_and_hides_only_what_is_right() -> None:
@@ -235,8 +233,9 @@ def test_the_matrix_says_each_verdict_in_a_word_and_hides_only_what_is_right() -
 
 
 def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> None:
-    assert title_of(BarSettings.checked({"method": "paper"})) == "defaults"
-    assert title_of(BarSettings.checked({"method": "paper", "friction": 0.4})) == "friction 0.4"
+    assert title_of(BarSettings.checked({})) == "defaults"
+    assert title_of(BarSettings.checked({"friction": 0.4})) == "friction 0.4"
+    assert title_of(BarSettings.checked({"method": "paper"})) == "method paper"
     assert "no other page" in company(0)
     assert "a run of another page was" in company(1)
     assert "3 runs of other pages were" in company(3)

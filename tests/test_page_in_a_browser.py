@@ -74,7 +74,7 @@ def test_a_bad_address_is_explained_and_its_scene_is_shown(open_page: Visit) -> 
 
 
 def test_a_phone_sees_the_run_first_and_has_all_tabs_in_reach(open_page: Visit) -> None:
-    page = open_page("?scene=block&max_iterations=5", width=390, height=844)
+    page = open_page("?scene=block&method=paper&max_iterations=5", width=390, height=844)
     bodies_drawn(page, "> 1000")
     expect(page.get_by_text("Deformed bodies").first).to_be_visible()
     expect(page.get_by_text("Friction coefficient").first).not_to_be_visible()
@@ -85,6 +85,6 @@ def test_a_phone_sees_the_run_first_and_has_all_tabs_in_reach(open_page: Visit) 
 
 
 def test_more_pages_than_two_processes_run_side_by_side(open_page: Visit) -> None:
-    pages = [open_page("?max_iterations=40") for _ in range(3)]
+    pages = [open_page("?method=paper&max_iterations=40") for _ in range(3)]
     for page in pages:
         expect(status(page)).to_contain_text("after 40 iterations")

@@ -56,7 +56,7 @@ def draw(view: View, run: Recording, *past: Recording) -> list[str]:
 
 
 def test_the_ghost_of_the_loop_is_the_run_before_and_not_its_reference() -> None:
-    before, run = recorded("bar", 1, max_iterations=2), recorded("bar", 2)
+    before, run = recorded("bar", 1, method="paper", max_iterations=2), recorded("bar", 2)
     view = Loop()
     assert "run before" in draw(view, run, before)
     assert before.newest is not None

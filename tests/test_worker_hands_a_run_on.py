@@ -84,6 +84,6 @@ def test_run_that_goes_on_never_takes_back_its_closed_form(lines: list[Line]) ->
     lines[1].until(Waiting)
     (resumed,) = lines[1].all(Begun)
     assert np.array_equal(resumed.closed_form, lines[0].all(Begun)[-1].closed_form)
-    exact = closed_form(bar(BarSettings.checked({"method": "paper", **SHORT})))
+    exact = closed_form(bar(BarSettings.checked(SHORT)))
     assert exact is not None
     assert resumed.closed_form_end == pytest.approx(exact.end_displacement, rel=1e-6)

@@ -38,7 +38,8 @@ def test_seek_out_of_range_shows_the_nearest_iterate(line: Line, wanted: int, an
 
 
 def test_newer_seek_takes_the_place_of_an_older(line: Line) -> None:
-    line.send(Run(1, "bar", {"elements": 200, "instants": 201, "max_iterations": 40}))
+    large = {"method": "paper", "elements": 200, "instants": 201, "max_iterations": 40}
+    line.send(Run(1, "bar", large))
     line.until(Waiting)
     line.send(Park(1))
     order = replace(line.until(Parked).order, ticket=2)

@@ -12,7 +12,7 @@ from worker_line import STALLING, Line, is_same_picture, shown
 from app.worker.orders import Park, Run, Seek
 from app.worker.reports import Begun, End, Frame, Parked, Progress, Waiting
 from solver.discrete import discretise
-from solver.latin import Record, record
+from solver.latin import Record, StopRules, record
 from solver.latin.warm import choose_start
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -23,12 +23,14 @@ NEAR = {**STALLING, "friction": 0.3001}
 
 def warm_records(number: int) -> list[Record]:
     """Give the records of NEAR, started from the end of STALLING, without the worker."""
-    settings = BarSettings.checked({"method": "paper", **NEAR})
+    settings = BarSettings.checked(NEAR)
     problem = discretise(settings)
     distance = distance_to(incremental(problem), problem)
     start, run = choose_start(problem, settings, direct(STALLING).iterate)
     assert start.choice.is_previous
-    return timeless([record(iterate, distance) for iterate in islice(run, number)])
+    rules = StopRules(settings)
+    found = (record(iterate, rules.judge(iterate), distance) for iterate in islice(run, number))
+    return timeless(found)
 
 
 def test_warm_run_starts_from_the_run_that_it_takes_the_place_of(line: Line) -> None:
@@ -41,7 +43,7 @@ def test_warm_run_starts_from_the_run_that_it_takes_the_place_of(line: Line) -> 
     for number in (1, 17):
         line.send(Seek(2, number))
         line.until(Waiting, ticket=2)
-    settings = BarSettings.checked({"method": "paper", **NEAR})
+    settings = BarSettings.checked(NEAR)
     _, run = choose_start(discretise(settings), settings, direct(STALLING).iterate)
     iterates = list(islice(run, 17))
     sought = [frame for frame in line.all(Frame, ticket=2) if frame.sought]
