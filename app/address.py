@@ -52,20 +52,22 @@ def _together(kind: type[Settings], values: dict[str, Any]) -> tuple[Settings, l
         return kind.checked(values), []
     except SettingError:
         pass
-    settings, left, refused = kind.checked({}), values, {}
+    taken: dict[str, Any] = {}
+    left, refused = values, {}
     while left:
         # One that was refused may be valid beside one that came later.
         refused = {}
         for name, value in left.items():
             try:
-                settings = settings.replace(**{name: value})
+                kind.checked({**taken, name: value})
+                taken[name] = value
             except SettingError as refusal:
                 alone = refusal.name == name
                 refused[name] = str(refusal) if alone else f"{name} is left out: {refusal}"
         if len(refused) == len(left):
             break
         left = {name: left[name] for name in refused}
-    return settings, list(refused.values())
+    return kind.checked(taken), list(refused.values())
 
 
 def complaint_of(refused: list[str]) -> str:

@@ -57,6 +57,7 @@ def settings_from_toml(
 
 def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
     """Read settings from a scene's name or a saved file, and `NAME=VALUE` texts over it."""
+    base = None
     if scene.endswith(".toml"):
         path = Path(scene)
         try:
@@ -66,10 +67,8 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
             raise SettingError(
                 "settings file", scene, "a readable TOML file", f"{type(problem).__name__}"
             ) from None
-        kind, values = type(base), base.values()
-    else:
-        kind, values = scene_settings(scene), {}
-    definitions = kind.definitions()
+    kind = scene_settings(scene) if base is None else type(base)
+    definitions, values = kind.definitions(), {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
         if not equals:
@@ -77,7 +76,7 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
         values[name] = (
             resolve(definitions[name], name, parse(text), Path()) if name in definitions else text
         )
-    return kind.checked(values)
+    return kind.checked(values) if base is None else base.replace(**values)
 
 
 def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:

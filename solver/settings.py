@@ -406,7 +406,7 @@ class Settings(param.Parameterized):
         usual = self.usual(self.method)
         return {name: value for name, value in self.values().items() if value != usual[name]}
 
-    def replace(self, **changes: object) -> Self:
+    def replace(self, /, **changes: object) -> Self:
         """Give new settings with some values changed, checked as a whole.
 
         Another method brings its own values of all that it sets.

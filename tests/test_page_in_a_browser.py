@@ -39,11 +39,11 @@ def test_a_run_that_has_converged_stays_beside_the_next_one_which_may_start_from
 ) -> None:
     page = open_page()
     expect(status(page)).to_contain_text("converged")
-    expect(status(page)).to_contain_text("lower the tolerance")
+    expect(status(page)).to_contain_text("A status step ended the run")
     page.get_by_role("switch", name="Start from the run before").click()
     slider(page, "Peak load").press("ArrowRight")
     expect(status(page)).to_contain_text("Started from the run before it")
-    expect(status(page)).to_contain_text("from zero")
+    expect(status(page)).to_contain_text("from coarser meshes")
     expect(page.locator(".figures")).to_contain_text("before")
     page.locator("body").press("r")
     expect(status(page)).not_to_contain_text("Started from")

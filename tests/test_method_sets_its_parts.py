@@ -1,0 +1,162 @@
+"""`method` sets the parts of the method at once; what is set by hand beside it is kept."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from app.address import query_of, settings_from_query
+from solver.cli import main
+from solver.discrete import discretise
+from solver.files import settings_from_command, settings_from_toml
+from solver.latin import iterations
+from solver.scenes import CATALOGUE
+from solver.scenes.bar import BarSettings
+from solver.settings import Settings, dump
+
+PAPER = {
+    "search_direction": "paper",
+    "acceleration": "none",
+    "start": "zero",
+    "relaxation": 0.8,
+    "finish": "none",
+    "tolerance": 1e-10,
+}
+FAST = {
+    "search_direction": "auto",
+    "acceleration": "anderson",
+    "start": "nested",
+    "relaxation": 0.8,
+    "finish": "status",
+    "tolerance": 1e-3,
+}
+METHODS = {"paper": PAPER, "fast": FAST}
+OTHERS = {"friction": 0.4, "elements": 30, "accuracy": 1e-4, "k_scale": 2.0, "max_iterations": 77}
+BY_HAND = {"search_direction": "auto", "start": "zero", "tolerance": 1e-7}
+SMALL = {"elements": 20, "instants": 21, "substructures": 4}
+
+
+def other(method):
+    return next(name for name in METHODS if name != method)
+
+
+def parts(settings):
+    return {name: getattr(settings, name) for name in FAST}
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_method_sets_all_its_parts_of_the_bar(method):
+    assert parts(BarSettings.checked({"method": method})) == METHODS[method]
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+@pytest.mark.parametrize("method", METHODS)
+def test_a_scene_takes_of_a_method_what_it_has_options_for(scene, method):
+    kind = CATALOGUE[scene].settings
+    found = parts(kind.checked({"method": method}))
+    for name, value in METHODS[method].items():
+        options = getattr(kind.definitions()[name], "objects", [value])
+        expected = value if value in options else kind.definitions()[name].default
+        assert found[name] == expected
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_what_is_called_a_default_is_what_the_fast_method_sets(scene):
+    kind = CATALOGUE[scene].settings
+    assert kind.checked({}).method == "fast"
+    assert kind().values() == kind.checked({}).values() == kind.checked({"method": "fast"}).values()
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("change", [Settings.replace, Settings.with_change], ids=["replace", "with_change"])
+def test_another_method_brings_its_parts_and_all_else_stays(method, change):
+    before = BarSettings.checked({"method": other(method), **OTHERS, **BY_HAND})
+    if change is Settings.replace:
+        after = before.replace(method=method)
+    else:
+        after = before.with_change("method", method)
+    assert parts(after) == METHODS[method]
+    stay = before.values().keys() - {*FAST, "method"}
+    assert {name: getattr(after, name) for name in stay} == {
+        name: getattr(before, name) for name in stay
+    }
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_same_method_again_changes_nothing(method):
+    settings = BarSettings.checked({"method": method, **BY_HAND})
+    assert settings.replace(method=method).values() == settings.values()
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method_first", [True, False])
+def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first, tmp_path):
+    named = {"method": method}
+    values = named | BY_HAND if method_first else BY_HAND | named
+    expected = METHODS[method] | BY_HAND
+    assert parts(BarSettings.checked(values)) == expected
+    words = [f"{name}={value}" for name, value in values.items()]
+    assert parts(settings_from_command("bar", words)) == expected
+    address, complaint = settings_from_query("?" + "&".join(words))
+    assert (parts(address), complaint) == (expected, "")
+    saved = tmp_path / "few.toml"
+    saved.write_text(f'scene = "bar"\nmethod = "{method}"\n', encoding="utf-8")
+    assert parts(settings_from_command(str(saved), words)) == expected
+    assert parts(BarSettings.checked(named).replace(**BY_HAND)) == expected
+
+
+def test_what_is_set_beside_a_method_is_kept_where_something_else_is_refused():
+    settings, complaint = settings_from_query("?start=zero&method=paper&acceleration=anderson&a=1")
+    assert (settings.start, settings.acceleration, settings.method) == ("zero", "anderson", "paper")
+    assert "a" in complaint
+    together = "?acceleration=anderson&elements=5&method=paper&substructures=9"
+    settings, complaint = settings_from_query(together)
+    assert (settings.acceleration, settings.method, settings.start) == ("anderson", "paper", "zero")
+    assert complaint
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("by_hand", [{}, {"acceleration": "none"}, {"tolerance": 1e-7}], ids=str)
+def test_files_and_addresses_give_the_same_settings_again(scene, method, by_hand):
+    settings = CATALOGUE[scene].settings.checked({"method": method, **by_hand})
+    assert settings_from_toml(dump(settings)).values() == settings.values()
+    again, complaint = settings_from_query(query_of(settings))
+    assert (again.values(), complaint) == (settings.values(), "")
+
+
+def test_an_address_names_the_method_and_only_what_differs_from_it():
+    assert query_of(BarSettings.checked({})) == "?scene=bar"
+    assert query_of(BarSettings.checked({"method": "paper"})) == "?scene=bar&method=%22paper%22"
+    mixed = BarSettings.checked({"method": "paper", "acceleration": "anderson"})
+    assert mixed.changed() == {"method": "paper", "acceleration": "anderson"}
+
+
+def test_another_method_over_a_saved_file_brings_its_parts(tmp_path):
+    saved = tmp_path / "saved.toml"
+    fast = BarSettings.checked({**OTHERS, "acceleration": "none"})
+    saved.write_text(dump(fast), encoding="utf-8")
+    found = settings_from_command(str(saved), ["method=paper", "relaxation=0.6"])
+    assert parts(found) == PAPER | {"relaxation": 0.6}
+    assert {name: getattr(found, name) for name in OTHERS} == OTHERS
+
+
+def test_a_method_that_does_not_exist_is_refused_with_those_that_do(capsys):
+    assert main(["run", "bar", "--set", "method=slow"]) == 2
+    told = capsys.readouterr().err
+    assert "method" in told
+    assert "fast, paper" in told
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_method_is_no_more_than_its_parts(method):
+    def fields(values):
+        settings = BarSettings.checked({**SMALL, **values})
+        return [one.outgoing for one in islice(iterations(discretise(settings), settings), 12)]
+
+    at_once = fields({"method": method})
+    by_hand = fields({"method": other(method), **METHODS[method]})
+    for one, same in zip(at_once, by_hand, strict=True):
+        assert np.array_equal(one, same)
