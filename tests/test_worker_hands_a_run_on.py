@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -74,6 +75,19 @@ def test_parked_run_that_has_ended_only_answers(lines: list[Line]) -> None:
     assert not lines[1].all(End)
     assert not lines[1].records()
     assert [frame.iteration for frame in lines[1].all(Frame)] == [50, 20]
+
+
+@pytest.mark.parametrize("values", [{}, {"linear_stage": "pgd", "max_iterations": 20}], ids=str)
+def test_parked_run_of_the_fast_method_shows_its_end_again(
+    lines: list[Line], values: dict[str, Any]
+) -> None:
+    lines[0].send(Run(1, "bar", values))
+    lines[0].until(Waiting)
+    lines[0].send(Park(1))
+    lines[1].send(lines[0].until(Parked).order)
+    lines[1].until(Waiting)
+    assert lines[0].all(End)
+    assert is_same_picture(lines[1].all(Frame)[-1], lines[0].all(Frame)[-1])
 
 
 def test_run_that_goes_on_never_takes_back_its_closed_form(lines: list[Line]) -> None:

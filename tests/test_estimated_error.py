@@ -1,0 +1,234 @@
+"""A run knows its error: the estimate beside the truth, accuracy heeded, every second billed."""
+
+from __future__ import annotations
+
+import json
+import math
+import pickle
+from dataclasses import replace
+from itertools import islice, pairwise
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.cli import main
+from solver.discrete import discretise
+from solver.latin import Ending, StopRules, Verdict, iterations, judged, solve, stop
+from solver.reference.choice import reference_of
+from solver.reference.distance import Distance, distance_to
+from solver.scenes import CATALOGUE
+from solver.scenes.bar import BarSettings
+
+SMALL: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 30, "instants": 41, "substructures": 5},
+    "strand": {"elements": 20, "instants": 21},
+    "block": {"elements": 16, "elements_up": 6, "instants": 13},
+    "layers": {"elements": 16, "layers": 2, "instants": 13},
+}
+METHODS = ["paper", "fast"]
+LOW = 0.97
+"""Share of the true error that a proven estimate is never below."""
+ROUNDING = 1e-9
+
+
+def small(scene: str, **changes: Any) -> Any:
+    return CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
+
+
+def true_distance(problem: Any) -> Distance:
+    return distance_to(reference_of(problem), problem)
+
+
+@pytest.mark.parametrize("scene", SMALL)
+@pytest.mark.parametrize("method", METHODS)
+def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
+    scene: str, method: str
+) -> None:
+    settings = small(scene, method=method, finish="none", tolerance=1e-8, max_iterations=400)
+    problem = discretise(settings)
+    distance = true_distance(problem)
+    proven = 0
+    for iterate, verdict in judged(problem, settings):
+        if verdict.certificate is not None:
+            proven += 1
+            estimate = verdict.certificate.distance.of_friction_force(iterate)
+            truth = distance.of_friction_force(iterate)
+            assert estimate == pytest.approx(truth, rel=1.0 - LOW, abs=ROUNDING)
+        if verdict.status is not None:
+            break
+    assert proven > 3
+
+
+@pytest.mark.parametrize("scene", SMALL)
+@pytest.mark.parametrize("method", METHODS)
+def test_a_certificate_is_the_solution_of_the_incremental_solver(scene: str, method: str) -> None:
+    settings = small(scene, method=method, max_iterations=400)
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    found = next(
+        verdict.certificate
+        for _, verdict in judged(problem, settings)
+        if verdict.certificate is not None or verdict.status is not None
+    )
+    assert found is not None
+    assert found.residual < 1e-8
+    distance = distance_to(reference, problem)
+    assert distance.of_friction_force(found) < ROUNDING
+    assert distance.of_displacement(found) < ROUNDING
+
+
+@pytest.mark.parametrize("scene", SMALL)
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("accuracy", [1e-1, 1e-2, 1e-6])
+def test_a_run_that_converges_is_as_accurate_as_was_asked(
+    scene: str, method: str, accuracy: float
+) -> None:
+    changes = {"finish": "none", "tolerance": 1e-3, "max_iterations": 2000}
+    settings = small(scene, method=method, accuracy=accuracy, **changes)
+    problem = discretise(settings)
+    solution = solve(problem, settings, distance=true_distance(problem))
+    assert solution.status.ending is Ending.CONVERGED
+    last = solution.records[-1]
+    assert last.error_force <= accuracy / LOW
+    assert last.estimated_error <= accuracy
+
+
+def test_a_smaller_accuracy_takes_more_iterations() -> None:
+    settings = small("bar", finish="none")
+    problem = discretise(settings)
+    counts = [
+        solve(problem, settings.replace(accuracy=accuracy)).iterate.number
+        for accuracy in (1e-1, 1e-3, 1e-6)
+    ]
+    assert counts == sorted(set(counts))
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scene: str) -> None:
+    for accuracy in (1e-2, 1e-6):
+        settings = small(scene, accuracy=accuracy)
+        problem = discretise(settings)
+        solution = solve(problem, settings, distance=true_distance(problem))
+        assert solution.status.ending is Ending.CONVERGED
+        assert solution.is_certified
+        assert solution.records[-1].error_force < ROUNDING
+        assert solution.records[-1].estimated_error == solution.iterate.residual
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf])
+@pytest.mark.parametrize("has_certificate", [False, True])
+def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
+    wrong: float, has_certificate: bool
+) -> None:
+    settings = small("bar", finish="none")
+    rules = StopRules(settings)
+    number = 20 if has_certificate else 1
+    for iterate in islice(iterations(discretise(settings), settings), number):
+        known = rules.judge(iterate).certificate is not None
+    assert known == has_certificate
+    field = iterate.incoming.copy()
+    field[3, 4] = wrong
+    verdict = rules.judge(replace(iterate, number=number + 1, incoming=field))
+    assert verdict.status is not None
+    assert verdict.status.ending is Ending.DIVERGED
+    assert f"stopped being finite at iteration {number + 1}" in verdict.status.advice
+    assert math.isnan(verdict.estimated_error)
+    assert verdict.finished is None
+
+
+@pytest.mark.parametrize("scene", SMALL)
+@pytest.mark.parametrize("method", METHODS)
+def test_seconds_increase_from_record_to_record(scene: str, method: str) -> None:
+    settings = small(scene, method=method, max_iterations=60)
+    solution = solve(discretise(settings), settings)
+    assert all(one.seconds < other.seconds for one, other in pairwise(solution.records))
+
+
+def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 0.0
+
+    def clock() -> float:
+        nonlocal now
+        now += 100.0
+        return now
+
+    monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=clock))
+    settings = small("bar")
+    found = list(judged(discretise(settings), settings))
+    rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
+    assert found[-1][0].residual is not None
+    assert rules == pytest.approx([100.0 * number for number in range(1, len(found) + 1)])
+
+
+def figures(verdict: Verdict) -> list[Any]:
+    told = verdict.certificate is not None
+    return [repr(verdict.indicator), repr(verdict.estimated_error), verdict.status, told]
+
+
+@pytest.mark.parametrize("linear_stage", ["full", "pgd"])
+@pytest.mark.parametrize("parked_at", [1, 4, 15])
+def test_rules_that_go_elsewhere_judge_on_as_if_nothing_was(
+    linear_stage: str, parked_at: int
+) -> None:
+    settings = small("bar", finish="none", linear_stage=linear_stage, accuracy=1e-6)
+    iterates = list(islice(iterations(discretise(settings), settings), 30))
+    stay = StopRules(settings)
+    go = StopRules(settings)
+    for iterate in iterates:
+        assert figures(go.judge(iterate)) == figures(stay.judge(iterate))
+        if iterate.number == parked_at:
+            billed = go.seconds
+            go = pickle.loads(pickle.dumps(go))
+            assert go.seconds == billed
+
+
+def test_the_solution_that_ended_a_run_is_shown_again_elsewhere() -> None:
+    settings = small("layers")
+    rules = StopRules(settings)
+    for iterate in iterations(discretise(settings), settings):
+        shown = rules.judge(iterate).finished
+        if shown is not None:
+            break
+    assert shown is not None
+    again = pickle.loads(pickle.dumps(rules)).finish(iterate)
+    for name in ("displacement", "contact_force", "residual"):
+        assert np.array_equal(getattr(again, name), getattr(shown, name))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_result_file_says_what_is_known_of_its_error(
+    tmp_path: Any, capsys: pytest.CaptureFixture[str], method: str
+) -> None:
+    file = tmp_path / "result.npz"
+    words = [text for name, value in SMALL["bar"].items() for text in ("--set", f"{name}={value}")]
+    words += ["--set", f"method={method}", "--out", str(file), "--json"]
+    assert main(["run", "bar", *words]) == 0
+    told = json.loads(capsys.readouterr().out)
+    with np.load(file, allow_pickle=False) as found:
+        arrays = dict(found)
+    certified = method == "fast"
+    assert bool(arrays["certified"]) == told["certified"] == certified
+    assert math.isnan(arrays["residual"]) != certified
+    assert (told["residual"] is not None) == certified
+    estimated, truth = arrays["estimated_error"], arrays["error_force"]
+    assert len(estimated) == told["iterations"]
+    assert np.isfinite(estimated[-1])
+    known = np.isfinite(estimated)
+    assert np.all(estimated[known] >= LOW * truth[known] - ROUNDING)
+    assert told["estimated_error"] == estimated[-1] <= BarSettings.checked({}).accuracy
+    # The clamped end shares its force with the support; all other points have their own.
+    assert not arrays["determinate"][0].any()
+    assert arrays["determinate"][1:].all()
+
+
+def test_without_a_reference_the_estimate_is_still_there(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for method in METHODS:
+        words = ["--set", f"method={method}", "--no-reference", "--json"]
+        assert main(["run", "bar", *words]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert told["error_force"] is None
+        assert told["estimated_error"] <= 0.01
