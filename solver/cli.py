@@ -16,6 +16,7 @@ import numpy as np
 
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem, discretise
+from solver.discrete.idle import nothing_acts
 from solver.files import (
     remarks,
     save_result,
@@ -129,6 +130,8 @@ def _run(chosen: argparse.Namespace) -> int:
     began = time.perf_counter()
     problem = discretise(settings)
     spent = time.perf_counter() - began
+    if nothing_acts(problem):
+        print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
     distance = _distance(problem) if chosen.reference else None
     solution = solve(problem, settings, distance=distance, watch=chosen.reference, spent=spent)
     _print_figures(settings, solution, chosen.json)

@@ -323,3 +323,8 @@ def test_the_module_runs_as_a_program(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["status"] == "converged"
     assert (tmp_path / "bar.npz").is_file()
+
+
+def test_a_structure_on_which_nothing_acts_is_said_to_be_idle(capsys):
+    assert main(["run", "block", "--set", "top=traction", "--set", "instants=5"]) == 0
+    assert "nothing acts on the structure" in capsys.readouterr().err

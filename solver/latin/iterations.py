@@ -107,15 +107,7 @@ class Engine:
         if settings.k_update == "status" and settings.linear_stage == "full":
             self._update = DirectionUpdate(problem, k, start.course if start else None)
             k = self._update.course.k
-        try:
-            self._make_stages(k)
-        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
-            raise SettingError(
-                "k_scale",
-                settings.k_scale,
-                "a k that holds every substructure in the digits of a number",
-                "bring the factors on k nearer to 1, or the sides of the elements to each other",
-            ) from None
+        self._make_stages(k)
         if start is None:
             start = _start(problem, settings, self.k)
         stage: LinearStage[Any] = self._linear_stage
@@ -125,6 +117,18 @@ class Engine:
             self._recall(start)
 
     def _make_stages(self, k: Array) -> None:
+        try:
+            self._factored(k)
+        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
+            raise SettingError(
+                "k_scale",
+                self._settings.k_scale,
+                "a k that holds every substructure in the digits of a number",
+                "bring the factors on k nearer to 1, or the sides of the elements to each other",
+            ) from None
+
+    def _factored(self, k: Array) -> None:
+        """Make both stages for a k; the linear one is factored."""
         problem, settings = self._problem, self._settings
         self.k = k
         blocks = Blocks(problem.n_rows, problem.n_instants, settings.threads)
