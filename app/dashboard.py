@@ -24,8 +24,9 @@ from app.words import key_figures, status_line
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
-FIRST_PATIENCE = 0.4
 FIRST_ROW = 3
+DIMMED = {"opacity": "0.35"}
+"""Of plots that do not show the run at work yet."""
 
 
 class Dashboard:
@@ -79,23 +80,14 @@ class Dashboard:
         self._sidebar.show(session.wanted)
         self._arrange()
 
-    def prepare(self) -> None:
-        """Put the first iterate into the page before it is sent, if a worker is quick enough.
-
-        The run then waits until a browser connects: whoever only asks for the page, as a crawler
-        does, costs one iteration.
-        """
-        self.session.start(waits=True)
-        end = time.monotonic() + FIRST_PATIENCE
-        while self.session.shown is None and time.monotonic() < end:
-            time.sleep(0.002)
-            self.session.collect()
-        if self.session.shown is not None:
-            self._draw(self._shown[:FIRST_ROW])
-
     def loaded(self) -> None:
-        """Begin to draw: what is sent to a browser that still builds the page may be lost."""
+        """Begin to run and to draw, now that a browser has built the page.
+
+        Whoever only asks for the page, as a crawler does, starts no process.
+        """
         self._loaded = True
+        self._alone = False
+        self.session.start()
         send_without_delay()
         # The first row comes first: two thirds of what the page is made of are not in it.
         self._sidebar.fill()
@@ -104,7 +96,7 @@ class Dashboard:
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and draw what came."""
-        alone = self._connections() == 0 or not self._loaded
+        alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
@@ -199,15 +191,13 @@ class Dashboard:
             self._painter.mark()
         if not (self._loaded and self._tabs.shows_the_run):
             return
-        ticket = self.session.run.ticket if self.session.shown is not None else None
-        turn = self._painter.turn(self._shown, ticket)
-        if turn is not None:
+        if self._painter.is_due():
             with pn.io.hold():
-                self._draw(turn.views, at_once=turn.is_first)
+                self._draw(self._shown)
                 self._painter.send()
 
-    def _draw(self, views: Sequence[View], *, at_once: bool = False) -> None:
-        """Draw some views and the words about the run; `at_once` leaves the rest for the next."""
+    def _draw(self, views: Sequence[View]) -> None:
+        """Draw all views, and the words about the run."""
         session = self.session
         frame = session.shown
         picture = Picture(session.run, session.before, tuple(session.past), frame, session.instant)
@@ -221,8 +211,7 @@ class Dashboard:
             held=session.is_held,
             complaint=self._complaint if session.wanted is self._asked_for else "",
         )
-        if at_once:
-            return
+        self._plots.styles = {} if frame is not None else DIMMED
         self._offer_looks()
         self.transport.show()
         entry = session.run.record_of(frame) if frame is not None else None
@@ -233,7 +222,7 @@ class Dashboard:
         return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
-        if self._painter.has_drawn(self.session.run.ticket):
+        if self.session.shown is not None:
             self._sidebar.catch_up()
 
     def _on_narrow(self) -> None:

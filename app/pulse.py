@@ -18,6 +18,7 @@ class Pulse(JSComponent):
     hears = param.Boolean(default=True, doc="Whether keys move the run.")
     key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
+    hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
     copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
 
@@ -28,14 +29,19 @@ class Pulse(JSComponent):
       if (window.innerWidth < 900) { model.narrow = true }
       model.on("frame", () => {
         const frame = model.frame
-        requestAnimationFrame(() => { model.painted = frame })
+        requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
+          model.painted = frame
+        })))
       })
       model.on("copy", () => {
         const url = location.origin + location.pathname + model.copy.split("#")[0]
         history.replaceState(null, "", url)
         if (navigator.clipboard) { navigator.clipboard.writeText(url).catch(() => {}) }
       })
-      document.addEventListener("keydown", (event) => {
+      const look = () => { model.hidden = document.visibilityState === "hidden" }
+      document.addEventListener("visibilitychange", look)
+      look()
+      const press = (event) => {
         const typed = event.composedPath()[0]
         const writes = typed.tagName === "INPUT" && typed.type !== "range" ||
           typed.tagName === "TEXTAREA" || typed.isContentEditable
@@ -49,6 +55,11 @@ class Pulse(JSComponent):
         event.preventDefault()
         count += 1
         model.key = event.key + count
+      }
+      document.addEventListener("keydown", press)
+      model.on("remove", () => {
+        document.removeEventListener("keydown", press)
+        document.removeEventListener("visibilitychange", look)
       })
       return document.createElement("span")
     }

@@ -10,14 +10,15 @@ from numpy.typing import NDArray
 
 from app.worker.reports import (
     Begun,
-    Died,
     End,
     Frame,
     Progress,
     Reference,
     Refused,
     Report,
+    Taken,
     Unrivalled,
+    Waiting,
 )
 from solver.latin import Record, Status
 from solver.latin.warm import StartChoice
@@ -52,7 +53,7 @@ class Recording:
     is_warm
         Whether it was to start from the run before, where that is better.
     is_broken
-        Whether the worker refused it, or the pool gave it up.
+        Whether the worker refused it, or it was given up.
     """
 
     ticket: int
@@ -94,13 +95,17 @@ class Recording:
                 self.status = report.status
             case Refused():
                 self.notice, self.is_broken = report.reason, True
-            case Died():
-                for kept in (self.records, self.sizes, self.beside):
-                    kept.clear()
-                self.newest = self.sought = self.status = None
-                self.notice, self.is_broken = report.reason, not report.again
+            case Taken() | Waiting():
+                pass
             case _:
                 raise TypeError(f"no place for a report of type {type(report).__name__}")
+
+    def lose(self, notice: str, *, is_broken: bool = False) -> None:
+        """Forget all iterates: their process is gone."""
+        for kept in (self.records, self.sizes, self.beside):
+            kept.clear()
+        self.newest = self.sought = self.status = None
+        self.notice, self.is_broken = notice, is_broken
 
     @property
     def choice(self) -> StartChoice | None:

@@ -11,18 +11,28 @@ from panel.io.state import set_curdoc
 
 from app.address import settings_from_query
 from app.dashboard import TICK_MS, Dashboard
+from app.pages import Pages, most_pages
 from app.session import Session
 from app.worker.bench import shared_bench
-from app.worker.pool import shared_pool
+from app.worker.link import warm_up
+
+PAGES = Pages(most_pages())
+FULL = (
+    "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
+    "This page tries again by itself.</p>"
+)
+TRY_AGAIN = 20
+"""Seconds after which a page that found the server full asks again."""
 
 
 def open_page() -> pmui.Page:
     """Make the page of one session; its run starts when the browser is there."""
     _configure()
+    if PAGES.is_full:
+        return _full()
     settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
-    session = Session(shared_pool(), shared_bench(), settings)
+    session = Session(PAGES, shared_bench(), settings)
     dashboard = Dashboard(session, complaint=complaint, on_phone=is_phone(pn.state.headers))
-    dashboard.prepare()
     pn.state.onload(dashboard.loaded)
     document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)
@@ -37,16 +47,22 @@ def is_phone(headers: Mapping[str, str]) -> bool:
 
 
 def rehearse() -> None:
-    """Build a page and throw it away: what is done once only is then done."""
+    """Start a worker and build a page, for nothing: what is done once only is then done."""
+    warm_up()
     document = Document()
     with set_curdoc(document):
         _configure()
-        session = Session(shared_pool(), shared_bench(), settings_from_query("")[0])
+        session = Session(PAGES, shared_bench(), settings_from_query("")[0])
         dashboard = Dashboard(session)
-        dashboard.prepare()
         dashboard.page.server_doc(document)
         document.to_json()
         session.close()
+
+
+def _full() -> pmui.Page:
+    """Say that no page can be opened now, and try again."""
+    again = f'<meta http-equiv="refresh" content="{TRY_AGAIN}">'
+    return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL + again, css_classes=["full"])])
 
 
 def _configure() -> None:

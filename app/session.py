@@ -6,31 +6,57 @@ the page's own event loop.
 
 from __future__ import annotations
 
+import logging
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from app.errand import Errand
+from app.pages import Pages
 from app.recording import Recording
 from app.worker.bench import Bench
-from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
-from app.worker.pool import Pool
-from app.worker.reports import Frame, Report
+from app.worker.link import Link
+from app.worker.orders import Look, Order, Pace, Run, Seek, Step, Watch
+from app.worker.reports import Died, Frame, Refused, Report
 from app.worker.shown import instant_of
 from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings
 
+_log = logging.getLogger(__name__)
+
 PAST_RUNS = 6
 DEFAULT_PACE = 20.0
+LEFT_ALONE = 180.0
+"""Seconds after which a page that nobody sees gives its process back."""
+RESTARTS = 2
+"""Times that a run is started again after its process died."""
+AGAIN = "The worker stopped unexpectedly; the run was started again."
+GIVEN_UP = (
+    "The worker stopped unexpectedly several times; the run was given up. Lower the numbers of "
+    "elements and instants, or start it again."
+)
 AT_THE_INSTANT = frozenset({"mesh", "axial"})
 """What frames carry for the chosen instant alone."""
 
 
 class Session:
     """The state of one page.
+
+    Parameters
+    ----------
+    pages
+        Those of this server; this one is added.
+    bench
+        Where reports are made.
+    settings
+        Of the first run, for which `start` has to be called.
+    hire
+        Gives a worker process, whose reports go to what it is called with.
 
     Attributes
     ----------
@@ -61,7 +87,13 @@ class Session:
         Called on another thread when the first frame of a run has come.
     """
 
-    def __init__(self, pool: Pool, bench: Bench, settings: Settings) -> None:
+    def __init__(
+        self,
+        pages: Pages,
+        bench: Bench,
+        settings: Settings,
+        hire: Callable[[Callable[[Report], None]], Link] = Link,
+    ) -> None:
         self.settings = settings
         self.wake: Callable[[], None] = lambda: None
         self.before: Recording | None = None
@@ -79,19 +111,23 @@ class Session:
         self.crowd = 0
         self._alone = False
         self._held = False
-        self._mailbox: deque[Report] = deque()
+        self._mailbox: deque[tuple[int, Report]] = deque()
         self._lock = threading.Lock()
-        self._seat = pool.seat(self._receive)
+        self._hire = hire
+        self._link: Link | None = None
+        self._hired = 0
+        self._deaths = 0
+        self._closed = False
+        self._alone_since = 0.0
+        self._pages = pages
+        pages.add(self)
         self._pending: Settings | None = None
         self.run = Recording(0, settings, "")
 
-    def start(
-        self, settings: Settings | None = None, *, waits: bool = False, warm: bool = False
-    ) -> None:
+    def start(self, settings: Settings | None = None, *, warm: bool = False) -> None:
         """Start a run, with new settings or those that are wanted, in place of the one at work.
 
-        A run that `waits` does one iteration until the page is connected; a `warm` one starts
-        from the last iterate of the run at work, where that is better.
+        A `warm` one starts from the last iterate of the run at work, where that is better.
         """
         settings = settings or self.wanted
         if settings.scene == self.settings.scene:
@@ -108,19 +144,8 @@ class Session:
         self.run = Recording(self.run.ticket + 1, self.settings, label, is_warm=warm)
         self.follows = True
         self._pending = None
-        self._seat.run(
-            Run(
-                self.run.ticket,
-                self.settings.scene,
-                self.settings.values(),
-                pace=self.pace,
-                pause_after=None if self._is_free and not waits else 1,
-                watch=self.watch,
-                substructure=self.substructure,
-                look=self.look,
-                warm=warm,
-            )
-        )
+        self._deaths = 0
+        self._work(warm=warm)
 
     def change(self, name: str, value: Any) -> None:
         """Change one setting; the run starts again as soon as the last change was shown.
@@ -151,11 +176,13 @@ class Session:
     def collect(self) -> bool:
         """Take the waiting reports; tell whether anything is new."""
         with self._lock:
-            reports = list(self._mailbox)
+            reports = [report for number, report in self._mailbox if number == self._hired]
             self._mailbox.clear()
         for report in reports:
-            if report.ticket == self.run.ticket:
-                self.run.take(report)
+            if isinstance(report, Died):
+                self._bury()
+            elif report.ticket == self.run.ticket:
+                self._take(report)
         if reports and self.run.begun is not None:
             self.instant = instant_of(self.look.phase, len(self.run.begun.instants))
         if self._pending is not None and (self.run.newest is not None or self.run.notice):
@@ -174,7 +201,7 @@ class Session:
     def pause(self) -> None:
         """Wait after the present iteration."""
         self.running = False
-        self._seat.send(Pace(self.run.ticket, 0.0))
+        self._send(Pace(self.run.ticket, 0.0))
 
     def step(self) -> None:
         """Do one iteration and wait; a run that broke starts again, one that ended stays."""
@@ -183,7 +210,7 @@ class Session:
         if self.run.is_broken:
             self.start()
         else:
-            self._seat.send(Step(self.run.ticket))
+            self._send(Step(self.run.ticket))
 
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""
@@ -194,7 +221,7 @@ class Session:
         """Look at an iteration that was done already."""
         self.follows = iteration >= self.run.iteration
         if not self.follows:
-            self._seat.send(Seek(self.run.ticket, iteration))
+            self._send(Seek(self.run.ticket, iteration))
 
     def look_at(self, instant: int) -> None:
         """Choose the instant at which fields are drawn."""
@@ -226,31 +253,43 @@ class Session:
             self._look_again()
 
     def close(self) -> None:
-        """Leave: the run stops and its process is free, and so do the reports."""
-        self._seat.close()
+        """Leave: the process of the run ends, and so do the reports."""
+        self._closed = True
+        self._part()
+        self._pages.remove(self)
         for errand in self._errands:
             errand.cancel()
 
     def rest(self, alone: bool) -> None:
-        """Hold the run while nobody is connected, and let it go on afterwards."""
-        self._alone = alone
-        self._keep_pace()
+        """Hold the run while nobody sees the page, and let it go on afterwards."""
+        self._alone, self._alone_since = alone, time.monotonic()
+        if not alone and self._link is None and self.run.ticket and not self.run.is_broken:
+            self._work()
+        else:
+            self._keep_pace()
 
     def attend(self) -> bool:
-        """Take what the reports say, and hold the run while one is timed; tell if it is new."""
+        """Do what is due: hear the reports, hold the run while one is timed; tell if it is new."""
+        if self._alone and time.monotonic() - self._alone_since > LEFT_ALONE:
+            self._part()
         heard = [errand.collect() for errand in self._errands]
         if self.study.is_begun != self._held:
             self._held = self.study.is_begun
             self.crowd = self.crowd if not self._held else 0
             self._keep_pace()
         if self._held:
-            self.crowd = max(self.crowd, self._seat.others_at_work)
+            self.crowd = max(self.crowd, self._pages.at_work_beside(self))
         return any(heard)
 
     @property
     def goes_on(self) -> bool:
         """Whether the run is one that goes on until the user pauses it."""
         return self.running and not self.run.is_over
+
+    @property
+    def is_at_work(self) -> bool:
+        """Whether iterations of the run go on at present."""
+        return self._link is not None and not self.run.is_over and self._is_free
 
     @property
     def is_held(self) -> bool:
@@ -280,7 +319,7 @@ class Session:
 
     def _keep_pace(self) -> None:
         if self.goes_on:
-            self._seat.send(Pace(self.run.ticket, self.pace if self._is_free else 0.0))
+            self._send(Pace(self.run.ticket, self.pace if self._is_free else 0.0))
 
     def _look(self, **changes: Any) -> None:
         look = replace(self.look, **changes)
@@ -293,9 +332,9 @@ class Session:
 
     def _look_again(self) -> None:
         """Have frames carry what is watched, and the one that is looked at sent again."""
-        self._seat.send(Watch(self.run.ticket, self.watch, self.substructure, self.look))
+        self._send(Watch(self.run.ticket, self.watch, self.substructure, self.look))
         if not self.follows and self.run.sought is not None:
-            self._seat.send(Seek(self.run.ticket, self.run.sought.iteration))
+            self._send(Seek(self.run.ticket, self.run.sought.iteration))
 
     def _retire(self) -> None:
         if self.run.is_worth_keeping:
@@ -310,9 +349,56 @@ class Session:
         self.look = replace(self.look, interface="")
         self.substructure = None
 
-    def _receive(self, report: Report) -> None:
+    def _work(self, *, warm: bool = False) -> None:
+        """Have a process do the run from its beginning."""
+        if self._link is None and not self._closed:
+            self._hired += 1
+            self._link = self._hire(partial(self._receive, self._hired))
+        self._send(
+            Run(
+                self.run.ticket,
+                self.settings.scene,
+                self.settings.values(),
+                pace=self.pace,
+                pause_after=None if self._is_free else 1,
+                watch=self.watch,
+                substructure=self.substructure,
+                look=self.look,
+                warm=warm,
+            )
+        )
+
+    def _send(self, order: Order) -> None:
+        if self._link is not None:
+            self._link.send(order)
+
+    def _part(self) -> None:
+        """End the process; what it had is lost, and the run would begin again."""
+        if self._link is not None:
+            self._link.close()
+            self._link = None
+            self.run.lose("")
+            self.follows = True
+
+    def _bury(self) -> None:
+        """Follow the end of a process: start the run again, or give it up."""
+        self._link = None
+        self._deaths += 1
+        again = self._deaths <= RESTARTS
+        _log.error("A worker process ended. %s", AGAIN if again else GIVEN_UP)
+        self.run.lose(AGAIN if again else GIVEN_UP, is_broken=not again)
+        self.follows = True
+        if again:
+            self._work()
+
+    def _take(self, report: Report) -> None:
+        if isinstance(report, Refused) and report.trace:
+            _log.error("A run broke.\n%s", report.trace)
+        self.run.take(report)
+
+    def _receive(self, number: int, report: Report) -> None:
         with self._lock:
-            self._mailbox.append(report)
+            self._mailbox.append((number, report))
         if isinstance(report, Frame) and self.run.newest is None:
             self.wake()
 

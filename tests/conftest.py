@@ -1,4 +1,4 @@
-"""What tests of several files hold: a served page and a browser, a pool, worker processes."""
+"""What tests of several files hold: a served page and a browser, worker processes."""
 
 from __future__ import annotations
 
@@ -13,11 +13,9 @@ import pytest
 from browser import Server, browser
 from pages import Visit, visits
 from playwright.sync_api import Browser, expect
-from pool_sessions import Session
 from processes import PATIENCE
 from worker_line import Line
 
-from app.worker.pool import Pool
 from solver.study.paper_runs import PaperRuns
 
 
@@ -46,17 +44,6 @@ def paper_runs() -> PaperRuns:
 def open_page(server: Server, chrome: Browser) -> Iterator[Visit]:
     with visits(server, chrome) as visit:
         yield visit
-
-
-@pytest.fixture
-def pool() -> Iterator[Pool]:
-    with closing(Pool(2)) as opened:
-        yield opened
-
-
-@pytest.fixture
-def session(pool: Pool) -> Session:
-    return Session(pool)
 
 
 @pytest.fixture

@@ -2,86 +2,133 @@
 
 from __future__ import annotations
 
-import threading
+import os
+import signal
+import subprocess
+import sys
 import time
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import pytest
-from lone_seat import Seat
-from pool_sessions import Session as PoolSession
+from lone_link import LoneLink
+from processes import PATIENCE, is_alive, wait_for
 
 from app.errand import Errand
-from app.session import Session
+from app.pages import Pages
+from app.session import GIVEN_UP, RESTARTS, Session
 from app.transport import Transport
 from app.words import status_line
-from app.worker import job, member
+from app.worker import job, link
 from app.worker.bench import Bench
 from app.worker.job import STOPPED
-from app.worker.member import Member
+from app.worker.link import Link
 from app.worker.orders import Run, Step
-from app.worker.pool import Pool
 from app.worker.reports import Died, Refused, Report
 from solver.scenes.bar import BarSettings
 
-PATIENCE = 60.0
-BROKEN = [Refused(1, "too large"), Died(1, "given up", again=False)]
+BROKEN: list[list[Report]] = [[Refused(1, "too large")], [Died()] * (RESTARTS + 1)]
+REASONS = ["too large", GIVEN_UP]
 
 
 @pytest.fixture
-def seat() -> Seat:
-    return Seat()
+def lone() -> LoneLink:
+    return LoneLink()
 
 
 @pytest.fixture
-def session(seat: Seat) -> Session:
-    made = Session(seat, Bench(), BarSettings.checked({"method": "paper"}))
+def session(lone: LoneLink) -> Session:
+    made = Session(Pages(1), Bench(), BarSettings.checked({"method": "paper"}), lone.hire)
     made.start()
     return made
 
 
-@pytest.mark.parametrize("report", BROKEN)
-def test_the_button_starts_a_broken_run_again(session: Session, seat: Seat, report: Report) -> None:
+@pytest.mark.parametrize("reports", BROKEN)
+def test_the_button_starts_a_broken_run_again(
+    session: Session, lone: LoneLink, reports: list[Report]
+) -> None:
     transport = Transport(session, lambda: None)
     transport.show()
     assert transport._run.label == "Pause"
-    seat.say(report)
-    session.collect()
+    hear(session, lone, reports)
     transport.show()
     assert transport._run.label == "Run"
     transport.toggle()
-    assert isinstance(seat.orders[-1], Run)
-    assert seat.orders[-1].ticket == 2
-    assert seat.orders[-1].pause_after is None
+    assert isinstance(lone.orders[-1], Run)
+    assert lone.orders[-1].ticket == 2
+    assert lone.orders[-1].pause_after is None
     transport.show()
     assert transport._run.label == "Pause"
 
 
-@pytest.mark.parametrize("report", BROKEN)
+@pytest.mark.parametrize("reports", BROKEN)
 def test_a_step_starts_a_broken_run_again_and_waits(
-    session: Session, seat: Seat, report: Report
+    session: Session, lone: LoneLink, reports: list[Report]
 ) -> None:
     session.step()
-    assert isinstance(seat.orders[-1], Step)
-    seat.say(report)
-    session.collect()
+    assert isinstance(lone.orders[-1], Step)
+    hear(session, lone, reports)
     session.step()
-    assert isinstance(seat.orders[-1], Run)
-    assert seat.orders[-1].pause_after == 1
+    assert isinstance(lone.orders[-1], Run)
+    assert lone.orders[-1].pause_after == 1
 
 
-def test_a_run_that_the_pool_itself_starts_again_goes_on(session: Session, seat: Seat) -> None:
-    seat.say(Died(1, "started again", again=True))
+def hear(session: Session, lone: LoneLink, reports: list[Report]) -> None:
+    for report in reports:
+        lone.say(report)
+        session.collect()
+
+
+def test_a_run_whose_process_died_is_started_again_with_what_holds(
+    session: Session, lone: LoneLink
+) -> None:
+    session.set_pace(7.0)
+    session.change("friction", 0.4)
+    hear(session, lone, [Died()])
+    assert session.goes_on
+    again = [order for order in lone.orders if isinstance(order, Run)][-1]
+    assert (again.ticket, again.pace, again.pause_after) == (session.run.ticket, 7.0, None)
+    assert lone.hired == 2
+    session.pause()
+    hear(session, lone, [Died()])
+    assert lone.orders[-1].pause_after == 1
+
+
+def test_what_a_process_said_before_it_died_is_not_heard_of_the_next(
+    session: Session, lone: LoneLink
+) -> None:
+    late = lone.say
+    hear(session, lone, [Died()])
+    late(Refused(1, "too large"))
     session.collect()
     assert session.goes_on
 
 
-@pytest.mark.parametrize("report", BROKEN)
-def test_no_word_says_that_a_broken_run_runs(session: Session, seat: Seat, report: Report) -> None:
-    seat.say(report)
-    session.collect()
+def test_a_page_left_alone_gives_its_process_back_and_gets_another(
+    session: Session, lone: LoneLink, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session.rest(True)
+    session.attend()
+    assert not lone.is_closed
+    assert not session.is_at_work
+    monkeypatch.setattr("app.session.LEFT_ALONE", -1.0)
+    session.attend()
+    assert lone.is_closed
+    session.rest(False)
+    assert (lone.hired, session.is_at_work) == (2, True)
+    assert isinstance(lone.orders[-1], Run)
+
+
+@pytest.mark.parametrize("reports", BROKEN)
+def test_no_word_says_that_a_broken_run_runs(
+    session: Session, lone: LoneLink, reports: list[Report]
+) -> None:
+    hear(session, lone, reports)
     words = status_line(session.run, True, None)
     assert "running" not in words
-    assert report.reason in words
+    assert any(reason in words for reason in REASONS)
 
 
 def no_fork_server(*arguments: Any) -> Any:
@@ -142,31 +189,89 @@ def test_a_job_that_cannot_be_sent_says_so() -> None:
     assert "It broke" in errand.notice
 
 
-def test_where_a_run_broke_is_logged(pool: Pool, caplog: pytest.LogCaptureFixture) -> None:
-    session = PoolSession(pool)
+@pytest.fixture
+def session_at_work() -> Iterator[Session]:
+    settings = BarSettings.checked({"method": "paper", "tolerance": 1e-30})
+    with closing(Session(Pages(1), Bench(), settings)) as made:
+        made.start()
+        yield made
+
+
+def until(session: Session, condition: Callable[[], object]) -> None:
+    wait_for(lambda: session.collect() and condition())
+
+
+def test_a_killed_process_is_replaced_and_the_run_goes_on(session_at_work: Session) -> None:
+    session = session_at_work
+    for _ in range(RESTARTS):
+        until(session, lambda: session.run.iteration > 2)
+        before = session._link
+        assert before is not None
+        assert before.pid is not None
+        os.kill(before.pid, signal.SIGKILL)
+        until(session, lambda link=before: session._link is not link)
+    until(session, lambda: session.run.iteration > 2)
+    assert "started again" in session.run.notice
+
+
+def test_where_a_run_broke_is_logged(
+    session_at_work: Session, caplog: pytest.LogCaptureFixture
+) -> None:
+    session = session_at_work
     nowhere: Any = None
-    session.seat.run(Run(1, "bar", {}, look=nowhere))
-    refused = session.until(Refused)
-    assert "AttributeError" in refused.reason
+    session.look = nowhere
+    session.start()
+    until(session, lambda: session.run.is_broken)
+    assert "AttributeError" in session.run.notice
     assert "Traceback" in caplog.text
     assert "app/worker/run.py" in caplog.text
-
-
-def test_settings_that_are_refused_leave_no_trace_in_the_log(
-    pool: Pool, caplog: pytest.LogCaptureFixture
-) -> None:
-    session = PoolSession(pool)
-    session.seat.run(Run(1, "bar", {"friction": -1.0}))
-    session.until(Refused)
-    assert caplog.text == ""
 
 
 def test_a_worker_whose_process_does_not_start_counts_as_gone(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(member, "start", no_fork_server)
-    gone = threading.Event()
-    hired = Member(lambda member, report: None, lambda member: gone.set())
-    assert gone.wait(PATIENCE)
+    monkeypatch.setattr(link, "start", no_fork_server)
+    said: list[Report] = []
+    hired = Link(said.append)
     hired.join(PATIENCE)
+    assert said == [Died()]
     assert hired.pid is None
+
+
+SERVER = """
+import sys, time
+from app.worker.link import Link
+from app.worker.orders import Run
+from app.worker.reports import Frame
+
+seen = set()
+links = [Link(lambda report, number=number: seen.add((number, type(report)))) for number in (0, 1)]
+for link, pace in zip(links, (2.0, None)):
+    link.send(Run(1, "bar", {"method": "paper", "tolerance": 1e-30, "instants": 401}, pace=pace))
+while not {(0, Frame), (1, Frame)} <= seen:
+    time.sleep(0.01)
+print(*(link.pid for link in links), flush=True)
+sys.stdin.readline()
+"""
+
+
+@pytest.mark.parametrize("killed", [False, True])
+def test_workers_end_with_their_server(killed: bool) -> None:
+    server = subprocess.Popen(
+        [sys.executable, "-c", SERVER],
+        cwd=Path(__file__).parents[1],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    with server:
+        assert server.stdout is not None
+        pids = [int(word) for word in server.stdout.readline().split()]
+        assert all(map(is_alive, pids))
+        if killed:
+            server.kill()
+        _, noise = server.communicate(timeout=PATIENCE)
+    assert not noise
+    assert server.returncode == (-signal.SIGKILL if killed else 0)
+    wait_for(lambda: not any(map(is_alive, pids)))

@@ -10,30 +10,36 @@ from contextlib import ExitStack, closing
 import panel as pn
 import pytest
 from bokeh.document import Document
-from lone_seat import Seat
+from lone_link import LoneLink
 from panel.io.state import set_curdoc
 from panel.util import edit_readonly
 
 from app.address import settings_from_query
 from app.dashboard import Dashboard
+from app.pages import Pages
 from app.session import Session
 from app.worker.bench import Bench
-from app.worker.pool import Pool
 from solver.files import scene_settings
 
 
 @pytest.fixture
-def make() -> Iterator[Callable[[str], Dashboard]]:
+def link() -> LoneLink:
+    return LoneLink()
+
+
+@pytest.fixture
+def make(link: LoneLink) -> Iterator[Callable[[str], Dashboard]]:
     """Give what makes the page of an address."""
     pn.extension(notifications=True)
     with ExitStack() as stack:
-        pool = stack.enter_context(closing(Pool(1)))
         bench = stack.enter_context(closing(Bench()))
 
         def made(query: str) -> Dashboard:
             settings, complaint = settings_from_query(query)
             assert not complaint
-            return Dashboard(stack.enter_context(closing(Session(pool, bench, settings))))
+            return Dashboard(
+                stack.enter_context(closing(Session(Pages(9), bench, settings, link.hire)))
+            )
 
         yield made
 
@@ -57,7 +63,7 @@ def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
     """Twenty pages that the server did not let go were 200 MB."""
     with set_curdoc(Document()):
         pn.extension(notifications=True)
-        session = Session(Seat(), Bench(), scene_settings("bar").checked({}))
+        session = Session(Pages(1), Bench(), scene_settings("bar").checked({}), LoneLink().hire)
         page = weakref.ref(Dashboard(session).page)
     gc.collect()
     assert page() is None
@@ -65,16 +71,13 @@ def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
 
 # panel-material-ui gives its download button both names of one parameter.
 @pytest.mark.filterwarnings("ignore:Both 'variant' and 'button_style'")
-def test_the_first_picture_is_in_the_page_and_the_controls_are_not_yet(
-    dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch
+def test_a_page_that_nobody_has_built_starts_no_process_and_has_no_controls(
+    dashboard: Dashboard, link: LoneLink
 ) -> None:
-    monkeypatch.setattr("app.dashboard.FIRST_PATIENCE", 20.0)
-    dashboard.prepare()
-    assert dashboard.session.run.newest is not None
-    assert "iteration" in dashboard._status.object
-    assert len(dashboard._plots) == 3
+    assert link.hired == 0
     assert not dashboard._sidebar.view.objects
     dashboard.loaded()
+    assert link.hired == 1
     assert len(dashboard._plots) == 6
     assert dashboard._sidebar.view.objects
 
@@ -94,7 +97,6 @@ def test_views_and_sliders_are_those_that_apply(
     make: Callable[[str], Dashboard], query: str, views: int, substructures: bool
 ) -> None:
     dashboard = make(query)
-    dashboard.prepare()
     dashboard.loaded()
     transport = dashboard.transport
     assert len(dashboard._plots) == views

@@ -6,9 +6,10 @@ from typing import Any
 
 import panel as pn
 import pytest
-from lone_seat import Seat
+from lone_link import LoneLink
 
 from app.dashboard import Dashboard
+from app.pages import Pages
 from app.session import Session
 from app.sidebar import Sidebar
 from app.worker.bench import Bench
@@ -17,7 +18,7 @@ from solver.scenes.bar import BarSettings
 
 @pytest.fixture
 def session() -> Session:
-    return Session(Seat(), Bench(), BarSettings.checked({"method": "paper"}))
+    return Session(Pages(1), Bench(), BarSettings.checked({"method": "paper"}), LoneLink().hire)
 
 
 @pytest.fixture

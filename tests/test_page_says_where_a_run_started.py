@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.pages import Pages
 from app.recording import Recording
 from app.session import Session
 from app.sidebar import Sidebar
 from app.words import start_line, status_line
 from app.worker.bench import Bench
-from app.worker.pool import Pool
 from app.worker.reports import Begun
 from app.worker.shown import Axes
 from solver.files import settings_from_toml
@@ -76,13 +76,12 @@ def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> Non
 
 
 def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
-    with closing(Pool(1)) as pool, closing(Bench()) as bench:
-        session = Session(pool, bench, BarSettings.checked({"method": "paper", "peak": 910.0}))
+    settings = BarSettings.checked({"method": "paper", "peak": 910.0})
+    with closing(Session(Pages(1), Bench(), settings)) as session:
         sidebar = Sidebar(session, lambda: None, lambda text: None, lambda query: None)
         plain = sidebar._saved().getvalue()
         session.run = recording(NEARER, peak=910.0)
         told = sidebar._saved().getvalue()
-        session.close()
     assert told.endswith(plain)
     assert "started from the solution of the run before it" in told.replace("\n# ", " ")
     assert "started" not in plain

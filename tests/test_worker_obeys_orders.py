@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
 import pytest
 from worker_line import PATIENCE, SHORT, Line
 
-from app.worker.orders import Leave, Pace, Park, Run, Seek, Step, Watch
-from app.worker.reports import End, Frame, Parked, Progress, Reference, Refused, Waiting
+from app.worker.orders import Pace, Run, Seek, Step, Watch
+from app.worker.reports import End, Frame, Progress, Reference, Refused, Taken, Waiting
 from solver.latin import Ending
 
 
@@ -75,8 +74,7 @@ def test_new_run_takes_the_place_of_the_one_at_work(line: Line) -> None:
 
 
 def test_orders_of_other_runs_are_ignored(line: Line) -> None:
-    line.send(Run(7, "bar", SHORT, pause_after=2), Pace(6, None), Step(6), Seek(6, 1), Park(6))
-    assert line.until(Parked, ticket=6).order is None
+    line.send(Run(7, "bar", SHORT, pause_after=2), Pace(6, None), Step(6), Seek(6, 1))
     line.until(Waiting, ticket=7)
     assert len(line.records(7)) == 2
 
@@ -90,20 +88,19 @@ def test_long_reference_gives_way_to_a_new_run(line: Line) -> None:
     assert not line.all(Reference, ticket=1)
 
 
+def test_a_run_that_is_slow_to_set_up_gives_way_to_a_new_run(line: Line) -> None:
+    line.send(Run(1, "bar", {"elements": 5000, "instants": 2001, "substructures": 500}))
+    line.until(Taken)
+    line.send(Run(2, "bar", SHORT))
+    line.until(End, ticket=2)
+    assert not line.all(Frame, ticket=1)
+
+
 @pytest.mark.parametrize("busy", [False, True])
-def test_process_ends_when_it_shall_leave_or_the_server_is_gone(
-    lines: list[Line], busy: bool
-) -> None:
-    for line in lines:
-        if busy:
-            line.send(Run(1, "bar", SHORT, pace=50.0))
-            line.until(Reference)
-    lines[0].send(Leave())
-    lines[1].connection.close()
-    # What nobody reads fills the pipe, and then a worker waits before it takes an order.
-    with suppress(EOFError, OSError):
-        while lines[0].connection.poll(PATIENCE):
-            lines[0].connection.recv()
-    for line in lines:
-        line.process.join(PATIENCE)
-        assert line.process.exitcode == 0
+def test_process_ends_with_its_pipe_whatever_it_does(line: Line, busy: bool) -> None:
+    if busy:
+        line.send(Run(1, "bar", {"elements": 5000, "instants": 2001, "substructures": 500}))
+        line.until(Taken)
+    line.connection.close()
+    line.process.join(PATIENCE)
+    assert line.process.exitcode == 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +10,10 @@ from direct_runs import direct, iterate_number, timeless
 from worker_line import SHORT, STALLING, Line, is_same_picture, shown
 
 from app.worker.checkpoints import Checkpoints
-from app.worker.orders import Pace, Park, Run, Seek
-from app.worker.reports import End, Frame, Parked, Progress, Waiting
+from app.worker.orders import Pace, Run, Seek
+from app.worker.reports import End, Frame, Progress, Waiting
+from app.worker.rivals import References
+from app.worker.run import WorkerRun
 from solver.latin import Checkpoint
 
 
@@ -37,15 +39,19 @@ def test_seek_out_of_range_shows_the_nearest_iterate(line: Line, wanted: int, an
     assert line.all(Frame)[-1].iteration == answer
 
 
-def test_newer_seek_takes_the_place_of_an_older(line: Line) -> None:
-    large = {"method": "paper", "elements": 200, "instants": 201, "max_iterations": 40}
-    line.send(Run(1, "bar", large))
-    line.until(Waiting)
-    line.send(Park(1))
-    order = replace(line.until(Parked).order, ticket=2)
-    line.send(order, Seek(2, 39), Seek(2, 3))
-    line.until(Waiting, ticket=2)
-    assert [frame.iteration for frame in line.all(Frame, ticket=2) if frame.sought] == [3]
+def test_newer_seek_takes_the_place_of_an_older() -> None:
+    said: list[Any] = []
+    run = WorkerRun(Run(1, "bar", SHORT), said.append, lambda: False, References())
+    done(run)
+    run.obey(Seek(1, 39))
+    run.obey(Seek(1, 3))
+    done(run)
+    assert [one.iteration for one in said if isinstance(one, Frame) and one.sought] == [3]
+
+
+def done(run: WorkerRun) -> None:
+    while run.rest() is not None:
+        run.advance()
 
 
 def test_seek_does_not_move_the_run(line: Line) -> None:

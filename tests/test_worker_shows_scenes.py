@@ -26,7 +26,6 @@ from app.worker.orders import Look, Run, Watch
 from app.worker.reports import (
     Begun,
     Frame,
-    Parked,
     Progress,
     Reference,
     Report,
@@ -198,23 +197,6 @@ def test_broken_wire_is_shown_beside_its_closed_form() -> None:
     exact = np.interp(wires.positions, wires.exact_positions, wires.exact[0, :, -1])
     assert broken == pytest.approx(exact, abs=0.03 * 600.0)
     assert told.all(Begun)[0].wires.exact is None
-
-
-def test_a_run_that_is_parked_goes_on_looking_where_it_did() -> None:
-    look = Look(interface="contact 2-3", phase=0.25, stress="xy")
-    told = Told("layers", pause_after=4, look=look)
-    parked = told.run.parked()
-    assert isinstance(parked, Parked)
-    assert parked.order is not None
-    assert parked.order.look == look
-    again: list[Report] = []
-    run = WorkerRun(parked.order, again.append, lambda: False, References())
-    while run.rest() is not None:
-        run.advance()
-    assert [type(report) for report in again[:3]] == [Begun, Frame, Reference]
-    frame = again[1]
-    assert isinstance(frame, Frame)
-    assert np.array_equal(frame.friction, told.frame.friction)
 
 
 def test_warm_start_is_left_out_where_fields_cannot_be_carried() -> None:

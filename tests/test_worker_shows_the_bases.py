@@ -172,25 +172,6 @@ def test_full_stage_beside_the_bases_is_a_run_of_its_own(change: dict[str, Any])
     assert timeless(found.records) == timeless(direct(values).records)
 
 
-@pytest.mark.parametrize("parked_at", [1, 2, 17])
-def test_run_that_was_parked_loses_nothing_of_its_bases(parked_at: int) -> None:
-    whole = told(SMALL, watch=ALL)
-    first = told(SMALL, watch=ALL, pause_after=parked_at)
-    order = first.run.parked().order
-    assert order is not None
-    second = Told(replace(order, pause_after=None))
-    assert len(first.beside) == parked_at
-    assert timeless(first.records + second.records) == timeless(whole.records)
-    assert timeless(first.beside + second.beside) == timeless(whole.beside)
-    assert first.sizes + second.sizes == whole.sizes
-    again, once = shown_modes(second.frames[0]), shown_modes(first.frames[-1])
-    assert np.array_equal(again.space_modes, once.space_modes)
-    assert np.array_equal(again.born, once.born)
-    assert again.lost == once.lost
-    last = shown_modes(second.frames[-1])
-    assert np.array_equal(last.space_modes, shown_modes(whole.frames[-1]).space_modes)
-
-
 def test_checkpoints_count_their_bases_as_memory() -> None:
     iterate = iterate_number(5, SMALL)
     size = iterate.outgoing.nbytes

@@ -1,16 +1,14 @@
-"""A worker starts a run from the one before it where it is told to, wherever that was."""
+"""A worker starts a run from the one before it where it is told to."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import islice
 
-import pytest
 from direct_runs import direct, timeless
 from worker_line import STALLING, Line, is_same_picture, shown
 
-from app.worker.orders import Park, Run, Seek
-from app.worker.reports import Begun, End, Frame, Parked, Progress, Waiting
+from app.worker.orders import Run, Seek
+from app.worker.reports import Begun, End, Frame, Progress, Waiting
 from solver.discrete import discretise
 from solver.latin import Record, StopRules, record
 from solver.latin.warm import choose_start
@@ -36,7 +34,7 @@ def warm_records(number: int) -> list[Record]:
 def test_warm_run_starts_from_the_run_that_it_takes_the_place_of(line: Line) -> None:
     line.send(Run(1, "bar", STALLING))
     line.until(End)
-    line.send(Run(2, "bar", NEAR, warm=True, after=1, pause_after=30))
+    line.send(Run(2, "bar", NEAR, warm=True, pause_after=30))
     line.until(Waiting, ticket=2)
     assert timeless(line.records(2)) == warm_records(30)
     assert all(begun.start.is_previous for begun in line.all(Begun, ticket=2))
@@ -51,68 +49,37 @@ def test_warm_run_starts_from_the_run_that_it_takes_the_place_of(line: Line) -> 
         assert is_same_picture(frame, shown(iterate))
 
 
-@pytest.mark.parametrize("parked_at", [1, 2, 20])
-def test_warm_run_is_parked_and_goes_on_to_the_bit(lines: list[Line], parked_at: int) -> None:
-    first, second = lines
-    first.send(Run(1, "bar", STALLING))
-    first.until(End)
-    first.send(Run(2, "bar", NEAR, warm=True, after=1, pause_after=parked_at))
-    first.until(Waiting, ticket=2)
-    first.send(Park(2))
-    order = replace(first.until(Parked, ticket=2).order, pause_after=30)
-    second.send(order)
-    second.until(Waiting, ticket=2)
-    records = first.records(2) + second.records(2)
-    assert timeless(records) == warm_records(30)
-    seconds = [entry.seconds for entry in records]
-    assert seconds == sorted(seconds)
-    assert second.all(Begun, ticket=2)[0].start.is_previous
-    second.send(Seek(2, 1))
-    second.until(Waiting, ticket=2)
-    assert is_same_picture(second.all(Frame, ticket=2)[-1], first.all(Frame, ticket=2)[0])
-
-
-def test_warm_run_starts_from_a_run_that_was_parked(lines: list[Line]) -> None:
-    first, second = lines
-    first.send(Run(1, "bar", STALLING))
-    first.until(End)
-    first.send(Park(1))
-    parked = first.until(Parked).order
-    second.send(Run(2, "bar", NEAR, warm=True, previous=parked, pause_after=30))
-    second.until(Waiting, ticket=2)
-    assert timeless(second.records(2)) == warm_records(30)
-
-
 def test_warm_run_that_is_replaced_at_once_hands_on_what_it_was_given(line: Line) -> None:
     line.send(Run(1, "bar", STALLING))
     line.until(End)
     line.send(
-        Run(2, "bar", {**NEAR, "peak": 901.0}, warm=True, after=1),
-        Run(3, "bar", NEAR, warm=True, after=2, pause_after=5),
+        Run(2, "bar", {**NEAR, "peak": 901.0}, warm=True),
+        Run(3, "bar", NEAR, warm=True, pause_after=5),
     )
     line.until(Waiting, ticket=3)
     assert line.all(Begun, ticket=3)[0].start.is_previous
 
 
-@pytest.mark.parametrize(
-    "order",
-    [Run(2, "bar", NEAR, after=1), Run(2, "bar", NEAR, warm=True, after=7)],
-    ids=["not warm", "another session's"],
-)
-def test_run_starts_as_its_settings_say_otherwise(line: Line, order: Run) -> None:
+def test_run_starts_as_its_settings_say_otherwise(line: Line) -> None:
     line.send(Run(1, "bar", STALLING))
     line.until(End)
-    line.send(order)
+    line.send(Run(2, "bar", NEAR))
     line.until(End, ticket=2)
     assert timeless(line.records(2)) == timeless(direct(NEAR).records)
     assert line.all(Begun, ticket=2)[0].start is None
+
+
+def test_a_first_run_that_may_be_warm_starts_as_its_settings_say(line: Line) -> None:
+    line.send(Run(1, "bar", NEAR, warm=True))
+    line.until(End)
+    assert line.all(Begun)[0].start is None
 
 
 def test_full_stage_beside_a_warm_run_starts_where_that_does(line: Line) -> None:
     reduced = {**NEAR, "linear_stage": "pgd"}
     line.send(Run(1, "bar", STALLING))
     line.until(End)
-    line.send(Run(2, "bar", reduced, warm=True, after=1, pause_after=5))
+    line.send(Run(2, "bar", reduced, warm=True, pause_after=5))
     line.until(Waiting, ticket=2)
     beside = [entry for part in line.all(Progress, ticket=2) for entry in part.beside]
     assert timeless(beside) == warm_records(5)

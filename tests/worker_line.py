@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from processes import PATIENCE
 
-from app.worker import member
+from app.worker import link
 from app.worker.orders import Look, Order
-from app.worker.reports import Frame, Progress, Ready, Report
+from app.worker.reports import Frame, Progress, Report
 from app.worker.sampler import Sampler
 from solver.latin import Iterate, Record
 from solver.scenes.bar import BarSettings
@@ -30,9 +30,8 @@ class Line:
     """A worker process and all that it has said."""
 
     def __init__(self) -> None:
-        self.process, self.connection = member.start()
+        self.process, self.connection = link.start()
         self.reports: list[Report] = []
-        assert isinstance(self.connection.recv(), Ready)
 
     def close(self) -> None:
         self.process.kill()

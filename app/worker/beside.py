@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from app.worker.resume import ResumeBeside
 from solver.discrete import Problem
 from solver.latin import Ending, Record, StopRules, record
 from solver.latin.warm import Start, iterations_from
@@ -17,8 +16,6 @@ class Beside:
     ----------
     problem, settings
         Of the run on separated bases.
-    resume
-        Where to go on.
     start
         Where the run on separated bases started, if that was chosen: this one starts there too.
     """
@@ -27,14 +24,13 @@ class Beside:
         self,
         problem: Problem,
         settings: Settings,
-        resume: ResumeBeside | None,
         start: Start | None,
     ) -> None:
         full = settings.replace(linear_stage="full", finish="none")
-        self._checkpoint = resume.checkpoint if resume else None
-        self._rules = resume.rules if resume else StopRules(full)
-        self._ended = resume.ended if resume else False
-        self._generator = iterations_from(problem, full, start, self._checkpoint)
+        self._number = 0
+        self._rules = StopRules(full)
+        self._ended = False
+        self._generator = iterations_from(problem, full, start, None)
 
     def follow(self, number: int, distance: Distance | None) -> list[Record]:
         """Catch up with an iteration, unless it has ended before; give the new records."""
@@ -45,22 +41,11 @@ class Beside:
             status = verdict.status
             self._ended = status is not None
             if status is None or status.ending is not Ending.DIVERGED:
-                self._checkpoint = iterate.checkpoint
+                self._number = iterate.number
                 records.append(record(iterate, verdict, distance))
         return records
 
-    @property
-    def resume(self) -> ResumeBeside:
-        """What is needed to go on from here."""
-        return ResumeBeside(self._checkpoint, self._rules, self._ended)
 
-    @property
-    def _number(self) -> int:
-        return self._checkpoint.number if self._checkpoint else 0
-
-
-def beside(
-    problem: Problem, settings: Settings, resume: ResumeBeside | None, start: Start | None
-) -> Beside | None:
+def beside(problem: Problem, settings: Settings, start: Start | None) -> Beside | None:
     """Give what is iterated beside a run, if anything is."""
-    return Beside(problem, settings, resume, start) if settings.is_reduced else None
+    return Beside(problem, settings, start) if settings.is_reduced else None

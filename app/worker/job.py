@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from app.worker.member import start
+from app.worker.link import start
 from app.worker.process import NICENESS
 
 _log = logging.getLogger(__name__)

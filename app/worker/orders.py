@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from app.worker.resume import Resume
 from app.worker.shown import STRESSES
 
 
@@ -41,20 +40,12 @@ class Run:
         done in any case.
     pause_after
         Iterations after which the run waits for Pace or Step; None never waits.
-    resume
-        Where to go on; records before it are not sent again.
     watch
         Names of what frames carry beyond the fields: "spectra", "modes", "mesh", "axial".
-    seek
-        Iteration whose frame is sought first.
     substructure, look
         As in Watch.
     warm
-        Whether the run may start from the last iterate of the seat's run before, where that is
-        better.
-    after, previous
-        How that one is found, for the pool to fill in: the ticket of a run that this process has
-        at work, or the order that would have gone on with it.
+        Whether the run may start from the last iterate of the run before, where that is better.
     """
 
     ticket: int
@@ -62,22 +53,10 @@ class Run:
     values: dict[str, Any]
     pace: float | None = None
     pause_after: int | None = None
-    resume: Resume | None = None
     watch: frozenset[str] = frozenset()
-    seek: int | None = None
     substructure: int | None = None
     look: Look = Look()
     warm: bool = False
-    after: int | None = None
-    previous: Run | None = None
-
-    @property
-    def waits(self) -> bool:
-        """Whether it has nothing to do until another order comes."""
-        if self.resume is None or self.seek is not None:
-            return False
-        paused = self.pause_after is not None and self.resume.iteration >= self.pause_after
-        return self.resume.status is not None or self.pace == 0 or paused
 
 
 @dataclass(frozen=True)
@@ -128,17 +107,4 @@ class Watch:
     look: Look = Look()
 
 
-@dataclass(frozen=True)
-class Park:
-    """Give up the run, and unless `keep` is false, say how to go on: someone needs the process."""
-
-    ticket: int
-    keep: bool = True
-
-
-@dataclass(frozen=True)
-class Leave:
-    """End the process."""
-
-
-Order = Run | Pace | Step | Seek | Watch | Park | Leave
+Order = Run | Pace | Step | Seek | Watch

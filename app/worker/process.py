@@ -1,66 +1,159 @@
-"""A worker process: it reads orders from its pipe, and between them it works at its run.
+"""A worker process: it obeys orders, and between them it works at its page's run.
 
-Nothing runs beside this loop, so an order is obeyed as soon as the piece of work at hand is done;
-an order that cannot wait for that is the pool's to enforce, by ending the process.
+A thread reads the orders, for three reasons: the end of the pipe ends the process whatever it is
+at, a new run interrupts the one at work, and one that cannot be interrupted is given up.
 """
 
 from __future__ import annotations
 
+import _thread
 import contextlib
+import faulthandler
 import os
 import signal
+import threading
+import time
 import traceback
 from collections import deque
 from collections.abc import Callable
 from functools import partial
 from multiprocessing.connection import Connection
+from typing import Any
 
 import numpy as np
 
-from app.worker.orders import Leave, Order, Pace, Park, Run, Seek, Step, Watch
-from app.worker.previous import last_iterate
-from app.worker.reports import Parked, Ready, Refused, Taken, Waiting
+from app.worker.orders import Order, Run
+from app.worker.reports import Refused, Taken, Waiting
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from solver.definitions import SettingError
 
-NICENESS = 2
+NICENESS = 5
 """Below the server, so that pages stay alive, but not by much: the first picture of a run waits for
 this process, and beside a browser that paints on the same cores niceness 10 made it wait 0.1 s."""
+POLITE = 0.05
+"""Seconds that a run has to come to the end of a piece of work when the next is ordered."""
+STUCK = 10.0
+"""Seconds after which a run that cannot be interrupted for the next one is taken for stuck."""
+LONGEST = 180.0
+"""Seconds that one piece of work may take: beyond, nobody would wait for it."""
+
+
+class InterruptedForNextError(BaseException):
+    """Another run is ordered; no handler of the solver's may take this for an error of its own."""
 
 
 def main(connection: Connection) -> None:
-    """Serve orders until the order to leave, or until the server is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Serve orders until the server, or the page, is gone."""
     if hasattr(os, "nice"):
         os.nice(NICENESS)
+    faulthandler.enable()
     # A run that diverges is told by its status; the lines on stderr would help nobody.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
     with contextlib.suppress(OSError):
-        connection.send(Ready())
-        Worker(connection).serve()
+        Worker(Inbox(connection), connection.send).serve()
+
+
+class Inbox:
+    """Orders in the sequence in which they came.
+
+    Parameters
+    ----------
+    connection
+        Where they come from; the process ends when it does.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._orders: deque[Order] = deque()
+        self._changed = threading.Condition()
+        self._interruptible = False
+        signal.signal(signal.SIGINT, self._interrupt)
+        threading.Thread(target=self._read, name="orders", daemon=True).start()
+
+    def take(self, timeout: float | None) -> Order | None:
+        """Give the next order; None if there is none within this time, s."""
+        faulthandler.cancel_dump_traceback_later()
+        with self._changed:
+            self._changed.wait_for(lambda: self._orders, timeout)
+            return self._orders.popleft() if self._orders else None
+
+    def urgent(self) -> bool:
+        """Tell whether an order waits that ends the run at work."""
+        return any(isinstance(order, Run) for order in list(self._orders))
+
+    def attempt(self, action: Callable[[], None]) -> None:
+        """Do a piece of work, which a new run interrupts and no more than the longest time ends.
+
+        Raises
+        ------
+        InterruptedForNextError
+            If another run came and the piece did not end soon.
+        """
+        faulthandler.dump_traceback_later(LONGEST, exit=True)
+        self._interruptible = True
+        try:
+            action()
+        finally:
+            self._interruptible = False
+
+    def shielded(self, action: Callable[[Any], None]) -> Callable[[Any], None]:
+        """Give an action that no new run interrupts: half a report could not be read."""
+
+        def act(argument: Any) -> None:
+            before, self._interruptible = self._interruptible, False
+            try:
+                action(argument)
+            finally:
+                self._interruptible = before
+
+        return act
+
+    def _read(self) -> None:
+        with contextlib.suppress(EOFError, OSError):
+            while True:
+                order = self._connection.recv()
+                with self._changed:
+                    self._orders.append(order)
+                    self._changed.notify()
+                if isinstance(order, Run):
+                    self._hasten()
+        os._exit(0)
+
+    def _hasten(self) -> None:
+        """Interrupt what is at work, or give up the process where it cannot be."""
+        began = time.monotonic()
+        while self.urgent() and not self._connection.poll(POLITE):
+            if self._interruptible:
+                _thread.interrupt_main()
+            if time.monotonic() - began > STUCK:
+                faulthandler.dump_traceback()
+                os._exit(1)
+
+    def _interrupt(self, number: int, frame: Any) -> None:
+        if self._interruptible and self.urgent():
+            self._interruptible = False
+            raise InterruptedForNextError
 
 
 class Worker:
     """The run at work, if any, and the loop that serves it."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._inbox = Inbox(connection)
-        self._send = connection.send
+    def __init__(self, inbox: Inbox, send: Callable[[Any], None]) -> None:
+        self._inbox = inbox
+        self._send = inbox.shielded(send)
         self._references = References()
         self._run: WorkerRun | None = None
         self._told_waiting = True
 
     def serve(self) -> None:
-        """Obey orders and work in between, until the order to leave."""
+        """Obey orders and work in between, without end."""
         while True:
             rest = self._run.rest() if self._run else None
             if rest is None and self._run and not self._told_waiting:
                 self._send(Waiting(self._run.ticket))
                 self._told_waiting = True
             order = self._inbox.take(rest)
-            if isinstance(order, Leave):
-                return
             if order is not None:
                 self._told_waiting = False
                 self._obey(order)
@@ -69,70 +162,28 @@ class Worker:
 
     def _obey(self, order: Order) -> None:
         run = self._run
-        match order:
-            case Run():
-                self._send(Taken(order.ticket))
-                self._run = None
-                self._attempt(order.ticket, partial(self._begin, order, run))
-            case Park():
-                self._attempt(order.ticket, partial(self._park, order))
-            case Pace() | Step() | Seek() | Watch():
-                if run is not None and run.ticket == order.ticket:
-                    self._attempt(run.ticket, partial(run.obey, order))
+        if isinstance(order, Run):
+            self._send(Taken(order.ticket))
+            self._run = None
+            self._attempt(order.ticket, partial(self._begin, order, run))
+        elif run is not None and run.ticket == order.ticket:
+            self._attempt(run.ticket, partial(run.obey, order))
 
     def _begin(self, order: Run, before: WorkerRun | None) -> None:
-        previous = None
-        if order.warm and before is not None and before.ticket == order.after:
-            previous = before.last
-        elif order.warm and order.previous is not None:
-            previous = last_iterate(order.previous)
+        previous = before.last if order.warm and before is not None else None
         self._run = WorkerRun(order, self._send, self._inbox.urgent, self._references, previous)
-
-    def _park(self, order: Park) -> None:
-        run = self._run
-        if run is None or run.ticket != order.ticket:
-            self._send(Parked(order.ticket, None))
-            return
-        self._send(run.parked() if order.keep else Parked(run.ticket, None))
-        self._run = None
 
     def _attempt(self, ticket: int, action: Callable[[], None]) -> None:
         """Do something of a run; if it breaks, the run is over and the process lives on."""
         try:
-            action()
+            self._inbox.attempt(action)
+        except InterruptedForNextError:
+            return
         except Exception as problem:
             self._run = None
             told = isinstance(problem, SettingError | FloatingPointError)
             trace = "" if told else traceback.format_exc()
             self._send(Refused(ticket, _sentence(problem), trace))
-
-
-class Inbox:
-    """Orders in the sequence in which they came; the end of the pipe is an order to leave."""
-
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-        self._orders: deque[Order] = deque()
-        self._open = True
-
-    def take(self, timeout: float | None) -> Order | None:
-        """Give the next order; None if there is none within this time, s."""
-        if not self._orders and self._connection.poll(timeout):
-            self._read()
-        return self._orders.popleft() if self._orders else None
-
-    def urgent(self) -> bool:
-        """Tell whether an order waits that ends the run at work."""
-        while self._open and self._connection.poll():
-            self._read()
-        return any(isinstance(order, Run | Park | Leave) for order in self._orders)
-
-    def _read(self) -> None:
-        try:
-            self._orders.append(self._connection.recv())
-        except (EOFError, OSError):
-            self._open = False
-            self._orders.append(Leave())
 
 
 def _sentence(problem: Exception) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.worker.orders import Run
 from app.worker.shown import (
     Axes,
     AxialForces,
@@ -18,11 +17,6 @@ from app.worker.shown import (
 )
 from solver.latin import Record, Status
 from solver.latin.warm import StartChoice
-
-
-@dataclass(frozen=True)
-class Ready:
-    """The process listens."""
 
 
 @dataclass(frozen=True)
@@ -179,25 +173,11 @@ class Frame:
 
 @dataclass(frozen=True)
 class End:
-    """The run has ended; it still answers Seek and Watch until it is parked or replaced."""
+    """The run has ended; it still answers Seek and Watch until it is replaced."""
 
     ticket: int
     status: Status
     iteration: int
-
-
-@dataclass(frozen=True)
-class Parked:
-    """The run was given up on request.
-
-    Attributes
-    ----------
-    order
-        The order that goes on with it; None if that was not asked for, or nothing is known of it.
-    """
-
-    ticket: int
-    order: Run | None
 
 
 @dataclass(frozen=True)
@@ -217,32 +197,7 @@ class Refused:
 
 @dataclass(frozen=True)
 class Died:
-    """The process of this run is gone: its Progress, Frame and End are to be forgotten.
-
-    Begun and Reference still hold. The pool says it in the process's stead.
-
-    Attributes
-    ----------
-    again
-        Whether the run was started again from its beginning, under the same ticket; otherwise
-        it is given up.
-    """
-
-    ticket: int
-    reason: str
-    again: bool
+    """The process is gone, and all that it had; the link says it in its stead."""
 
 
-Report = (
-    Taken
-    | Waiting
-    | Begun
-    | Reference
-    | Unrivalled
-    | Progress
-    | Frame
-    | End
-    | Parked
-    | Refused
-    | Died
-)
+Report = Taken | Waiting | Begun | Reference | Unrivalled | Progress | Frame | End | Refused | Died

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from app.worker.resume import without_problem
 from app.worker.shown import has_reference
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
@@ -71,9 +70,14 @@ class _Kept:
     """A reference without its problem, and the bytes of its fields."""
 
     def __init__(self, found: Reference) -> None:
-        values: list[Any] = [getattr(found, one.name) for one in fields(found)]
-        self.of = without_problem(found)
-        self.size = sum(value.nbytes for value in values if isinstance(value, np.ndarray))
+        names = [one.name for one in fields(found) if one.name != "problem"]
+        self._values: dict[str, Any] = {name: getattr(found, name) for name in names}
+        arrays = [value for value in self._values.values() if isinstance(value, np.ndarray)]
+        self.size = sum(value.nbytes for value in arrays)
+
+    def of(self, problem: Problem) -> Reference:
+        """Give it back its problem, or one that is solved alike."""
+        return Reference(problem, **self._values)
 
 
 def _find(problem: Problem, stop: Callable[[], bool]) -> Reference | None:

@@ -6,21 +6,21 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from app.worker.beside import Beside, beside
 from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
 from app.worker.outbox import Outbox
-from app.worker.previous import fits
-from app.worker.reports import Begun, End, Frame, Parked, Report, Unrivalled
-from app.worker.resume import Resume, without_problem
+from app.worker.reports import Begun, End, Frame, Report, Unrivalled
 from app.worker.rivals import References
 from app.worker.sampler import Sampler
 from app.worker.seeking import Seeking
 from app.worker.tempo import Tempo
-from solver.discrete import discretise
+from solver.discrete import Problem, discretise
 from solver.files import scene_settings
-from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
+from solver.latin import Checkpoint, Ending, Iterate, Status, StopRules, Verdict, record
 from solver.latin.indicators import latin_indicator
-from solver.latin.warm import choose_start, iterations_from
+from solver.latin.warm import Start, choose_start, iterations_from
 from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted
@@ -59,9 +59,7 @@ class WorkerRun:
         references: References,
         previous: Iterate | None = None,
     ) -> None:
-        resume = order.resume
         self.ticket = order.ticket
-        self._order = order
         self._send = send
         self._urgent = urgent
         self._references = references
@@ -69,18 +67,18 @@ class WorkerRun:
         self._problem = discretise(self._settings)
         self._look = order.look
         self._sampler = Sampler(self._problem, self._settings, self._look)
-        self._rules = resume.rules if resume else StopRules(self._settings)
-        self._status = resume.status if resume else None
+        self._rules = StopRules(self._settings)
+        self._status: Status | None = None
         self._compared = False
         self._reference: incremental.Reference | None = None
         self._distance: Distance | None = None
-        self._before = resume.before if resume else None
-        self._start = resume.start if resume else None
-        self._previous = previous if resume is None and fits(previous, self._problem) else None
+        self._before: Checkpoint | None = None
+        self._start: Start | None = None
+        self._previous = previous if fits(previous, self._problem) else None
         self._newest: Iterate | None = None
         self._seeking = Seeking(self._iterations)
         self._outbox = Outbox(order.ticket, send)
-        self._tempo = Tempo(order.pace, order.pause_after, resume.due if resume else None)
+        self._tempo = Tempo(order.pace, order.pause_after)
         self._watch = order.watch
         self._substructure = order.substructure
         self._beside: Beside | None = None
@@ -123,76 +121,27 @@ class WorkerRun:
                 self._watch, self._substructure = order.watch, order.substructure
                 self._look_at(order.look)
 
-    def parked(self) -> Parked:
-        """Give the order that goes on with the run, once all its records are sent."""
-        resume = self._order.resume
-        # A run without a past does its first iteration in any case, before all steps.
-        done = resume.iteration if resume else 1
-        if self._newest is not None and self._compared:
-            # However busy the machine is, a turn that came so far brings at least an iteration.
-            if resume and resume.iteration == self._newest.number and self._is_due():
-                self._iterate(self._newest)
-            self._publish()
-            done = self._newest.number
-            resume = Resume(
-                self._before,
-                done,
-                self._rules,
-                without_problem(self._reference) if self._reference else None,
-                self._status,
-                self._tempo.due,
-                self._beside.resume if self._beside else None,
-                self._start,
-                self._newest.residual is not None,
-            )
-        pace, pause_after = self._tempo.carried(done)
-        order = replace(
-            self._order,
-            pace=pace,
-            pause_after=pause_after,
-            resume=resume,
-            watch=self._watch,
-            seek=self._seeking.wanted or self._order.seek,
-            substructure=self._substructure,
-            look=self._look,
-            after=None,
-            previous=None if resume else self._order.previous,
-        )
-        return Parked(self.ticket, order)
-
     def _open(self) -> None:
-        """Do the first iteration, or the last one again, and show it: the picture comes first."""
-        resume = self._order.resume
+        """Do the first iteration and show it: the picture comes first."""
         newest = self._first()
-        if resume is not None and resume.is_finished:
-            newest = self._rules.finish(newest)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(
                 "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
                 "nearer to 1."
             )
         self._newest = newest
-        # Whoever watches a run that goes on has the closed form already, and must not lose it.
-        begun = self._begun()
-        self._send(self._sampler.completed(begun) if resume else begun)
+        self._send(self._begun())
         self._send(self._frame(newest, self._before))
-        if resume is not None:
-            self._refer(resume.reference(self._problem) if resume.reference else None)
-            if self._before is not None:
-                self._seeking.keep(self._before)
-            self._seeking.keep(newest.checkpoint)
-        if self._order.seek is not None:
-            self._seek(self._order.seek)
 
     def _first(self) -> Iterate:
-        """Give the first iterate, from the start that is better, or the last one again."""
-        resume, problem, settings = self._order.resume, self._problem, self._settings
+        """Give the first iterate, from the start that is better."""
+        problem, settings = self._problem, self._settings
         if self._previous is None:
-            self._generator = self._iterations(self._before)
+            self._generator = self._iterations(None)
         else:
             self._start, self._generator = choose_start(problem, settings, self._previous)
             self._previous = None
-        self._beside = beside(problem, settings, resume.beside if resume else None, self._start)
+        self._beside = beside(problem, settings, self._start)
         return next(self._generator)
 
     def _iterations(self, checkpoint: Checkpoint | None) -> Iterator[Iterate]:
@@ -276,9 +225,7 @@ class WorkerRun:
     def _seek(self, iteration: int) -> None:
         newest = self._newest
         if newest is None:
-            self._order = replace(self._order, seek=iteration)
             return
-        self._order = replace(self._order, seek=None)
         wanted = min(max(iteration, 1), newest.number)
         if wanted == newest.number:
             self._seeking.stop()
@@ -312,3 +259,18 @@ class WorkerRun:
 
     def _rest_of_iterations(self, done: int) -> float | None:
         return None if self._status is not None else self._tempo.rest(done)
+
+
+def fits(previous: Iterate | None, problem: Problem) -> bool:
+    """Tell whether a run may start from another's iterate.
+
+    Row by row it always may; fields that have to be carried to another mesh must be those of wires
+    that rub where these do.
+    """
+    if previous is None:
+        return False
+    old = previous.problem
+    if np.array_equal(old.row_dofs, problem.row_dofs):
+        return True
+    wires = old.positions.ndim == problem.positions.ndim == 1
+    return wires and set(problem.rubbing) <= set(old.rubbing)

@@ -15,29 +15,20 @@ class Tempo:
     ----------
     pace, pause_after
         As in a Run.
-    due
-        When the next iteration is due, on the monotonic clock; None is one interval from now.
-
-    Attributes
-    ----------
-    due
-        The same, at present.
     """
 
-    def __init__(
-        self, pace: float | None, pause_after: int | None, due: float | None = None
-    ) -> None:
+    def __init__(self, pace: float | None, pause_after: int | None) -> None:
         self._pace = pace
         self._pause_after = pause_after
         self._steps = 0
-        self.due = time.monotonic() + self._interval if due is None else due
+        self._due = time.monotonic() + self._interval
 
     def change(self, pace: float | None) -> None:
         """Go on at another pace, without a pause and without steps."""
         self._steps = 0
         self._pace = pace
         self._pause_after = None
-        self.due = min(self.due, time.monotonic() + self._interval)
+        self._due = min(self._due, time.monotonic() + self._interval)
 
     def step(self) -> None:
         """Do one more iteration, and wait."""
@@ -47,7 +38,7 @@ class Tempo:
     def count(self) -> None:
         """Count an iteration that begins now."""
         self._steps = max(self._steps - 1, 0)
-        self.due = max(self.due + self._interval, time.monotonic())
+        self._due = max(self._due + self._interval, time.monotonic())
 
     def rest(self, done: int) -> float | None:
         """Give the seconds until the next iteration is due; None waits for an order."""
@@ -56,11 +47,7 @@ class Tempo:
         paused = self._pause_after is not None and done >= self._pause_after
         if paused or self._pace == 0:
             return None
-        return min(max(self.due - time.monotonic(), 0.0), LONGEST_REST)
-
-    def carried(self, done: int) -> tuple[float | None, int | None]:
-        """Give pace and pause with which another tempo goes on."""
-        return (None, done + self._steps) if self._steps else (self._pace, self._pause_after)
+        return min(max(self._due - time.monotonic(), 0.0), LONGEST_REST)
 
     @property
     def _interval(self) -> float:

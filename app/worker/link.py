@@ -1,4 +1,4 @@
-"""A worker process as the server holds it: two threads carry orders to it and reports from it."""
+"""The worker process of a page as the server holds it: a thread each for orders and reports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from queue import SimpleQueue
 
 from app.worker import process
 from app.worker.orders import Order
-from app.worker.reports import Ready, Report
+from app.worker.reports import Died, Report
 
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]
@@ -24,26 +24,19 @@ PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process
 _starting = threading.Lock()
 
 
-class Member:
+class Link:
     """One worker process, from its start to its end.
 
     Parameters
     ----------
-    received
-        Called with every report, on this member's own thread.
-    gone
-        Called once on the same thread, when the process has ended.
+    listener
+        Called with every report, on this link's own thread; the last is `Died`, unless the link
+        was closed.
     """
 
-    def __init__(
-        self,
-        received: Callable[[Member, Report | Ready], None],
-        gone: Callable[[Member], None],
-    ) -> None:
-        self._received = received
-        self._gone = gone
+    def __init__(self, listener: Callable[[Report], None]) -> None:
+        self._listener: Callable[[Report], None] | None = listener
         self._orders: SimpleQueue[Order | None] = SimpleQueue()
-        self._doomed = threading.Event()
         self._process: BaseProcess | None = None
         self._reader = threading.Thread(target=self._live, name="worker-reports", daemon=True)
         self._reader.start()
@@ -57,16 +50,15 @@ class Member:
         """Send an order, without ever waiting for the process."""
         self._orders.put(order)
 
-    def kill(self) -> None:
-        """End the process at once, whatever it does."""
-        self._doomed.set()
+    def close(self) -> None:
+        """End the process at once, whatever it does; nothing more is reported."""
+        self._listener = None
         if self._process is not None:
             self._process.kill()
 
     def join(self, timeout: float) -> None:
-        """Wait until the process has ended; not from one of this member's own callbacks."""
-        if threading.current_thread() is not self._reader:
-            self._reader.join(timeout)
+        """Wait until the process has ended."""
+        self._reader.join(timeout)
 
     def _live(self) -> None:
         try:
@@ -78,25 +70,36 @@ class Member:
             if self._process is not None:
                 self._process.kill()
                 self._process.join()
-            self._gone(self)
+            self._report(Died())
 
     def _converse(self) -> None:
         """Start the process, and take its reports until it has ended."""
-        started, ours = start()
-        self._process = started
-        if self._doomed.is_set():
-            started.kill()
+        self._process, ours = start()
+        if self._listener is None:
+            return
         carry = threading.Thread(
             target=self._carry_orders, args=(ours,), name="worker-orders", daemon=True
         )
         carry.start()
         while True:
-            self._received(self, ours.recv())
+            self._report(ours.recv())
+
+    def _report(self, report: Report) -> None:
+        listener = self._listener
+        if listener is not None:
+            listener(report)
 
     def _carry_orders(self, connection: Connection) -> None:
         with contextlib.suppress(OSError):
             while (order := self._orders.get()) is not None:
                 connection.send(order)
+
+
+def warm_up() -> None:
+    """Have the fork server import what workers need, before the first page waits for it."""
+    worker, ours = start()
+    ours.close()
+    worker.join()
 
 
 def start(
