@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import pickle
 from dataclasses import replace
 from itertools import islice, pairwise
 from types import SimpleNamespace
@@ -15,7 +14,7 @@ import pytest
 
 from solver.cli import main
 from solver.discrete import discretise
-from solver.latin import Ending, StopRules, Verdict, iterations, judged, solve, stop
+from solver.latin import Ending, StopRules, iterations, judged, solve, stop
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE
@@ -160,41 +159,6 @@ def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.Monkey
     rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
     assert found[-1][0].residual is not None
     assert rules == pytest.approx([100.0 * number for number in range(1, len(found) + 1)])
-
-
-def figures(verdict: Verdict) -> list[Any]:
-    told = verdict.certificate is not None
-    return [repr(verdict.indicator), repr(verdict.estimated_error), verdict.status, told]
-
-
-@pytest.mark.parametrize("linear_stage", ["full", "pgd"])
-@pytest.mark.parametrize("parked_at", [1, 4, 15])
-def test_rules_that_go_elsewhere_judge_on_as_if_nothing_was(
-    linear_stage: str, parked_at: int
-) -> None:
-    settings = small("bar", finish="none", linear_stage=linear_stage, accuracy=1e-6)
-    iterates = list(islice(iterations(discretise(settings), settings), 30))
-    stay = StopRules(settings)
-    go = StopRules(settings)
-    for iterate in iterates:
-        assert figures(go.judge(iterate)) == figures(stay.judge(iterate))
-        if iterate.number == parked_at:
-            billed = go.seconds
-            go = pickle.loads(pickle.dumps(go))
-            assert go.seconds == billed
-
-
-def test_the_solution_that_ended_a_run_is_shown_again_elsewhere() -> None:
-    settings = small("layers")
-    rules = StopRules(settings)
-    for iterate in iterations(discretise(settings), settings):
-        shown = rules.judge(iterate).finished
-        if shown is not None:
-            break
-    assert shown is not None
-    again = pickle.loads(pickle.dumps(rules)).finish(iterate)
-    for name in ("displacement", "contact_force", "residual"):
-        assert np.array_equal(getattr(again, name), getattr(shown, name))
 
 
 @pytest.mark.parametrize("method", METHODS)

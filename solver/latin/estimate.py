@@ -143,7 +143,3 @@ class ErrorEstimate:
         if self._costs is None:
             self._costs = costs_of(iterate.problem)
         return self._costs
-
-    def __getstate__(self) -> dict[str, object]:
-        """Go elsewhere without what is condensed of the problem: it is found again there."""
-        return {**self.__dict__, "_step": None}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -181,13 +181,6 @@ class StopRules:
         status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
         indicator = latin_indicator(finish)
         return Verdict(seconds, indicator, behaviour, residual, status, self._estimate.certificate)
-
-    def finish(self, iterate: Iterate) -> Iterate:
-        """Put the certified solution that ended a run in the place of an iterate."""
-        found = self._estimate.certificate
-        return (
-            iterate if found is None else replace(finished(iterate, found), number=iterate.number)
-        )
 
     def _heed_change_of_k(self, iterate: Iterate) -> None:
         """Begin anew to look for the smallest indicator, which is measured by k."""
