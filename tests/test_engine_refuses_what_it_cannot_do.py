@@ -11,7 +11,7 @@ import pytest
 
 from solver.definitions import SettingError
 from solver.discrete import discretise
-from solver.latin import coarse, iterations, linear
+from solver.latin import coarse, iterations, response
 from solver.latin.direction import search_direction
 from solver.latin.linear import FullGroup
 from solver.scenes.bar import BarSettings
@@ -23,7 +23,7 @@ def singular(*arguments: Any, **options: Any) -> Any:
     raise RuntimeError("Factor is exactly singular")
 
 
-@pytest.mark.parametrize("module", [linear, coarse], ids=["substructure", "coarse problem"])
+@pytest.mark.parametrize("module", [response, coarse], ids=["substructure", "coarse problem"])
 def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
     module: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
