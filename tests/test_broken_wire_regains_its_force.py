@@ -11,9 +11,7 @@ from solver.reference.broken_wire import broken_wire
 from solver.scenes.strand import StrandSettings, strand
 
 FAST = {
-    "search_direction": "auto",
-    "acceleration": "anderson",
-    "start": "nested",
+    "finish": "none",
     "tolerance": 1e-18,
     "max_iterations": 2000,
     "instants": 41,

@@ -29,7 +29,7 @@ CASES = {
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
     problem = discretise_stack(block(**CASES[request.param]))
-    settings = BarSettings().replace(relaxation=0.9)
+    settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9)
     iterate = next(islice(iterations(problem, settings), 399, None))
     return problem, reference_of(problem), iterate
 
@@ -69,7 +69,7 @@ def test_a_reference_is_no_distance_from_itself(case):
 def test_a_solve_records_its_errors_and_ends_by_its_rules():
     problem = discretise_stack(block())
     distance = distance_to(reference_of(problem), problem)
-    settings = BarSettings().replace(relaxation=0.9, tolerance=1e-14)
+    settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9, tolerance=1e-14)
     solution = solve(problem, settings, distance=distance)
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-4 < 1e-2 < solution.records[0].error_force

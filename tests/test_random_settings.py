@@ -47,7 +47,11 @@ SMALL = {
 """Upper bounds that keep a run short; all other settings go over their whole range."""
 SECTION = (1e-4, 1e4)
 """Range of the factors on the section: their contrast is bounded, so most tables are refused."""
-FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
+METHODS = [
+    {"method": "fast"},
+    {"method": "paper"},
+    {"method": "paper", "search_direction": "auto", "acceleration": "anderson", "start": "nested"},
+]
 DECADES = 12.0
 """Decades below one that a value may be small by, where its range begins at zero."""
 
@@ -108,8 +112,7 @@ def values(draw):
         for name in ("elements", "instants", "max_iterations")
     }
     chosen["substructures"] = draw(st.integers(1, chosen["elements"]))
-    if draw(st.booleans()):
-        chosen |= FAST
+    chosen |= draw(st.sampled_from(METHODS))
     others = sorted(set(DEFINITIONS) - chosen.keys())
     some = set(draw(st.permutations(others))[: draw(st.integers(0, len(others)))])
     for name in ("length", "duration"):
@@ -134,7 +137,7 @@ def run(chosen):
 @given(values())
 def test_any_run_ends_finite_with_a_status_or_is_refused(raw):
     try:
-        chosen = BarSettings.checked({"method": "paper", **raw})
+        chosen = BarSettings.checked(raw)
     except SettingError:
         event("refused")
         return
@@ -168,7 +171,7 @@ def test_whatever_is_called_converged_at_a_tight_tolerance_is_right(raw, power, 
         "max_iterations": 400,
         "linear_stage": "full",
     }
-    chosen = BarSettings.checked({"method": "paper", **raw, **tight})
+    chosen = BarSettings.checked({**raw, **tight})
     reference, solution = run(chosen)
     event(str(solution.status.ending))
     if solution.status.ending is Ending.CONVERGED:

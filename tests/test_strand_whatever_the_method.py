@@ -20,7 +20,7 @@ from solver.reduction.svd import InterfaceField, decompositions, friction_spectr
 from solver.scenes.strand import LARGEST_FIELD, StrandSettings, strand
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
-PLAIN = {"search_direction": "paper", "acceleration": "none", "start": "zero"}
+PLAIN = {"method": "paper"}
 TIGHT = {"tolerance": 1e-16, "max_iterations": 4000}
 PGD = {"linear_stage": "pgd", "pgd_enrichment": 0.0}
 FAST = {"search_direction": "auto", "acceleration": "anderson"}
@@ -234,7 +234,9 @@ def test_the_largest_strand_is_refused_by_size_and_not_by_memory():
     ],
     ids=str,
 )
-@pytest.mark.parametrize("method", [{}, {**FAST, "start": "nested"}, {"linear_stage": "pgd"}])
+@pytest.mark.parametrize(
+    "method", [{}, PLAIN, {**PLAIN, **FAST, "start": "nested"}, {"linear_stage": "pgd"}], ids=str
+)
 def test_the_smallest_and_oddest_strands_end_well(change, method):
     settings = StrandSettings.checked({**SMALL, "wires": 3, **method, **change})
     found = solve(discretise(settings), settings)
