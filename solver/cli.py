@@ -36,8 +36,9 @@ from solver.study.growth import growth
 from solver.study.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
+from solver.study.row_report import prepare
 from solver.study.stability import cases_of, invariance, stability
-from solver.study.stability_report import HEAD, line, notes, passes, prepare, write_report
+from solver.study.stability_report import HEAD, line, notes, passes, write_report
 from solver.study.stability_report import summary as summary_of
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
@@ -279,7 +280,7 @@ def _stability(chosen: argparse.Namespace) -> int:
     scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
     matrix = cases_of(scene, quick=chosen.quick)
     try:
-        prepare(chosen.out)
+        prepare(chosen.out, "stability")
         print(HEAD)
         rows = stability(matrix, lambda row: print(line(row), flush=True))
         apart = invariance() if scene in (None, "bar") else {}
@@ -302,7 +303,7 @@ def _survey(chosen: argparse.Namespace) -> int:
     numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
     rows: list[Row] = []
     try:
-        survey_report.prepare(chosen.out)
+        prepare(chosen.out, "survey")
         print(survey_report.HEAD)
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept
             for row in survey(scenes, numbers, chosen.seed):

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-import csv
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from html import escape
 from pathlib import Path
 
+from solver.study.row_report import (
+    BLUE,
+    GREY,
+    LIGHT,
+    ORANGE,
+    RED,
+    number,
+    page,
+    prepare,
+    table_of,
+    write_rows,
+)
 from solver.study.stability import (
     MEANING,
     SAME_UP_TO,
@@ -16,15 +25,13 @@ from solver.study.stability import (
     Verdict,
 )
 
-COLOURS = {
-    Verdict.RIGHT: "#0072B2",
-    Verdict.NEAR: "#56B4E9",
-    Verdict.TOLD: "#E69F00",
-    Verdict.UNCLEAR: "#999999",
-    Verdict.FAIL: "#D55E00",
+COLOURS: dict[str, str] = {
+    Verdict.RIGHT: BLUE,
+    Verdict.NEAR: LIGHT,
+    Verdict.TOLD: ORANGE,
+    Verdict.UNCLEAR: GREY,
+    Verdict.FAIL: RED,
 }
-"""Okabe and Ito's palette, told apart by the colour-blind."""
-FILES = ("stability.csv", "stability.html")
 COLUMNS = (
     "scene",
     "group",
@@ -44,31 +51,6 @@ COLUMNS = (
     "seconds",
     "advice",
 )
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: stability</title>
-<style>
-body {{ font: 15px/1.45 system-ui, sans-serif; max-width: 90rem; margin: 2rem auto;
-  padding: 0 1rem; color: #222; background: #fff; }}
-table {{ border-collapse: collapse; font-size: 0.85rem; }}
-th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left;
-  vertical-align: top; }}
-td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
-td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
-</style>
-<h1>Stability on stiff and extreme cases</h1>
-<p><b>{summary}</b></p>
-<ul>
-{notes}
-</ul>
-<table>
-<tr>{heads}</tr>
-{rows}
-</table>
-</html>
-"""
 
 
 def passes(rows: Sequence[Row], apart: Mapping[str, float]) -> bool:
@@ -89,7 +71,7 @@ def line(row: Row) -> str:
     return (
         f"{_passed(row):<5} {row.verdict:<7} {case.scene:<6} {case.group + ': ' + case.name:<44} "
         f"{row.method:<12} {found.ending.split()[0]:<10} {found.iterations:>5} "
-        f"{' '.join(f'{_number(size):>8}' for size in sizes)} {found.seconds:6.2f} s"
+        f"{' '.join(f'{number(size):>8}' for size in sizes)} {found.seconds:6.2f} s"
     )
 
 
@@ -97,10 +79,6 @@ def said(row: Row) -> str:
     """Say what a run said of itself, after what it should not have said, and why it is unclear."""
     found = row.outcome
     return " ".join(filter(None, [found.warned, found.doubt and f"{found.doubt};", found.advice]))
-
-
-def _number(value: float, digits: str = ".1e") -> str:
-    return "-" if math.isnan(value) else f"{value:{digits}}"
 
 
 HEAD = (
@@ -138,19 +116,6 @@ def _invariance(apart: Mapping[str, float]) -> str:
     return f"Invariance {held}: largest relative difference of an iterate in other units, {units}."
 
 
-def prepare(folder: Path) -> None:
-    """Make the folder and its files, so that a long run does not fail at its end.
-
-    Raises
-    ------
-    OSError
-        When that is not possible.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in FILES:
-        (folder / name).open("a", encoding="utf-8").close()
-
-
 def write_report(rows: Sequence[Row], apart: Mapping[str, float], folder: Path) -> list[Path]:
     """Write `stability.csv` and `stability.html`.
 
@@ -172,13 +137,10 @@ def write_report(rows: Sequence[Row], apart: Mapping[str, float], folder: Path) 
     OSError
         When a file cannot be written.
     """
-    table, page = (folder / name for name in FILES)
-    with table.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        writer.writerows(values(row) for row in rows)
-    page.write_text(html(rows, apart), encoding="utf-8")
-    return [table, page]
+    table, page_file = prepare(folder, "stability")
+    write_rows(table, COLUMNS, [values(row) for row in rows])
+    page_file.write_text(html(rows, apart), encoding="utf-8")
+    return [table, page_file]
 
 
 def values(row: Row) -> dict[str, object]:
@@ -207,28 +169,9 @@ def values(row: Row) -> dict[str, object]:
 
 def html(rows: Sequence[Row], apart: Mapping[str, float]) -> str:
     """Write the page."""
-    return PAGE.format(
-        summary=escape(summary(rows)),
-        notes="\n".join(f"<li>{escape(note)}</li>" for note in notes(apart)),
-        heads="".join(f"<th>{column.replace('_', ' ')}</th>" for column in COLUMNS),
-        rows="\n".join(_row(row) for row in rows),
-    )
-
-
-def _row(row: Row) -> str:
-    cells = []
-    for column, value in values(row).items():
-        if column == "verdict":
-            colour = COLOURS[row.verdict]
-            cells.append(f'<td class="verdict" style="border-color: {colour}">{value}</td>')
-        elif isinstance(value, float):
-            text = _number(value, ".2f" if column == "seconds" else ".1e")
-            cells.append(f'<td class="number">{text}</td>')
-        elif isinstance(value, int):
-            cells.append(f'<td class="number">{value}</td>')
-        else:
-            cells.append(f"<td>{escape(str(value))}</td>")
-    return f"<tr>{''.join(cells)}</tr>"
+    table = table_of(COLUMNS, [values(row) for row in rows], COLOURS)
+    title = "Stability on stiff and extreme cases"
+    return page("stability", title, summary(rows), notes(apart), {"": table})
 
 
 def _passed(row: Row) -> str:

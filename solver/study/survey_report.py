@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
-import csv
 import json
-import math
 from collections import Counter
 from collections.abc import Sequence
-from html import escape
 from pathlib import Path
 
 from solver.latin import Ending
+from solver.study.row_report import (
+    BLUE,
+    GREY,
+    ORANGE,
+    RED,
+    number,
+    page,
+    plain_table,
+    prepare,
+    table_of,
+    write_rows,
+)
 from solver.study.study_report import aligned
 from solver.study.survey import MEANING, Row, Verdict, groups, is_sound
 
-COLOURS = {
-    Verdict.RIGHT: "#0072B2",
-    Verdict.TOLD: "#E69F00",
-    Verdict.UNCLEAR: "#999999",
-    Verdict.WRONG: "#D55E00",
+COLOURS: dict[str, str] = {
+    Verdict.RIGHT: BLUE,
+    Verdict.TOLD: ORANGE,
+    Verdict.UNCLEAR: GREY,
+    Verdict.WRONG: RED,
 }
-"""Okabe and Ito's palette, told apart by the colour-blind."""
 COLUMNS = (
     "scene",
     "seed",
@@ -42,33 +50,6 @@ COLUMNS = (
     "advice",
     "settings",
 )
-FILES = ("survey.csv", "survey.html")
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: survey</title>
-<style>
-body {{ font: 15px/1.45 system-ui, sans-serif; max-width: 90rem; margin: 2rem auto;
-  padding: 0 1rem; color: #222; background: #fff; }}
-table {{ border-collapse: collapse; font-size: 0.85rem; margin-bottom: 2rem; }}
-th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left;
-  vertical-align: top; }}
-td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
-td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
-td.settings {{ overflow-wrap: anywhere; min-width: 24rem; }}
-</style>
-<h1>Random runs of all scenes</h1>
-<p><b>{summary}</b></p>
-<ul>
-{notes}
-</ul>
-<h2>By scene and method</h2>
-{counts}
-<h2>Every run</h2>
-{rows}
-</html>
-"""
 
 
 def line(row: Row) -> str:
@@ -77,8 +58,8 @@ def line(row: Row) -> str:
     return (
         f"{row.number:>5} {row.verdict:<7} {row.scene:<6} {row.method:<12} "
         f"{found.ending:<9} {'certified' if found.certified else '':<9} {found.iterations:>5} "
-        f"{_number(found.estimated_error):>8} {_number(found.error_force):>8} "
-        f"{_number(row.settings.accuracy):>8} {found.seconds:6.2f} s"
+        f"{number(found.estimated_error):>8} {number(found.error_force):>8} "
+        f"{number(row.settings.accuracy):>8} {found.seconds:6.2f} s"
     )
 
 
@@ -86,10 +67,6 @@ HEAD = (
     f"{'row':>5} {'verdict':<7} {'scene':<6} {'method':<12} {'ending':<9} {'':<9} {'iter.':>5} "
     f"{'estimate':>8} {'error F':>8} {'accuracy':>8}"
 )
-
-
-def _number(value: float, digits: str = ".1e") -> str:
-    return "-" if math.isnan(value) else f"{value:{digits}}"
 
 
 def summary(rows: Sequence[Row]) -> str:
@@ -168,19 +145,6 @@ def values(row: Row) -> dict[str, object]:
     }
 
 
-def prepare(folder: Path) -> None:
-    """Make the folder and its files, so that a long run does not fail at its end.
-
-    Raises
-    ------
-    OSError
-        When that is not possible.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in FILES:
-        (folder / name).open("a", encoding="utf-8").close()
-
-
 def write_report(rows: Sequence[Row], folder: Path) -> list[Path]:
     """Write `survey.csv` and `survey.html`, and give these files.
 
@@ -189,49 +153,19 @@ def write_report(rows: Sequence[Row], folder: Path) -> list[Path]:
     OSError
         When a file cannot be written.
     """
-    table, page = (folder / name for name in FILES)
-    with table.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        writer.writerows(values(row) for row in rows)
-    page.write_text(html(rows), encoding="utf-8")
-    return [table, page]
+    table, page_file = prepare(folder, "survey")
+    write_rows(table, COLUMNS, [values(row) for row in rows])
+    page_file.write_text(html(rows), encoding="utf-8")
+    return [table, page_file]
 
 
 def html(rows: Sequence[Row]) -> str:
     """Write the page."""
     head, *counts = table_of_counts(rows)
     notes = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
-    return PAGE.format(
-        summary=escape(summary(rows)),
-        notes="\n".join(f"<li>{escape(note)}</li>" for note in notes),
-        counts=_table(head, ["".join(f"<td>{cell}</td>" for cell in own) for own in counts]),
-        rows=_table(
-            [column.replace("_", " ") for column in COLUMNS],
-            [_cells(row) for row in rows],
-        ),
-    )
-
-
-def _table(head: Sequence[str], rows: Sequence[str]) -> str:
-    heads = "".join(f"<th>{escape(column)}</th>" for column in head)
-    body = "\n".join(f"<tr>{row}</tr>" for row in rows)
-    return f"<table>\n<tr>{heads}</tr>\n{body}\n</table>"
-
-
-def _cells(row: Row) -> str:
-    cells = []
-    for column, value in values(row).items():
-        if column == "verdict":
-            colour = COLOURS[row.verdict]
-            cells.append(f'<td class="verdict" style="border-color: {colour}">{value}</td>')
-        elif isinstance(value, float):
-            text = _number(value, ".2f" if column == "seconds" else ".1e")
-            cells.append(f'<td class="number">{text}</td>')
-        elif isinstance(value, bool):
-            cells.append(f"<td>{'yes' if value else 'no'}</td>")
-        elif isinstance(value, int):
-            cells.append(f'<td class="number">{value}</td>')
-        else:
-            cells.append(f'<td class="{column}">{escape(str(value))}</td>')
-    return "".join(cells)
+    cells = ["".join(f"<td>{cell}</td>" for cell in own) for own in counts]
+    tables = {
+        "By scene and method": plain_table(head, cells),
+        "Every run": table_of(COLUMNS, [values(row) for row in rows], COLOURS),
+    }
+    return page("survey", "Random runs of all scenes", summary(rows), notes, tables)
