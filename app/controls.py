@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import panel as pn
 import panel_material_ui as pmui
 import param
 from bokeh.models import CustomJSTickFormatter
 
+from app.innards import gather_briefly
 from app.points import PointsTable
 from solver.definitions import Curve, about
 from solver.settings import Settings
@@ -27,11 +28,12 @@ LOGARITHMIC = "const value = 10 ** tick" + WRITTEN.replace("PLACES", "3")
 LINEAR = "const value = tick" + WRITTEN.replace("PLACES", "4")
 """Numbers that are very large or small have a power of ten, and no row of noughts."""
 
-GATHER_MS = 1
-"""For how long Panel gathers what a widget sends, instead of 50 ms: only what came while the server
-was busy, and a slider's two messages about one move, each of which costs Panel 4 ms."""
 
-Report = Callable[[str, Any], None]
+class Report(Protocol):
+    """Takes what the user does."""
+
+    def __call__(self, name: str, value: Any, *, by_hand: bool = False) -> None:
+        """Take a value, which may be one of many while a slider is dragged."""
 
 
 class Control:
@@ -49,7 +51,7 @@ class Control:
         self._report = report
         self._showing = False
         self.widget = self._make_widget()
-        self.widget._debounce = GATHER_MS
+        gather_briefly(self.widget)
         self.view: pn.viewable.Viewable = self.widget
         self.widget.param.watch(self._on_value, "value")
 
@@ -107,7 +109,27 @@ class ChoiceControl(Control):
 
 
 class SliderControl(Control):
-    """A number on a slider, logarithmic where the quantity is; it widens for a value outside."""
+    """A number on a slider, logarithmic where the quantity is; it widens for a value outside.
+
+    Parameters
+    ----------
+    let_go
+        Called with the setting's name when a drag, or a press of a key, has ended.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        definition: param.Parameter,
+        report: Report,
+        let_go: Callable[[str], None],
+    ) -> None:
+        super().__init__(name, definition, report)
+        self.widget.param.watch(lambda event: self._showing or let_go(name), "value_throttled")
+
+    def _on_value(self, event: param.parameterized.Event) -> None:
+        if not self._showing:
+            self._report(self.name, self._read(event.new), by_hand=True)
 
     def _make_widget(self) -> Any:
         low, high = self.definition.softbounds
@@ -220,6 +242,7 @@ def make_control(
     definition: param.Parameter,
     report: Report,
     sample: Callable[[str], list[tuple[float, float]]],
+    let_go: Callable[[str], None] = lambda name: None,
 ) -> Control | None:
     """Make the control that a definition calls for; None where there is nothing to choose."""
     if isinstance(definition, Curve):
@@ -228,4 +251,4 @@ def make_control(
         return SwitchControl(name, definition, report)
     if isinstance(definition, param.Selector):
         return ChoiceControl(name, definition, report) if len(definition.objects) > 1 else None
-    return SliderControl(name, definition, report)
+    return SliderControl(name, definition, report, let_go)

@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-from panel.util import edit_readonly
 
 from app.cards import Cards
+from app.innards import ignore_business, send_without_delay
 from app.looks import Looks
-from app.painter import Painter
-from app.pulse import Pulse, send_without_delay
+from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
-from app.views.drawing import Picture, View
-from app.words import key_figures, status_line
+from app.views.catalogue import fitting
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 FIRST_ROW = 3
-DIMMED = {"opacity": "0.35"}
-"""Of plots that do not show the run at work yet."""
+CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
+"""Plots that show the scene at work, and those that do not yet."""
+LOST_AFTER = 2.0
+"""Seconds after which a picture that was not acknowledged is taken for lost."""
+REST = 0.2
+"""Times what a browser needs for a picture, left to it to listen to its user."""
 
 
 class Dashboard:
-    """One page over one session: what is done is told to the session, what it holds is drawn.
+    """One page over one session: what is done is told to the session, its pictures are passed on.
 
     Parameters
     ----------
@@ -49,25 +50,24 @@ class Dashboard:
 
     def __init__(self, session: Session, *, complaint: str = "", on_phone: bool = False) -> None:
         self.session = session
-        self._complaint = complaint
         self._asked_for = session.wanted
         self._alone = True
         self._loaded = False
+        self._sent_at = 0.0
+        self._is_dimmed = False
+        self._painted_scene = session.settings.scene
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
         self._pulse = Pulse()
-        self._painter = Painter(self._pulse)
         self._listen()
-        self.transport = Transport(session, self._painter.mark)
-        self._looks = Looks(session, self._painter.mark)
-        self._cards = Cards(
-            self._style,
-            self.transport.choose_time,
-            self.transport.choose_substructure,
-            lambda: self._looks.magnification,
-        )
+        session.watch(complaint=complaint)
+        self.transport = Transport(session)
+        self._looks = Looks(session)
+        chosen = {
+            "instant": self.transport.choose_time,
+            "substructure": self.transport.choose_substructure,
+        }
+        self._cards = Cards(self._style, chosen)
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
-        self._status = self._html("status")
-        self._figures = self._html("figures")
         self._plots = pn.Column(
             sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
         )
@@ -95,16 +95,20 @@ class Dashboard:
         self._on_narrow()
 
     def tick(self) -> None:
-        """Keep the page alive: run while a browser shows it, and draw what came."""
+        """Keep the page alive: run while a browser shows it, and pass on what came."""
         alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
+            self.session.ask(afresh=True)
         if self.session.attend():
             self._tabs.refresh()
-            self._painter.mark()
         self._sidebar.obey()
-        self._collect()
+        self._pass_on(self.session.collect())
+        is_lost = self._pulse.painted < self._pulse.frame
+        if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
+            self._sent_at = time.monotonic()
+            self.session.ask(afresh=True)
 
     def end(self, context: Any) -> None:
         """Leave nothing behind when the page is gone."""
@@ -123,8 +127,8 @@ class Dashboard:
     def _make_live(self) -> pn.Column:
         return pn.Column(
             self.transport.view,
-            self._status,
-            self._figures,
+            self._html("status"),
+            self._html("figures"),
             self._plots,
             self._pulse,
             css_classes=["live"],
@@ -145,16 +149,13 @@ class Dashboard:
             busy_indicator=None,
             meta_description="A laboratory for frictional contact: LATIN iterations, live.",
         )
-        # The page follows the server's being busy, which costs a walk over all models twice for
-        # every event of the browser (60 ms), and would only turn the indicator that is not there.
-        # A value would leave the server's hold on the page, for good; another reference ends it.
-        with edit_readonly(page):
-            page.busy = page.param.loading
+        ignore_business(page)
         return page
 
     def _html(self, role: str) -> Any:
         return pn.pane.HTML(
             "",
+            tags=[role],
             css_classes=[role],
             stylesheets=[self._style],
             sizing_mode="stretch_width",
@@ -166,64 +167,59 @@ class Dashboard:
         self._pulse.copy = f"{query}#{time.monotonic()}"
 
     def _arrange(self) -> None:
-        """Show the views that are chosen and apply; frames carry what they need."""
-        settings = self.session.wanted
-        fitting = self._cards.fitting(settings)
-        wanted = self._sidebar.offer([view.name for view in fitting])
-        shown = [view for view in fitting if view.name in wanted]
-        self.transport.arrange(settings)
-        cards = [self._cards.card_of(view) for view in shown[: None if self._loaded else FIRST_ROW]]
+        """Show the views that are chosen and apply."""
+        session = self.session
+        fit = fitting(session.wanted)
+        wanted = self._sidebar.offer([view.name for view in fit])
+        self._shown = [view for view in fit if view.name in wanted]
+        self.transport.arrange(session.wanted)
+        cards = [self._cards.of(view) for view in self._shown]
+        cards = cards[: None if self._loaded else FIRST_ROW]
         if list(self._plots) != cards:
             self._plots[:] = cards
-        self.session.set_watch(frozenset(view.watches for view in shown if view.watches))
-        self._shown = shown
+        holds = session.wanted is self._asked_for
+        complaint = session.look.complaint if holds else ""
+        session.watch(views=tuple(view.name for view in self._shown), complaint=complaint)
+        self._dim()
         self._offer_looks()
+        self.transport.show()
         self._tabs.refresh()
-        self._painter.mark()
+
+    def _dim(self) -> None:
+        """Tell plots that do not show the run's scene from those that do."""
+        is_dimmed = self.session.facts is None and not self._pulse.frame
+        is_dimmed = is_dimmed or self.session.settings.scene != self._painted_scene
+        if is_dimmed != self._is_dimmed:
+            self._is_dimmed = is_dimmed
+            self._plots.styles = DIMMED if is_dimmed else CLEAR
 
     def _offer_looks(self) -> None:
         bodies = any(view.watches == "mesh" for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
 
-    def _collect(self) -> None:
-        """Take what the worker sent and draw it, if the page has painted what it has."""
-        if self.session.collect():
-            self._painter.mark()
-        if not (self._loaded and self._tabs.shows_the_run):
-            return
-        if self._painter.is_due():
+    def _pass_on(self, blocks: list[bytes]) -> None:
+        """Give the browser the pictures that came, and show what they say."""
+        for block in blocks:
             with pn.io.hold():
-                self._draw(self._shown)
-                self._painter.send()
-
-    def _draw(self, views: Sequence[View]) -> None:
-        """Draw all views, and the words about the run."""
-        session = self.session
-        frame = session.shown
-        picture = Picture(session.run, session.before, tuple(session.past), frame, session.instant)
-        for view in views:
-            self._cards.draw(view, picture)
-        sought = frame.iteration if frame is not None and not session.follows else None
-        self._status.object = status_line(
-            session.run,
-            session.running,
-            sought,
-            held=session.is_held,
-            complaint=self._complaint if session.wanted is self._asked_for else "",
-        )
-        self._plots.styles = {} if frame is not None else DIMMED
-        self._offer_looks()
-        self.transport.show()
-        entry = session.run.record_of(frame) if frame is not None else None
-        self._figures.object = key_figures(session.run, session.before, entry)
+                self._sent_at = time.monotonic()
+                self._pulse.param.update(picture=block, frame=self._pulse.frame + 1)
+                if self.session.facts is not None:
+                    self._painted_scene = self.session.settings.scene
+                self._dim()
+                self._offer_looks()
+                self.transport.show()
 
     def _connections(self) -> int:
         context = pn.state.curdoc.session_context if pn.state.curdoc else None
         return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
-        if self.session.shown is not None:
+        if event.new != self._pulse.frame:
+            return
+        if self.session.facts is not None:
             self._sidebar.catch_up()
+        if self._tabs.shows_the_run:
+            self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:
@@ -237,7 +233,8 @@ class Dashboard:
 
     def _on_tab(self) -> None:
         self._pulse.hears = self._tabs.shows_the_run
-        self._painter.mark()
+        if self._tabs.shows_the_run:
+            self.session.ask(afresh=True)
 
     def _on_key(self, event: Any) -> None:
         action = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -23,28 +22,19 @@ class Looks:
     Parameters
     ----------
     session
-        Is told the interface and the stress.
-    refresh
-        Called when something is to be drawn again.
-
-    Attributes
-    ----------
-    magnification
-        Factor on the displacement; None leaves it to the view.
+        Is told what is chosen.
     """
 
-    def __init__(self, session: Session, refresh: Callable[[], None]) -> None:
-        self.magnification: float | None = None
+    def __init__(self, session: Session) -> None:
         self._session = session
-        self._refresh = refresh
         self._showing = False
 
     def parts(self, *, shows_bodies: bool) -> list[Any]:
         """Give the widgets that choose anything at present, as they have to stand."""
-        begun = self._session.run.begun
+        facts = self._session.facts
         found: list[Any] = []
-        if begun is not None and len(begun.interfaces) > 1:
-            self._show(list(begun.interfaces), begun.interface)
+        if facts is not None and len(facts.interfaces) > 1:
+            self._show(list(facts.interfaces), facts.interface)
             found.append(self._interface)
         return [*found, self._stress, self._magnification] if shows_bodies else found
 
@@ -70,7 +60,7 @@ class Looks:
             size="small",
             description="What colours the deformed bodies.",
         )
-        made.param.watch(lambda event: self._session.look_for(event.new), "value")
+        made.param.watch(lambda event: self._session.watch(stress=event.new), "value")
         return made
 
     @cached_property
@@ -101,13 +91,12 @@ class Looks:
 
     def _on_interface(self, event: Any) -> None:
         if not self._showing and event.new:
-            self._session.look_into(event.new)
-            self._refresh()
+            self._session.watch(interface=event.new)
 
     def _on_magnification(self, event: Any) -> None:
         place = int(event.new)
         decade, step = divmod(place - 1, len(STEPS))
-        self.magnification = None if place == 0 else STEPS[step] * 10.0**decade
-        text = "auto" if self.magnification is None else f"× {self.magnification:,.0f}"
+        factor = None if place == 0 else STEPS[step] * 10.0**decade
+        text = "auto" if factor is None else f"× {factor:,.0f}"
         self._magnification.param.update(shown=place, text=text)
-        self._refresh()
+        self._session.watch(magnification=factor)

@@ -1,20 +1,20 @@
-"""The thread between browser and server: painted frames, keys, and the clipboard."""
+"""The thread between browser and server: pictures one way, acknowledgements and keys the other."""
 
 from __future__ import annotations
 
-import panel as pn
 import param
 from panel.custom import JSComponent
 
 
 class Pulse(JSComponent):
-    """An invisible component that acknowledges frames when they are painted and hears keys."""
+    """An invisible component that paints pictures, says when they are painted, and hears keys."""
 
     # Panel gathers changes from the browser for 50 ms, which every painted frame would wait for.
     _debounce = 0
 
-    frame = param.Integer(default=0, doc="Number of the newest frame sent.")
-    painted = param.Integer(default=0, doc="Number of the newest frame painted.")
+    picture = param.Bytes(default=b"", doc="The newest picture, as `app.worker.block` packs it.")
+    frame = param.Integer(default=0, doc="Number of the newest picture sent.")
+    painted = param.Integer(default=0, doc="Number of the newest picture painted.")
     hears = param.Boolean(default=True, doc="Whether keys move the run.")
     key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
@@ -23,24 +23,80 @@ class Pulse(JSComponent):
     copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
 
     _esm = """
-    export function render({model}) {
-      let count = 0
-      if (window.innerWidth < 640) { model.phone = true }
-      if (window.innerWidth < 900) { model.narrow = true }
+    export function render({model, view}) {
+      const found = new Map()
+      const named = (name) => {
+        const kept = found.get(name)
+        if (kept && kept.document) { return kept }
+        found.clear()
+        for (const one of view.model.document._all_models.values()) {
+          // Panes of Panel keep their names to themselves, but not their tags.
+          for (const own of [one.name, ...one.tags]) { found.set(own, one) }
+        }
+        return found.get(name)
+      }
+      const floats = (buffer, at, count) => new Float32Array(buffer, at, count)
+      const corners = (buffer, base, [c, n, p, m]) => {
+        const corner = new Uint32Array(buffer, base + c, n), place = floats(buffer, base + p, m)
+        const xs = [], ys = []
+        for (let i = 0; i < n; i += 4) {
+          const x = new Float32Array(4), y = new Float32Array(4)
+          for (let j = 0; j < 4; j++) {
+            x[j] = place[2 * corner[i + j]]
+            y[j] = place[2 * corner[i + j] + 1]
+          }
+          xs.push(x)
+          ys.push(y)
+        }
+        return {xs, ys}
+      }
+      const image = (buffer, base, [at, rows, columns, dtype]) => {
+        const kind = dtype === "uint8" ? Uint8Array : Float32Array
+        const {ndarray} = Bokeh.require("core/util/ndarray")
+        const numbers = new kind(buffer, base + at, rows * columns)
+        return [ndarray(numbers, {dtype, shape: [rows, columns]})]
+      }
+      const read = (buffer, base, settings) => {
+        const values = {}
+        for (const [key, value] of Object.entries(settings)) {
+          const where = value !== null && typeof value === "object" && !Array.isArray(value)
+          const cut = ([at, count]) => floats(buffer, base + at, count)
+          if (!where) { values[key] = value }
+          else if (value.floats) { values[key] = cut(value.floats) }
+          else if (value.lines) { values[key] = value.lines.map(cut) }
+          else if (value.image) { values[key] = image(buffer, base, value.image) }
+          else { Object.assign(values, corners(buffer, base, value.quads)) }
+        }
+        return values
+      }
+      const paint = () => {
+        const buffer = model.picture
+        if (!buffer || !buffer.byteLength) { return }
+        const length = new DataView(buffer).getUint32(0, true)
+        const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)))
+        for (const [name, part] of Object.entries(header)) {
+          const one = named(name)
+          if (!one) { continue }
+          const values = read(buffer, 4 + length + part.at, part.set)
+          one.setv(one.type === "ColumnDataSource" ? {data: values} : values, {sync: false})
+        }
+      }
       model.on("frame", () => {
         const frame = model.frame
+        paint()
         requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
           model.painted = frame
         })))
       })
+      let count = 0
+      if (window.innerWidth < 640) { model.phone = true }
+      if (window.innerWidth < 900) { model.narrow = true }
       model.on("copy", () => {
         const url = location.origin + location.pathname + model.copy.split("#")[0]
         history.replaceState(null, "", url)
         if (navigator.clipboard) { navigator.clipboard.writeText(url).catch(() => {}) }
       })
       const look = () => { model.hidden = document.visibilityState === "hidden" }
-      document.addEventListener("visibilitychange", look)
-      look()
       const press = (event) => {
         const typed = event.composedPath()[0]
         const writes = typed.tagName === "INPUT" && typed.type !== "range" ||
@@ -56,22 +112,13 @@ class Pulse(JSComponent):
         count += 1
         model.key = event.key + count
       }
+      document.addEventListener("visibilitychange", look)
       document.addEventListener("keydown", press)
       model.on("remove", () => {
-        document.removeEventListener("keydown", press)
         document.removeEventListener("visibilitychange", look)
+        document.removeEventListener("keydown", press)
       })
+      look()
       return document.createElement("span")
     }
     """
-
-
-def send_without_delay() -> None:
-    """Let the present session's sockets send small messages at once.
-
-    A message of Bokeh's protocol is three small writes or more. By default (Nagle's algorithm) the
-    second waits until the browser acknowledges the first, and browsers put that off for 40 ms.
-    """
-    context = pn.state.curdoc.session_context if pn.state.curdoc else None
-    for connection in context.session._subscribed_connections if context is not None else ():
-        connection._socket.set_nodelay(True)

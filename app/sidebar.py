@@ -9,7 +9,8 @@ from typing import Any
 import panel_material_ui as pmui
 
 from app.address import query_of
-from app.controls import GATHER_MS, Control, make_control
+from app.controls import Control, make_control
+from app.innards import gather_briefly
 from app.samples import points_of
 from app.session import Session
 from app.uploads import load_in
@@ -73,6 +74,7 @@ class Sidebar:
         self._copy = copy
         self._unwanted: set[str] = set()
         self._asked: dict[str, Any] = {}
+        self._in_hand: set[str] = set()
         self._has_obeyed = False
         self._views = pmui.CheckBoxGroup(options=[], value=[])
         self._views.param.watch(self._on_views, "value")
@@ -98,7 +100,7 @@ class Sidebar:
             sizing_mode="stretch_width",
         )
         # As for the settings, or a slider moved next would overtake it.
-        self._warm._debounce = GATHER_MS
+        gather_briefly(self._warm)
         self._warm.param.watch(self._on_warm, "value")
         self.view = pmui.Column(sizing_mode="stretch_width", margin=0)
 
@@ -130,7 +132,7 @@ class Sidebar:
         self._has_obeyed = bool(asked)
         for name, value in asked.items():
             try:
-                self._session.change(name, value)
+                self._session.change(name, value, by_hand=name in self._in_hand)
             except SettingError as refusal:
                 self._complain(str(refusal))
         if asked:
@@ -218,7 +220,7 @@ class Sidebar:
 
     def _make_controls(self, *, essential: bool) -> dict[str, Control]:
         made = {
-            name: make_control(name, definition, self._on_setting, self._points_of)
+            name: make_control(name, definition, self._on_setting, self._points_of, self._let_go)
             for name, definition in self._session.wanted.definitions().items()
             if about(definition).essential is essential
         }
@@ -237,12 +239,19 @@ class Sidebar:
         """Give points that stand for the preset of a curve setting."""
         return points_of(self._session.wanted, name)
 
-    def _on_setting(self, name: str, value: Any) -> None:
+    def _let_go(self, name: str) -> None:
+        """Follow the end of a drag."""
+        self._in_hand.discard(name)
+        self.obey()
+        self._session.let_go()
+
+    def _on_setting(self, name: str, value: Any, *, by_hand: bool = False) -> None:
         """Make the first change at once, and of those before the next tick the newest then.
 
         A slider that is dragged sends more of them than the server could obey.
         """
         self._asked[name] = value
+        (self._in_hand.add if by_hand else self._in_hand.discard)(name)
         if not self._has_obeyed:
             self.obey()
 
@@ -270,9 +279,9 @@ class Sidebar:
             self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
 
     def _saved(self) -> StringIO:
-        run = self._session.run
-        warm = run.choice is not None and run.choice.is_previous
-        return StringIO((WARM_NOTE if warm else "") + dump(run.settings))
+        facts = self._session.facts
+        warm = facts is not None and facts.was_warm
+        return StringIO((WARM_NOTE if warm else "") + dump(self._session.settings))
 
 
 def _heading(text: str) -> Any:

@@ -31,9 +31,8 @@ class Transport:
         What stands on the page.
     """
 
-    def __init__(self, session: Session, refresh: Any) -> None:
+    def __init__(self, session: Session) -> None:
         self._session = session
-        self._refresh = refresh
         self._make_buttons()
         self._make_sliders()
         self._listen()
@@ -62,29 +61,27 @@ class Transport:
             self._session.pause()
         else:
             self._session.go()
-        self._refresh()
+        self.show()
 
     def step(self) -> None:
         """Do one iteration."""
         self._session.step()
-        self._refresh()
+        self.show()
 
     def reset(self) -> None:
         """Start again from the settings' own start."""
         self._session.start()
-        self._refresh()
+        self.show()
 
     def choose_time(self, time: float) -> None:
         """Look at the instant nearest to a time, s."""
-        begun = self._session.run.begun
-        if begun is not None:
-            self._session.look_at(int(abs(begun.instants - time).argmin()))
-            self._refresh()
+        if self._session.facts is not None:
+            self._session.look_at(time / self._session.facts.duration)
 
-    def choose_substructure(self, number: int) -> None:
-        """Look at the modes of another substructure, counted from 0."""
-        self._session.choose_substructure(number)
-        self._refresh()
+    def choose_substructure(self, number: float) -> None:
+        """Look at the modes of another substructure, counted from 1."""
+        self._session.choose_substructure(round(number) - 1)
+        self.show()
 
     def arrange(self, settings: Settings) -> None:
         """Show the sliders that apply."""
@@ -103,24 +100,22 @@ class Transport:
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
-        session = self._session
-        active = session.goes_on
+        active, facts = self._session.goes_on, self._session.facts
         self._run.param.update(
             label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
         )
-        frame, done = session.shown, max(session.run.iteration, 1)
-        at = done if session.follows or frame is None else frame.iteration
-        self._iteration.param.update(start=1, end=max(done, 2), shown=at, text=f"{at} of {done}")
-        begun = session.run.begun
-        if begun is not None:
-            self._instant.param.update(
-                end=max(len(begun.instants) - 1, 1),
-                shown=session.instant,
-                text=f"t = {float(begun.instants[session.instant]):.3g} s",
+        if facts is not None:
+            at, done = facts.iteration, max(facts.done, 1)
+            self._iteration.param.update(
+                start=1, end=max(done, 2), shown=at, text=f"{at} of {done}"
             )
-
+            self._instant.param.update(
+                end=max(facts.instants - 1, 1),
+                shown=facts.instant,
+                text=f"t = {facts.time:.3g} s",
+            )
         if self._substructure in self._sliders:
-            self._show_substructure(session.run.settings)
+            self._show_substructure(self._session.settings)
 
     def _make_buttons(self) -> None:
         self._run = pmui.Button(
@@ -177,25 +172,17 @@ class Transport:
         self._step.on_click(lambda event: self.step())
         self._reset.on_click(lambda event: self.reset())
         self._pace.param.watch(lambda event: self._session.set_pace(PACES[event.new]), "value")
-        self._iteration.param.watch(self._on_iteration, "wanted")
+        self._iteration.param.watch(lambda event: self._session.seek(event.new), "wanted")
         self._instant.param.watch(self._on_instant, "wanted")
-        self._substructure.param.watch(self._on_substructure, "wanted")
+        self._substructure.param.watch(lambda event: self.choose_substructure(event.new), "wanted")
 
     def _show_substructure(self, settings: Settings) -> None:
-        last, chosen = settings.n_substructures, self._session.substructure
+        last, chosen = settings.n_substructures, self._session.look.substructure
         at = last if chosen is None else min(chosen + 1, last)
         self._substructure.param.update(end=max(last, 2), shown=at, text=str(at))
 
-    def _on_iteration(self, event: Any) -> None:
-        self._session.seek(event.new)
-        self._refresh()
-
     def _on_instant(self, event: Any) -> None:
-        self._session.look_at(event.new)
-        self._refresh()
-
-    def _on_substructure(self, event: Any) -> None:
-        self.choose_substructure(event.new - 1)
+        self._session.look_at(event.new / max(self._instant.end, 1))
 
 
 def _slider(width: int, **options: Any) -> Scrubber:

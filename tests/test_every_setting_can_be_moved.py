@@ -2,58 +2,41 @@
 
 from __future__ import annotations
 
-import math
-
+import numpy as np
 import pytest
-from tour import described, ends, has_errors, never_apply, small, tour
+from studios import Shown
+from tour import Move, ends, has_errors, never_apply, small, tour
 
-from app.cards import Cards
-from app.recording import Recording
-from app.views.drawing import Picture
-from app.worker.orders import Run
-from app.worker.rivals import References
-from app.worker.run import WorkerRun
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-WATCH = frozenset({"mesh", "axial", "spectra", "modes"})
 FEW = 3
 SMALL_ERROR = 0.02
 
 
-class Page:
-    """Runs as the worker's process has them, one after the other, and all views of a page."""
+class Page(Shown):
+    """Runs one after the other, and all views of a page drawn of them."""
 
-    def __init__(self) -> None:
-        self._references = References()
-        self._cards = Cards("", lambda time: None, lambda number: None, lambda: None)
-        self._before: Recording | None = None
-
-    def run(self, settings: Settings, iterations: int | None = FEW) -> Recording:
+    def try_out(self, settings: Settings, iterations: int | None = FEW) -> None:
         """Do some iterations, or all, and draw them beside the run before."""
-        before = self._before
-        found = Recording(before.ticket + 1 if before else 1, settings, "")
-        values = settings.values()
-        order = Run(found.ticket, settings.scene, values, pause_after=iterations, watch=WATCH)
-        run = WorkerRun(order, found.take, lambda: False, self._references)
-        while run.rest() is not None:
-            run.advance()
-        picture = Picture(found, before, [before] if before else [], found.newest, 5)
-        for view in self._cards.fitting(settings):
-            view.draw(picture)
-        self._before = found
-        return found
+        ticket = len(self.pictures) + 1
+        self.run(ticket, settings.scene, settings.values(), pause_after=iterations)
+        assert not self.pictures[-1].facts.is_broken, self.words
 
 
 def goes_on(page: Page, settings: Settings) -> None:
-    found = page.run(settings)
-    assert found.newest is not None
-    assert found.records
-    errors = [(entry.error_displacement, entry.error_force) for entry in found.records]
+    page.try_out(settings)
+    found = page.recording
+    assert len(found.history)
     if found.reference is not None:
-        assert all(math.isfinite(value) for pair in errors for value in pair)
+        for name in ("error_displacement", "error_force"):
+            assert np.isfinite(found.history.column(name)).all()
     else:
         assert not has_errors(settings)
+
+
+def described(move: Move) -> str:
+    return f"{move.name} = {move.value!r} after {move.before.changed()}"
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
@@ -73,6 +56,8 @@ def test_every_setting_moves_to_both_ends_and_back_and_errors_are_small_at_the_e
                 broken.append(f"{described(move)}: {problem!r}")
     assert broken == []
     assert set(base.definitions()) - moved == never_apply(scene)
-    last = page.run(base, None).records[-1]
+    page.try_out(base, None)
+    last = page.recording.last
+    assert last is not None
     assert last.error_displacement < SMALL_ERROR
     assert last.error_force < SMALL_ERROR

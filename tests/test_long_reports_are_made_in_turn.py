@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from jobs import count_to, refuse, sleep, vanish
+from lone_link import LoneLink
 from processes import is_alive, wait_for
 
 from app.errand import KEPT, STARTING, WAITING, Errand
@@ -20,6 +21,7 @@ from app.views.stability import matrix
 from app.views.study import StudyReport, company, title_of
 from app.worker.bench import Bench
 from app.worker.job import Doing, Done, Part, Started
+from app.worker.orders import Pace
 from app.worker.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
@@ -156,26 +158,23 @@ def test_results_stay_and_the_oldest_go(errand: Errand) -> None:
 
 
 def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -> None:
-    pages = Pages(2)
-    settings = BarSettings.checked({"method": "paper", "tolerance": 1e-30})
-    with (
-        closing(Session(pages, bench, settings)) as session,
-        closing(Session(pages, bench, settings)) as other,
-    ):
-        session.set_pace(100.0)
-        session.start()
-        wait_for(lambda: session.collect() and session.run.iteration > 2)
-        assert pages.at_work_beside(other) == 1
-        session.study.ask("any", sleep)
-        wait_for(lambda: session.attend() and session.is_held)
-        assert pages.at_work_beside(other) == 0
-        session.start(session.settings.with_change("friction", 0.31))
-        wait_for(lambda: session.collect() and session.run.reference is not None)
-        assert session.run.iteration <= 1
-        session.study.cancel()
-        session.attend()
-        assert not session.is_held
-        wait_for(lambda: session.collect() and session.run.iteration > 2)
+    pages, link = Pages(2), LoneLink()
+    settings = BarSettings.checked({"method": "paper"})
+    session = Session(pages, bench, settings, link.hire)
+    other = Session(pages, bench, settings, LoneLink().hire)
+    session.start()
+    assert pages.at_work_beside(other) == 1
+    session.study.ask("any", sleep)
+    wait_for(lambda: session.attend() and session.is_held)
+    assert pages.at_work_beside(other) == 0
+    assert link.orders[-1] == Pace(1, 0.0, is_held=True)
+    session.start(session.settings.with_change("friction", 0.31))
+    assert (link.orders[-1].pause_after, link.orders[-1].is_held) == (1, True)
+    session.study.cancel()
+    session.attend()
+    assert not session.is_held
+    assert link.orders[-1] == Pace(2, session.pace)
+    session.close()
 
 
 def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:

@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from test_views_say_what_they_draw import recorded
+from studios import Shown
 
-from app.views.deformed import Deformed
-from app.views.drawing import Picture
-from app.views.loop import Loop
-from app.words import status_line
+from app.views import deformed, loop
 from solver.discrete import discretise
 from solver.discrete.idle import nothing_acts
 from solver.scenes import CATALOGUE
@@ -40,22 +37,27 @@ def test_an_overlap_acts_and_so_does_weight(change: dict[str, Any]) -> None:
     assert not nothing_acts(discretise(settings))
 
 
+def shown_run(scene: str, **changes: Any) -> Shown:
+    shown = Shown()
+    shown.run(1, scene, {"instants": 11, "max_iterations": 4, **changes})
+    return shown
+
+
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_the_status_line_says_that_nothing_acts_and_not_that_it_converged(scene: str) -> None:
-    line = status_line(recorded(scene, 1, **IDLE[scene]), True, None)
-    assert "at rest" in line
-    assert "Nothing acts" in line
-    assert "converged" not in line
-    assert "Nothing acts" not in status_line(recorded(scene, 1), True, None)
+    words = shown_run(scene, **IDLE[scene]).words
+    assert "at rest" in words
+    assert "Nothing acts" in words
+    assert "converged" not in words
+    assert "Nothing acts" not in shown_run(scene).words
 
 
 def test_axes_of_a_body_at_rest_are_those_of_its_size() -> None:
-    run = recorded("block", 1, watch=frozenset({"mesh"}), **IDLE["block"])
-    picture = Picture(run, None, (), run.newest, 5)
-    bodies = Deformed(lambda: None)
-    bodies.draw(picture)
-    assert bodies._box.data["edge"] == pytest.approx([-0.002, 0.102, -0.002, 0.052])
-    loop = Loop()
-    loop.draw(picture)
-    assert loop.figure.xaxis[0].axis_label == "Displacement of the top (µm)"
-    assert loop.figure.x_range.end == 1.0
+    scene = shown_run("block", **IDLE["block"]).scene()
+    bodies = deformed.draw(scene, None)
+    assert bodies is not None
+    assert bodies.bodies is not None
+    assert bodies.bodies.box == pytest.approx((-0.002, 0.102, -0.002, 0.052))
+    x = loop.draw(scene, None).x
+    assert x is not None
+    assert (x.label, x.high) == ("Displacement of the top (µm)", 1.0)

@@ -6,7 +6,7 @@ WAIT = 60_000
 
 
 def test_two_rows_of_plots_fit_a_window_under_all_buttons_and_words(open_page):
-    page = open_page("?scene=layers&layers=2&elements=16&method=paper&max_iterations=3", 1280, 720)
+    page = open_page("?scene=layers&method=paper&layers=2&elements=16&max_iterations=3", 1280, 720)
     status = page.locator(".status").first
     expect(status).to_contain_text("after 3 iterations", timeout=WAIT)
     expect(page.get_by_role("slider", name="Magnification")).to_be_visible(timeout=WAIT)

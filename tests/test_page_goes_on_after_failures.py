@@ -15,22 +15,25 @@ from typing import Any
 import pytest
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
+from studios import Shown
 
 from app.errand import Errand
 from app.pages import Pages
 from app.session import GIVEN_UP, RESTARTS, Session
 from app.transport import Transport
-from app.words import status_line
 from app.worker import job, link
 from app.worker.bench import Bench
+from app.worker.block import unpack
 from app.worker.job import STOPPED
 from app.worker.link import Link
 from app.worker.orders import Run, Step
-from app.worker.reports import Died, Refused, Report
+from app.worker.reports import Died, Facts, Picture, Report
 from solver.scenes.bar import BarSettings
 
-BROKEN: list[list[Report]] = [[Refused(1, "too large")], [Died()] * (RESTARTS + 1)]
-REASONS = ["too large", GIVEN_UP]
+BROKEN: list[list[Report]] = [
+    [Picture(1, Facts(is_broken=True), b"")],
+    [Died()] * (RESTARTS + 1),
+]
 
 
 @pytest.fixture
@@ -49,16 +52,15 @@ def session(lone: LoneLink) -> Session:
 def test_the_button_starts_a_broken_run_again(
     session: Session, lone: LoneLink, reports: list[Report]
 ) -> None:
-    transport = Transport(session, lambda: None)
+    transport = Transport(session)
     transport.show()
     assert transport._run.label == "Pause"
     hear(session, lone, reports)
     transport.show()
     assert transport._run.label == "Run"
     transport.toggle()
-    assert isinstance(lone.orders[-1], Run)
-    assert lone.orders[-1].ticket == 2
-    assert lone.orders[-1].pause_after is None
+    assert runs(lone)[-1].ticket == 2
+    assert runs(lone)[-1].pause_after is None
     transport.show()
     assert transport._run.label == "Pause"
 
@@ -71,8 +73,7 @@ def test_a_step_starts_a_broken_run_again_and_waits(
     assert isinstance(lone.orders[-1], Step)
     hear(session, lone, reports)
     session.step()
-    assert isinstance(lone.orders[-1], Run)
-    assert lone.orders[-1].pause_after == 1
+    assert runs(lone)[-1].pause_after == 1
 
 
 def hear(session: Session, lone: LoneLink, reports: list[Report]) -> None:
@@ -85,15 +86,15 @@ def test_a_run_whose_process_died_is_started_again_with_what_holds(
     session: Session, lone: LoneLink
 ) -> None:
     session.set_pace(7.0)
-    session.change("friction", 0.4)
     hear(session, lone, [Died()])
     assert session.goes_on
-    again = [order for order in lone.orders if isinstance(order, Run)][-1]
-    assert (again.ticket, again.pace, again.pause_after) == (session.run.ticket, 7.0, None)
+    again = runs(lone)[-1]
+    assert "started again" in again.notice
+    assert (again.ticket, again.pace, again.pause_after) == (session.ticket, 7.0, None)
     assert lone.hired == 2
     session.pause()
     hear(session, lone, [Died()])
-    assert lone.orders[-1].pause_after == 1
+    assert runs(lone)[-1].pause_after == 1
 
 
 def test_what_a_process_said_before_it_died_is_not_heard_of_the_next(
@@ -101,8 +102,8 @@ def test_what_a_process_said_before_it_died_is_not_heard_of_the_next(
 ) -> None:
     late = lone.say
     hear(session, lone, [Died()])
-    late(Refused(1, "too large"))
-    session.collect()
+    late(Picture(1, Facts(is_broken=True), b""))
+    assert session.collect() == []
     assert session.goes_on
 
 
@@ -118,17 +119,24 @@ def test_a_page_left_alone_gives_its_process_back_and_gets_another(
     assert lone.is_closed
     session.rest(False)
     assert (lone.hired, session.is_at_work) == (2, True)
-    assert isinstance(lone.orders[-1], Run)
+    assert len(runs(lone)) == 2
 
 
-@pytest.mark.parametrize("reports", BROKEN)
-def test_no_word_says_that_a_broken_run_runs(
-    session: Session, lone: LoneLink, reports: list[Report]
+def runs(lone: LoneLink) -> list[Run]:
+    return [order for order in lone.orders if isinstance(order, Run)]
+
+
+def test_a_death_is_told_and_a_run_that_is_given_up_does_not_run(
+    session: Session, lone: LoneLink
 ) -> None:
-    hear(session, lone, reports)
-    words = status_line(session.run, True, None)
-    assert "running" not in words
-    assert any(reason in words for reason in REASONS)
+    words = []
+    for _ in range(RESTARTS + 1):
+        lone.say(Died())
+        (block,) = session.collect()
+        words.append(unpack(block)["status"]["text"])
+    assert all("started again" in one for one in words[:-1])
+    assert GIVEN_UP in words[-1]
+    assert not session.goes_on
 
 
 def no_fork_server(*arguments: Any) -> Any:
@@ -197,34 +205,43 @@ def session_at_work() -> Iterator[Session]:
         yield made
 
 
-def until(session: Session, condition: Callable[[], object]) -> None:
-    wait_for(lambda: session.collect() and condition())
+def until(session: Session, condition: Callable[[Facts], object]) -> None:
+    """Be a page that paints at once, until its facts are so."""
+
+    def is_so() -> bool:
+        if session.collect():
+            session.ask()
+        return session.facts is not None and bool(condition(session.facts))
+
+    wait_for(is_so)
 
 
 def test_a_killed_process_is_replaced_and_the_run_goes_on(session_at_work: Session) -> None:
     session = session_at_work
     for _ in range(RESTARTS):
-        until(session, lambda: session.run.iteration > 2)
+        until(session, lambda facts: facts.done > 2)
         before = session._link
         assert before is not None
         assert before.pid is not None
         os.kill(before.pid, signal.SIGKILL)
-        until(session, lambda link=before: session._link is not link)
-    until(session, lambda: session.run.iteration > 2)
-    assert "started again" in session.run.notice
+        wait_for(lambda link=before: session.collect() and session._link is not link)
+    until(session, lambda facts: facts.done > 2)
 
 
-def test_where_a_run_broke_is_logged(
-    session_at_work: Session, caplog: pytest.LogCaptureFixture
-) -> None:
-    session = session_at_work
-    nowhere: Any = None
-    session.look = nowhere
-    session.start()
-    until(session, lambda: session.run.is_broken)
-    assert "AttributeError" in session.run.notice
+def test_where_a_run_broke_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    shown = Shown()
+    nothing: Any = None
+    shown.run(1, "bar", nothing)
+    assert "AttributeError" in shown.words
     assert "Traceback" in caplog.text
     assert "app/worker/run.py" in caplog.text
+
+
+def test_settings_that_are_refused_leave_no_trace_in_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    Shown().run(1, "bar", {"friction": -1.0})
+    assert caplog.text == ""
 
 
 def test_a_worker_whose_process_does_not_start_counts_as_gone(
@@ -242,13 +259,15 @@ SERVER = """
 import sys, time
 from app.worker.link import Link
 from app.worker.orders import Run
-from app.worker.reports import Frame
+from app.worker.orders import Ready
+from app.worker.reports import Picture
 
 seen = set()
 links = [Link(lambda report, number=number: seen.add((number, type(report)))) for number in (0, 1)]
 for link, pace in zip(links, (2.0, None)):
+    link.send(Ready())
     link.send(Run(1, "bar", {"method": "paper", "tolerance": 1e-30, "instants": 401}, pace=pace))
-while not {(0, Frame), (1, Frame)} <= seen:
+while not {(0, Picture), (1, Picture)} <= seen:
     time.sleep(0.01)
 print(*(link.pid for link in links), flush=True)
 sys.stdin.readline()

@@ -12,7 +12,6 @@ import pytest
 from bokeh.document import Document
 from lone_link import LoneLink
 from panel.io.state import set_curdoc
-from panel.util import edit_readonly
 
 from app.address import settings_from_query
 from app.dashboard import Dashboard
@@ -47,16 +46,6 @@ def make(link: LoneLink) -> Iterator[Callable[[str], Dashboard]]:
 @pytest.fixture
 def dashboard(make: Callable[[str], Dashboard]) -> Dashboard:
     return make("")
-
-
-def test_a_busy_server_changes_nothing_on_the_page(dashboard: Dashboard) -> None:
-    """Following the server's business walks all models, twice for every event of a browser."""
-    changes: list[object] = []
-    dashboard.page.param.watch(changes.append, "busy")
-    with edit_readonly(pn.state):
-        pn.state.busy = True
-        pn.state.busy = False
-    assert not changes
 
 
 def test_a_page_that_nobody_looks_at_is_forgotten() -> None:

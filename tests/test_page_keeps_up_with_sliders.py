@@ -13,6 +13,7 @@ from app.pages import Pages
 from app.session import Session
 from app.sidebar import Sidebar
 from app.worker.bench import Bench
+from app.worker.reports import Facts, Picture
 from solver.scenes.bar import BarSettings
 
 
@@ -27,9 +28,9 @@ def changed(session: Session, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str
     found: list[tuple[str, Any]] = []
     change = session.change
 
-    def note(name: str, value: Any) -> None:
+    def note(name: str, value: Any, *, by_hand: bool = False) -> None:
         found.append((name, value))
-        change(name, value)
+        change(name, value, by_hand=by_hand)
 
     monkeypatch.setattr(session, "change", note)
     return found
@@ -117,3 +118,33 @@ def test_the_page_obeys_at_every_tick(session: Session) -> None:
     assert session.wanted.peak == 910.0
     dashboard.tick()
     assert session.wanted.peak == 920.0
+
+
+def shown(session: Session, link: LoneLink) -> None:
+    """Let the worker show the run at work."""
+    link.say(Picture(session.ticket, Facts(), b""))
+    session.collect()
+
+
+def test_a_dragged_slider_hurries_and_let_go_it_replays() -> None:
+    link = LoneLink()
+    session = Session(Pages(1), Bench(), BarSettings.checked({}), link.hire)
+    sidebar = Sidebar(session, lambda: None, lambda text: None, lambda query: None)
+    session.start()
+    shown(session, link)
+    move(sidebar, "peak", 910.0)
+    assert (link.orders[-1].follows_hand, link.orders[-1].pace) == (True, None)
+    move(sidebar, "peak", 920.0)
+    sidebar.obey()
+    assert link.orders[-1].values["peak"] == 910.0
+    shown(session, link)
+    assert (link.orders[-1].values["peak"], link.orders[-1].follows_hand) == (920.0, True)
+    sidebar._controls["peak"].widget.param.trigger("value_throttled")
+    shown(session, link)
+    last = link.orders[-1]
+    assert (last.values["peak"], last.follows_hand, last.pace) == (920.0, False, session.pace)
+    assert last.label == "peak 920 N"
+    count = len(link.orders)
+    shown(session, link)
+    session.let_go()
+    assert len(link.orders) == count

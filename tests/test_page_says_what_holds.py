@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
+from studios import ALL, Shown
 
 from app.address import settings_from_query
-from app.recording import Recording
 from app.serve import is_phone
-from app.words import number, status_line
-from solver.scenes.bar import BarSettings
+from app.worker.words import number
 
 PHONE = "Mozilla/5.0 (Linux; Android 14; Pixel 8) AppleWebKit/537.36 Chrome/130.0 Mobile Safari"
 DESK = "Mozilla/5.0 (X11; Linux x86_64) AppleWebKit/537.36 Chrome/130.0 Safari/537.36"
@@ -47,15 +47,10 @@ def test_a_long_address_is_answered_in_few_words() -> None:
 
 
 def test_a_complaint_stands_in_the_status_line_as_text() -> None:
-    run = Recording(1, BarSettings.checked({"method": "paper"}), "")
-    line = status_line(run, True, None, complaint="From the address: <b> is refused.")
-    assert "From the address: &lt;b&gt; is refused." in line
-
-
-def test_a_run_that_has_nothing_to_show_yet_is_being_set_up() -> None:
-    line = status_line(Recording(1, BarSettings.checked({"method": "paper"}), ""), True, None)
-    assert "setting up" in line
-    assert "iteration 0" not in line
+    shown = Shown(replace(ALL, complaint="From the address: <b> is refused."))
+    shown.run(1, "bar", {})
+    # Twice escaped: what stands there is HTML, and Panel's pane takes it escaped.
+    assert "From the address: &amp;lt;b&amp;gt; is refused." in shown.words
 
 
 def test_a_phone_is_known_by_what_it_asks_with() -> None:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
+from studios import Shown
 
 from app.pages import Pages
-from app.recording import Recording
 from app.session import Session
 from app.sidebar import Sidebar
-from app.words import start_line, status_line
 from app.worker.bench import Bench
-from app.worker.reports import Begun
-from app.worker.shown import Axes
+from app.worker.recording import Recording
+from app.worker.reports import Facts
+from app.worker.sampler import Sampler
+from app.worker.shown import Look
+from app.worker.words import start_line
+from solver.discrete import discretise
 from solver.files import settings_from_toml
 from solver.latin.warm import StartChoice
 from solver.scenes.bar import BarSettings
@@ -25,25 +26,9 @@ NEARER, FARTHER = StartChoice(0.01, 1.0), StartChoice(0.5, 1.0)
 
 
 def recording(choice: StartChoice | None, **changes: Any) -> Recording:
-    nothing = np.zeros(1, dtype=np.float32)
-    begun = Begun(
-        ticket=1,
-        interface="friction",
-        interfaces=("friction",),
-        positions=nothing,
-        instants=nothing,
-        cuts=nothing,
-        bound=nothing,
-        coefficient=None,
-        loop=Axes(("End displacement", "m"), ("Force", "N")),
-        load=nothing,
-        all_instants=nothing,
-        closed_form=None,
-        closed_form_end=None,
-        start=choice,
-    )
     settings = BarSettings.checked({"method": "paper", **changes})
-    return Recording(1, settings, "peak 910 N", begun=begun, is_warm=True)
+    stand = Sampler(discretise(settings), settings, Look()).stand()
+    return Recording(1, settings, "peak 910 N", "", stand, is_warm=True, choice=choice)
 
 
 @pytest.mark.parametrize(
@@ -61,12 +46,12 @@ def test_the_status_line_gives_the_start_and_both_indicators(
 ) -> None:
     run = recording(choice, **changes)
     assert words in start_line(run)
-    assert words in status_line(run, True, None)
 
 
 def test_a_run_that_had_no_choice_says_nothing_of_it() -> None:
-    run = replace(recording(None), is_warm=False)
-    assert "tarted" not in status_line(run, True, None)
+    shown = Shown()
+    shown.run(1, "bar", {})
+    assert "tarted" not in shown.words
 
 
 def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> None:
@@ -80,7 +65,7 @@ def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     with closing(Session(Pages(1), Bench(), settings)) as session:
         sidebar = Sidebar(session, lambda: None, lambda text: None, lambda query: None)
         plain = sidebar._saved().getvalue()
-        session.run = recording(NEARER, peak=910.0)
+        session.facts = Facts(was_warm=True)
         told = sidebar._saved().getvalue()
     assert told.endswith(plain)
     assert "started from the solution of the run before it" in told.replace("\n# ", " ")

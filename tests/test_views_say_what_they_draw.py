@@ -7,20 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from studios import ALL, Shown, keys
 
-from app.recording import Recording
-from app.views.axial import Axial
-from app.views.convergence import Convergence
-from app.views.drawing import Picture, View
-from app.views.error_time import ErrorTime
-from app.views.friction import FrictionForce
-from app.views.loop import Loop
-from app.views.status_map import StatusMap
-from app.views.tractions import Tractions
-from app.worker.orders import Look, Run
-from app.worker.reports import Waiting
-from app.worker.rivals import References
-from app.worker.run import WorkerRun
+from app.views import convergence, error_time, friction, loop
+from app.views.catalogue import VIEWS, fitting
+from app.views.drawing import Scene, decades
+from app.worker.recording import COLUMNS
 from solver.scenes import CATALOGUE
 
 SMALL: dict[str, dict[str, Any]] = {
@@ -31,97 +23,102 @@ SMALL: dict[str, dict[str, Any]] = {
 }
 
 
-def recorded(
-    scene: str, ticket: int, watch: frozenset[str] = frozenset({"axial"}), **changes: Any
-) -> Recording:
-    """Do a short run and keep what a page keeps of it."""
-    values = {**SMALL[scene], "max_iterations": 4, **changes}
-    kept = Recording(ticket, CATALOGUE[scene].settings.checked(values), "")
-
-    def take(report: Any) -> None:
-        if not isinstance(report, Waiting):
-            kept.take(report)
-
-    order = Run(ticket, scene, values, watch=watch, look=Look())
-    run = WorkerRun(order, take, lambda: False, References())
-    while run.rest() is not None:
-        run.advance()
-    return kept
-
-
-def draw(view: View, run: Recording, *past: Recording) -> list[str]:
-    """Draw a run beside those before it; give the words of the legend."""
-    view.draw(Picture(run, past[-1] if past else None, past, run.newest, 5))
-    return [key.text for key in view.keys]
+def looked_at(scene: str, *changes: dict[str, Any]) -> Scene:
+    """Do a short run for each of the changes, and look at the last."""
+    shown = Shown()
+    for ticket, change in enumerate(changes or ({},), start=1):
+        shown.run(ticket, scene, {**SMALL[scene], "max_iterations": 4, **change})
+    return shown.scene()
 
 
 def test_the_ghost_of_the_loop_is_the_run_before_and_not_its_reference() -> None:
-    before, run = recorded("bar", 1, method="paper", max_iterations=2), recorded("bar", 2)
-    view = Loop()
-    assert "run before" in draw(view, run, before)
-    assert before.newest is not None
+    scene = looked_at("bar", {"method": "paper", "max_iterations": 2}, {})
+    drawing = loop.draw(scene, None)
+    assert "run before" in keys(drawing)
+    before = scene.before
+    assert before is not None
+    assert before.frame is not None
     assert before.reference is not None
-    drawn = view._ghost.data["x"] * view._scales[0]
-    assert drawn == pytest.approx(before.newest.end_displacement, rel=1e-5)
-    assert drawn != pytest.approx(before.reference.end_displacement, rel=0.01)
+    ghost = np.asarray(drawing.curves[0].x)
+    scale = ghost[-1] / before.frame.end_displacement[-1]
+    assert ghost == pytest.approx(scale * before.frame.end_displacement, rel=1e-5)
+    assert ghost != pytest.approx(scale * before.reference.end_displacement, rel=0.01)
 
 
 def test_a_loop_of_other_quantities_is_no_ghost() -> None:
-    before, run = recorded("layers", 1, bending="moment"), recorded("layers", 2)
-    assert "run before" not in draw(Loop(), run, before)
+    scene = looked_at("layers", {"bending": "moment"}, {})
+    assert "run before" not in keys(loop.draw(scene, None))
 
 
 @pytest.mark.parametrize(
     ("scene", "has_closed_form"), [("bar", True), ("strand", False)], ids=["bar", "strand"]
 )
 def test_a_legend_names_only_curves_that_are_there(scene: str, has_closed_form: bool) -> None:
-    run = recorded(scene, 1)
-    bare = replace(run, reference=None)
-    for view in (FrictionForce(), Loop(), ErrorTime()):
-        first, alone = draw(view, bare), draw(view, run)
+    whole = looked_at(scene)
+    bare = replace(whole, run=replace(whole.run, reference=None))
+    for view in (friction.VIEW, loop.VIEW, error_time.VIEW):
+        first, alone = keys(view.draw(bare, None)), keys(view.draw(whole, None))
         assert not {"reference", "incremental", "run before"} & set(first)
         assert {"reference", "incremental"} & set(alone)
-        assert ("closed form" in alone) == (has_closed_form and isinstance(view, FrictionForce))
+        assert ("closed form" in alone) == (has_closed_form and view is friction.VIEW)
 
 
 def test_curves_that_begin_above_ten_are_not_cut_off() -> None:
-    run = recorded("block", 1)
-    run.records[0] = replace(run.records[0], behaviour=31.0)
-    view = Convergence()
-    draw(view, run)
-    assert view.figure.y_range.end == 100.0
-    draw(view, recorded("bar", 2))
-    assert view.figure.y_range.end == 10.0
+    scene = looked_at("block")
+    scene.run.history._table[COLUMNS.index("behaviour"), 0] = 31.0
+    y = convergence.draw(scene, None).y
+    assert y is not None
+    assert y.high == 100.0
 
 
-def test_the_line_of_the_incremental_solver_goes_with_its_time() -> None:
-    run = recorded("bar", 1)
-    view = ErrorTime()
-    draw(view, run)
-    assert view._incremental.visible
-    draw(view, replace(run, ticket=2, reference=None), run)
-    assert not view._incremental.visible
+@pytest.mark.parametrize(
+    ("values", "ends"),
+    [
+        ([], (0.1, 1.0)),
+        ([np.nan, 0.0], (0.1, 1.0)),
+        ([3e-5, 0.2], (1e-5, 1.0)),
+        ([7.0], (1.0, 100)),
+    ],
+)
+def test_decades_hold_all_positive_values(values: list[float], ends: tuple[float, float]) -> None:
+    assert decades(values, 1e-18) == pytest.approx(ends)
 
 
 def test_past_runs_differ_in_color_and_keep_theirs() -> None:
-    run = recorded("bar", 1)
+    scene = looked_at("bar", {"max_iterations": 2}, {})
     tickets = [1, 3, 7, 13, 19, 20, 26, 32]
-    past = [replace(run, ticket=ticket) for ticket in tickets]
-    view, seen = ErrorTime(), {}
+    past = [replace(scene.run, ticket=ticket) for ticket in tickets]
+    kept: dict[int, str] = {}
+    seen: dict[int, str] = {}
     for last in range(1, len(past) + 1):
-        kept = past[max(0, last - 6) : last]
-        draw(view, replace(run, ticket=100 + last), *kept)
-        colors = dict(zip([one.ticket for one in kept], view._past.data["color"], strict=True))
-        assert len(set(colors.values())) == len(kept)
-        assert all(seen.get(ticket, color) == color for ticket, color in colors.items())
-        seen.update(colors)
+        six = tuple(past[max(0, last - 6) : last])
+        drawing = error_time.draw(replace(scene, past=six), kept)
+        kept = drawing.kept
+        assert len(set(kept.values())) == len(six)
+        assert all(seen.get(ticket, color) == color for ticket, color in kept.items())
+        seen.update(kept)
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_all_axes_along_a_scene_run_from_end_to_end(scene: str) -> None:
-    run = recorded(scene, 1)
-    views = (FrictionForce(), Tractions(), Axial(), StatusMap(lambda time: None))
-    for view in (view for view in views if view.applies(run.settings)):
-        draw(view, run)
-        scale = view.figure.x_range
-        assert np.array_equal([scale.start, scale.end], [0.0, run.settings.values()["length"]])
+    looked = looked_at(scene)
+    settings = looked.run.settings
+    for view in fitting(settings):
+        drawing = view.draw(looked, None)
+        if view.plot.x_label == "Position x (m)" and drawing is not None and drawing.x is not None:
+            assert (drawing.x.low, drawing.x.high) == (0.0, settings.values()["length"])
+
+
+def test_the_same_scene_is_drawn_the_same_again() -> None:
+    looked = looked_at("block", {}, {"friction": 0.4})
+    for view in fitting(looked.run.settings):
+        first = view.draw(looked, None)
+        assert first is not None
+        again = view.draw(looked, first.kept)
+        assert again is not None
+        assert (first.x, first.y, first.keys) == (again.x, again.y, again.keys)
+
+
+def test_views_have_names_of_their_own_and_all_are_looked_at() -> None:
+    assert len({view.slug for view in VIEWS}) == len(VIEWS)
+    assert set(ALL.views) == {view.name for view in VIEWS}

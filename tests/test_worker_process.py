@@ -1,4 +1,4 @@
-"""A worker computes what `solve` computes, and says what a page needs to know."""
+"""A worker computes what `solve` computes, gives way to the next run, and ends with its page."""
 
 from __future__ import annotations
 
@@ -11,104 +11,152 @@ from typing import Any
 
 import numpy as np
 import pytest
-from direct_runs import direct, timeless
-from worker_line import SHORT, STALLING, Line, is_same_picture, shown
+from direct_runs import direct
+from studios import ALL, Shown
+from worker_line import SHORT, STALLING, Line
 
+from app.worker import run
 from app.worker.orders import Run
-from app.worker.reports import Begun, End, Frame, Progress, Reference, Refused, Taken, Waiting
-from app.worker.rivals import References
-from app.worker.run import WorkerRun
-from solver.latin import Ending, Iterate, StopRules, Verdict
+from app.worker.recording import COLUMNS, History
+from app.worker.sampler import Sampler
+from solver import latin
+from solver.latin import Ending, Iterate, Record
+from solver.reference.closed_form import closed_form
+from solver.scenes.bar import BarSettings, bar
+
+PATIENCE = 60.0
+SLOW_TO_SET_UP = {"elements": 5000, "instants": 2001, "substructures": 500}
+LONG_REFERENCE = {"elements": 300, "instants": 4000, "load": "random"}
 
 
-@pytest.mark.parametrize("values", [{}, STALLING, {"substructures": 1}])
-def test_worker_gives_the_numbers_of_a_direct_solution(line: Line, values: dict[str, Any]) -> None:
-    line.send(Run(1, "bar", values))
-    end = line.until(End, Refused)
-    line.until(Waiting)
-    expected = direct(values)
-    assert end == End(1, expected.status, expected.iterate.number)
-    assert timeless(line.records()) == timeless(expected.records)
-    assert is_same_picture(line.all(Frame)[-1], shown(expected.iterate))
+def same(found: History, expected: list[Record]) -> bool:
+    """Tell whether all is the same but what is measured."""
+    other = History(expected)
+    names = [name for name in COLUMNS if name != "seconds"]
+    return all(
+        np.array_equal(found.column(name), other.column(name), equal_nan=True) for name in names
+    )
 
 
-def test_first_picture_comes_before_the_reference_and_every_record_after_it(line: Line) -> None:
-    line.send(Run(1, "bar", SHORT))
-    line.until(End)
-    kinds = [type(report) for report in line.reports]
-    assert kinds[:6] == [Taken, Begun, Frame, Begun, Reference, Progress]
-    assert [begun.closed_form is not None for begun in line.all(Begun)] == [False, True]
-    assert line.all(Frame)[0].iteration == 1
-    assert [record.iteration for record in line.records()] == list(range(1, 51))
-    assert not any(math.isnan(record.error_force) for record in line.records())
+def shown_run(values: dict[str, Any], **options: Any) -> Shown:
+    shown = Shown()
+    shown.run(1, "bar", values, **options)
+    return shown
 
 
-def test_run_that_ends_at_its_first_iteration_sends_its_record_and_its_end(line: Line) -> None:
-    line.send(Run(1, "bar", {"method": "paper", "peak": 0.0}))
-    line.until(Waiting)
-    assert [record.iteration for record in line.records()] == [1]
-    assert [frame.iteration for frame in line.all(Frame)] == [1]
-    assert line.all(End)[0].iteration == 1
+@pytest.mark.parametrize("values", [{}, STALLING, {"method": "paper", "substructures": 1}])
+def test_worker_gives_the_numbers_of_a_direct_solution(values: dict[str, Any]) -> None:
+    shown, expected = shown_run(values), direct(values)
+    assert shown.recording.status == expected.status
+    assert same(shown.recording.history, expected.records)
+    settings = BarSettings.checked(values)
+    sampler = Sampler(expected.iterate.problem, settings, ALL)
+    frame, other = shown.frame(), sampler.frame(expected.iterate, frozenset(), ALL)
+    assert frame.iteration == other.iteration
+    for name in ("friction", "status", "end_displacement"):
+        assert np.array_equal(getattr(frame, name), getattr(other, name))
 
 
-def test_friction_is_sent_as_force_per_length_within_its_bound(line: Line) -> None:
-    line.send(Run(1, "bar", {"elements": 3000, "instants": 31, "max_iterations": 2}))
-    line.until(End)
-    begun, reference = line.all(Begun)[0], line.all(Reference)[0]
-    assert reference.friction.shape == (400, 31) == (len(begun.positions), len(begun.instants))
-    assert np.all(np.abs(reference.friction) <= begun.bound[:, None] * (1.0 + 1e-6))
+def test_the_first_picture_comes_before_the_reference() -> None:
+    shown = shown_run(SHORT)
+    first = shown.models[0]
+    assert shown.pictures[0].facts.iteration == 1
+    assert "reference" not in first["friction-force.title"]["text"]
+    assert "reference" in shown.page["friction-force.title"]["text"]
+    assert "closed form" in shown.page["friction-force.title"]["text"]
+    assert not np.isnan(shown.recording.history.column("error_force")).any()
+
+
+def test_a_run_that_ends_at_its_first_iteration_is_shown_with_its_end() -> None:
+    shown = shown_run({"method": "paper", "peak": 0.0})
+    assert len(shown.recording.history) == 1
+    assert shown.pictures[-1].facts.is_over
+    assert "at rest" in shown.words
+
+
+def test_friction_is_shown_as_force_per_length_within_its_bound() -> None:
+    values = {"elements": 3000, "instants": 31, "max_iterations": 2}
+    recording = shown_run(values).recording
+    stand, reference = recording.stand, recording.reference
+    assert reference is not None
+    assert stand.bound is not None
+    assert reference.friction.shape == (400, 31) == (len(stand.positions), len(stand.instants))
+    assert np.all(np.abs(reference.friction) <= stand.bound[:, None] * (1.0 + 1e-6))
     assert np.abs(reference.friction).max() == pytest.approx(1500.0)
-    assert begun.positions[[0, -1]] == pytest.approx([0.0, 1.0])
+    assert stand.positions[[0, -1]] == pytest.approx([0.0, 1.0])
 
 
-def test_reference_is_computed_once_for_the_same_physics(line: Line) -> None:
-    line.send(Run(1, "bar", {"k_scale": 1.0}))
-    line.until(End)
-    line.send(Run(2, "bar", {"k_scale": 3.0, "substructures": 5}))
-    line.until(End, ticket=2)
-    line.send(Run(3, "bar", {"friction": 0.31}))
-    line.until(End, ticket=3)
-    first, second, third = (line.all(Reference, ticket)[0].seconds for ticket in (1, 2, 3))
-    assert first == second != third
+def test_reference_is_computed_once_for_the_same_physics() -> None:
+    shown, seconds = Shown(), []
+    for ticket, change in enumerate([{}, {"k_scale": 3.0, "substructures": 5}, {"friction": 0.31}]):
+        shown.run(ticket, "bar", {"method": "paper", "max_iterations": 3, **change})
+        assert shown.recording.reference is not None
+        seconds.append(shown.recording.reference.seconds)
+    assert seconds[0] == seconds[1] != seconds[2]
 
 
-def test_run_that_diverges_keeps_its_last_good_iterate(monkeypatch: pytest.MonkeyPatch) -> None:
-    def judge(rules: StopRules, iterate: Iterate) -> Verdict:
-        nowhere = np.full_like(iterate.incoming, np.nan)
-        return plain(rules, replace(iterate, incoming=nowhere) if iterate.number == 5 else iterate)
+def test_a_run_that_diverges_keeps_its_last_good_iterate(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Rules(latin.StopRules):
+        def judge(self, iterate: Iterate) -> latin.Verdict:
+            verdict = super().judge(iterate)
+            status = latin.Status(Ending.DIVERGED, "made to")
+            return replace(verdict, status=status) if iterate.number == 5 else verdict
 
-    plain = StopRules.judge
-    monkeypatch.setattr(StopRules, "judge", judge)
-    said: list[Any] = []
-    work = WorkerRun(Run(1, "bar", SHORT), said.append, lambda: False, References())
-    while work.rest() is not None:
-        work.advance()
-    (end,) = (report for report in said if isinstance(report, End))
-    frames = [report for report in said if isinstance(report, Frame)]
-    records = [entry for part in said if isinstance(part, Progress) for entry in part.records]
-    assert (end.status.ending, end.iteration) == (Ending.DIVERGED, 4)
-    assert frames[-1].iteration == 4
-    assert [entry.iteration for entry in records] == [1, 2, 3, 4]
+    monkeypatch.setattr(run, "StopRules", Rules)
+    shown = shown_run(SHORT)
+    assert shown.pictures[-1].facts.iteration == 4
+    assert list(shown.recording.history.column("iteration")) == [1, 2, 3, 4]
+    assert "diverged" in shown.words
 
 
-def test_begun_gives_bound_load_and_cuts_in_si(line: Line) -> None:
+def test_what_fields_stand_on_is_in_si() -> None:
     path = {"load": [[0.0, 0.0], [2.0, 700.0]], "duration": 2.0, "instants": 11}
     rod = {"length": 2.0, "young": 1e9, "elements": 20, "substructures": 4}
-    line.send(Run(1, "bar", {**path, **rod, "friction": 0.4, "friction_profile": "rising"}))
-    line.until(End)
-    begun = line.all(Begun)[0]
-    assert begun.positions == pytest.approx(np.linspace(0.0, 2.0, 21))
-    assert begun.cuts == pytest.approx([0.5, 1.0, 1.5])
-    assert begun.load == pytest.approx(np.linspace(0.0, 700.0, 11))
-    assert begun.all_instants == pytest.approx(np.linspace(0.0, 2.0, 11))
-    factor = np.linspace(0.2, 1.8, 21)
-    assert begun.bound == pytest.approx(0.4 * 5000.0 * factor)
+    values = {**path, **rod, "friction": 0.4, "friction_profile": "rising"}
+    stand = shown_run(values).recording.stand
+    assert stand.positions == pytest.approx(np.linspace(0.0, 2.0, 21))
+    assert stand.cuts == pytest.approx([0.5, 1.0, 1.5])
+    assert stand.load == pytest.approx(np.linspace(0.0, 700.0, 11))
+    assert stand.all_instants == pytest.approx(np.linspace(0.0, 2.0, 11))
+    assert stand.bound == pytest.approx(0.4 * 5000.0 * np.linspace(0.2, 1.8, 21))
 
 
-def test_run_without_a_closed_form_sends_none(line: Line) -> None:
-    line.send(Run(1, "bar", {**SHORT, "body_force": 100.0}))
-    line.until(Reference)
-    assert [begun.closed_form for begun in line.all(Begun)] == [None, None]
+def test_a_closed_form_is_shown_where_there_is_one() -> None:
+    stand = shown_run(SHORT).recording.stand
+    exact = closed_form(bar(BarSettings.checked(SHORT)))
+    assert exact is not None
+    assert stand.closed_form_end == pytest.approx(exact.end_displacement, rel=1e-6)
+    assert shown_run({**SHORT, "body_force": 100.0}).recording.stand.closed_form is None
+
+
+def test_history_grows_and_is_thinned_from_end_to_end() -> None:
+    nothing = [math.nan] * 5
+    history = History([Record(number, 0.1 * number, *nothing, 0.0) for number in range(1, 1001)])
+    assert len(history) == 1000
+    few = history.thinned(50)["iteration"]
+    assert len(few) == 50
+    assert (few[0], few[-1]) == (1, 1000)
+    assert len(History().thinned(50)["seconds"]) == 0
+
+
+@pytest.mark.parametrize("values", [SLOW_TO_SET_UP, LONG_REFERENCE], ids=["set-up", "reference"])
+def test_a_run_that_takes_long_gives_way_to_the_next(line: Line, values: dict[str, Any]) -> None:
+    line.send(Run(1, "bar", SHORT))
+    line.until(lambda picture: picture.facts.is_over)
+    line.send(Run(2, "bar", values), Run(3, "bar", {**SHORT, "friction": 0.31}))
+    picture = line.until(lambda picture: picture.ticket == 3 and picture.facts.is_over)
+    assert not picture.facts.is_broken
+
+
+@pytest.mark.parametrize("busy", [False, True])
+def test_a_process_ends_with_its_pipe_whatever_it_does(line: Line, busy: bool) -> None:
+    line.send(Run(1, "bar", SHORT))
+    line.until(lambda picture: picture.facts.is_over)
+    if busy:
+        line.send(Run(2, "bar", SLOW_TO_SET_UP))
+    line.connection.close()
+    line.process.join(PATIENCE)
+    assert line.process.exitcode == 0
 
 
 def test_worker_loads_no_part_of_the_page() -> None:

@@ -6,62 +6,60 @@ from typing import Any
 
 import numpy as np
 import pytest
-from direct_runs import direct, iterate_number, timeless
-from worker_line import SHORT, STALLING, Line, is_same_picture, shown
+from direct_runs import direct, iterate_number
+from studios import ALL, Shown
+from test_worker_process import same
+from worker_line import SHORT, STALLING
 
 from app.worker.checkpoints import Checkpoints
-from app.worker.orders import Pace, Run, Seek
-from app.worker.reports import End, Frame, Progress, Waiting
-from app.worker.rivals import References
-from app.worker.run import WorkerRun
+from app.worker.orders import Pace, Seek
+from app.worker.sampler import Sampler
+from app.worker.shown import Frame
 from solver.latin import Checkpoint
+from solver.scenes.bar import BarSettings
+
+
+def expected(number: int, values: dict[str, Any]) -> Frame:
+    iterate = iterate_number(number, values)
+    sampler = Sampler(iterate.problem, BarSettings.checked(values), ALL)
+    return sampler.frame(iterate, frozenset(), ALL)
 
 
 @pytest.mark.parametrize("number", [1, 2, 30, 49])
-def test_seek_shows_the_exact_iterate(line: Line, number: int) -> None:
-    line.send(Run(1, "bar", SHORT))
-    line.until(Waiting)
-    before = len(line.all(Frame))
-    line.send(Seek(1, number))
-    line.until(Waiting)
-    (frame,) = line.all(Frame)[before:]
-    assert frame.sought
-    assert is_same_picture(frame, shown(iterate_number(number, SHORT)))
+def test_seek_shows_the_exact_iterate(number: int) -> None:
+    shown = Shown()
+    shown.run(1, "bar", SHORT)
+    shown.obey(Seek(1, number))
+    frame, other = shown.frame(), expected(number, SHORT)
+    assert frame.iteration == shown.pictures[-1].facts.iteration == number
+    assert np.array_equal(frame.friction, other.friction)
+    assert np.array_equal(frame.status, other.status)
+    assert not shown.pictures[-1].facts.follows
 
 
 @pytest.mark.parametrize(("wanted", "answer"), [(-5, 1), (0, 1), (10**9, 50)])
-def test_seek_out_of_range_shows_the_nearest_iterate(line: Line, wanted: int, answer: int) -> None:
-    line.send(Run(1, "bar", SHORT))
-    line.until(Waiting)
-    line.send(Seek(1, wanted))
-    line.until(Waiting)
-    assert line.all(Frame)[-1].sought
-    assert line.all(Frame)[-1].iteration == answer
+def test_seek_out_of_range_shows_the_nearest_iterate(wanted: int, answer: int) -> None:
+    shown = Shown()
+    shown.run(1, "bar", SHORT)
+    shown.obey(Seek(1, wanted))
+    assert shown.pictures[-1].facts.iteration == answer
 
 
 def test_newer_seek_takes_the_place_of_an_older() -> None:
-    said: list[Any] = []
-    run = WorkerRun(Run(1, "bar", SHORT), said.append, lambda: False, References())
-    done(run)
-    run.obey(Seek(1, 39))
-    run.obey(Seek(1, 3))
-    done(run)
-    assert [one.iteration for one in said if isinstance(one, Frame) and one.sought] == [3]
+    shown = Shown()
+    shown.run(1, "bar", SHORT)
+    shown.obey(Seek(1, 39), Seek(1, 3))
+    assert shown.pictures[-1].facts.iteration == 3
+    assert 39 not in [picture.facts.iteration for picture in shown.pictures[-2:]]
 
 
-def done(run: WorkerRun) -> None:
-    while run.rest() is not None:
-        run.advance()
-
-
-def test_seek_does_not_move_the_run(line: Line) -> None:
-    line.send(Run(1, "bar", STALLING, pace=200.0))
+def test_seek_does_not_move_the_run() -> None:
+    shown = Shown()
+    shown.run(1, "bar", STALLING, pause_after=20)
     for number in (1, 5, 2):
-        line.until(Progress)
-        line.send(Seek(1, number))
-    line.send(Pace(1, None))
-    line.until(End)
-    assert timeless(line.records()) == timeless(direct(STALLING).records)
+        shown.obey(Seek(1, number))
+    shown.obey(Pace(1, None))
+    assert same(shown.recording.history, direct(STALLING).records)
 
 
 @pytest.mark.parametrize("budget", [0, 800, 8000, 10**9])

@@ -7,23 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from direct_runs import direct, iterate_number, timeless
+from direct_runs import direct, iterate_number
+from studios import ALL, Shown
+from test_worker_process import same
 
-from app.recording import Recording
-from app.views.basis_size import MOST_COLUMNS, BasisSize
-from app.views.convergence import Convergence
-from app.views.drawing import Picture, View
-from app.views.error_time import ErrorTime
-from app.views.modes import SpaceModes, TimeFunctions
-from app.views.spectra import Spectra
+from app.views.basis_size import MOST_COLUMNS
 from app.worker.checkpoints import Checkpoints
-from app.worker.orders import Run, Seek, Watch
-from app.worker.reports import Frame, Progress, Report, Waiting
-from app.worker.rivals import References
-from app.worker.run import WorkerRun
-from app.worker.shown import MOST_MODES, MOST_SIZES, Bases, ShownModes
-from solver.latin import Record
-from solver.scenes.bar import BarSettings
+from app.worker.orders import Seek
+from app.worker.shown import MOST_MODES, MOST_SIZES, Bases, Look, ShownModes
 
 SMALL: dict[str, Any] = {
     "method": "paper",
@@ -33,92 +24,52 @@ SMALL: dict[str, Any] = {
     "substructures": 4,
     "max_iterations": 25,
 }
-ALL = frozenset({"modes", "spectra"})
-REFERENCES = References()
 
 
-class Told:
-    """A run in this process, and all that it has said."""
-
-    def __init__(self, order: Run) -> None:
-        self.reports: list[Report] = []
-        self.run = WorkerRun(order, self.reports.append, lambda: False, REFERENCES)
-        self.work()
-
-    def work(self) -> None:
-        while self.run.rest() is not None:
-            self.run.advance()
-
-    def asked(self, order: Seek | Watch) -> Frame:
-        """Give the answer to an order."""
-        self.run.obey(order)
-        self.work()
-        return self.frames[-1]
-
-    @property
-    def frames(self) -> list[Frame]:
-        return [report for report in self.reports if isinstance(report, Frame)]
-
-    @property
-    def progress(self) -> list[Progress]:
-        return [report for report in self.reports if isinstance(report, Progress)]
-
-    @property
-    def records(self) -> list[Record]:
-        return [entry for part in self.progress for entry in part.records]
-
-    @property
-    def beside(self) -> list[Record]:
-        return [entry for part in self.progress for entry in part.beside]
-
-    @property
-    def sizes(self) -> list[list[int]]:
-        parts = [part.sizes for part in self.progress if part.sizes is not None]
-        return [row.tolist() for part in parts for row in part]
+def told(values: dict[str, Any]) -> Shown:
+    shown = Shown()
+    shown.run(1, "bar", values)
+    return shown
 
 
-def told(values: dict[str, Any], **options: Any) -> Told:
-    return Told(Run(1, "bar", values, **options))
+def bases_of(shown: Shown, look: Look = ALL) -> Bases:
+    found = shown.frame(look).bases
+    assert found is not None
+    return found
 
 
-def shown(frame: Frame) -> Bases:
-    assert frame.bases is not None
-    return frame.bases
-
-
-def shown_modes(frame: Frame) -> ShownModes:
-    modes = shown(frame).modes
+def modes_of(shown: Shown, look: Look = ALL) -> ShownModes:
+    modes = bases_of(shown, look).modes
     assert modes is not None
     return modes
 
 
-def test_the_full_linear_stage_sends_nothing_of_bases() -> None:
-    found = told({**SMALL, "linear_stage": "full"}, watch=ALL)
-    assert all(frame.bases is None for frame in found.frames)
-    assert all(part.sizes is None and part.beside == () for part in found.progress)
+def test_the_full_linear_stage_shows_nothing_of_bases() -> None:
+    shown = told({**SMALL, "linear_stage": "full"})
+    assert shown.frame().bases is None
+    assert not shown.recording.sizes
+    assert not len(shown.recording.beside)
 
 
-def test_modes_and_their_sizes_are_sent_only_when_watched() -> None:
-    found = told(SMALL)
-    bare = shown(found.frames[-1])
-    assert bare.modes is bare.values is None
-    for watch in (frozenset({"modes"}), frozenset({"spectra"}), ALL):
-        bases = shown(found.asked(Watch(1, watch)))
-        assert (bases.modes is not None) == ("modes" in watch)
-        assert (bases.values is not None) == ("spectra" in watch)
+def test_modes_and_their_sizes_are_there_only_when_watched() -> None:
+    shown = told(SMALL)
+    for names in ((), ("PGD space modes",), ("Singular values",)):
+        bases = bases_of(shown, Look(views=names))
+        assert (bases.modes is not None) == ("PGD space modes" in names)
+        assert (bases.values is not None) == ("Singular values" in names)
 
 
 @pytest.mark.parametrize(("wanted", "found"), [(None, 3), (0, 0), (2, 2), (99, 3)])
 def test_modes_are_those_of_the_chosen_substructure(wanted: int | None, found: int) -> None:
-    frame = told(SMALL, watch=ALL, substructure=wanted).frames[-1]
-    assert shown(frame).substructure == found
+    shown, look = told(SMALL), replace(ALL, substructure=wanted)
+    assert bases_of(shown, look).substructure == found
     along = np.linspace(found, found + 1, 6) / 4.0
-    assert shown_modes(frame).positions == pytest.approx(along)
+    assert modes_of(shown, look).positions == pytest.approx(along)
 
 
 def test_shown_modes_times_their_functions_are_the_displacement() -> None:
     values = {**SMALL, "pgd_modes": MOST_MODES}
-    modes = shown_modes(told(values, watch=ALL).frames[-1])
+    modes = modes_of(told(values))
     field = modes.space_modes.T @ modes.time_functions
     # Where two substructures meet, the displacement is the mean of both.
     expected = iterate_number(25, values).displacement[16:20]
@@ -126,34 +77,36 @@ def test_shown_modes_times_their_functions_are_the_displacement() -> None:
 
 
 def test_modes_are_drawn_with_a_largest_entry_of_one_and_a_last_lobe_upwards() -> None:
-    for mode in shown_modes(told(SMALL, watch=ALL).frames[-1]).space_modes:
+    for mode in modes_of(told(SMALL)).space_modes:
         assert np.abs(mode).max() == pytest.approx(1.0)
         assert mode[np.abs(mode) >= 0.5][-1] > 0.0
 
 
 def test_what_was_there_was_added_and_was_dropped_adds_up() -> None:
-    found = told(SMALL, watch=ALL)
+    shown = told(SMALL)
     before = 0
     for number in range(1, 26):
-        modes = shown_modes(found.asked(Seek(1, number)))
+        shown.obey(Seek(1, number))
+        modes = modes_of(shown)
         assert modes.record.modes == before + modes.record.added - modes.lost
-        assert modes.record.modes == found.sizes[number - 1][-1]
+        assert modes.record.modes == shown.recording.sizes[number - 1][-1]
         assert modes.record.added or not modes.born.any()
         before = modes.record.modes
-    assert shown_modes(found.asked(Seek(1, 1))).born.all()
+    shown.obey(Seek(1, 1))
+    assert modes_of(shown).born.all()
 
 
 def test_modes_are_together_as_large_as_the_field_that_they_hold_once_it_has_converged() -> None:
     generous = {**SMALL, "pgd_modes": 20, "pgd_tolerance": 1e-10, "max_iterations": 300}
-    values = shown(told(generous, watch=ALL).frames[-1]).values
+    values = bases_of(told(generous)).values
     assert values is not None
     assert np.linalg.norm(values.basis) == pytest.approx(np.linalg.norm(values.wanted), rel=1e-3)
 
 
-def test_numbers_of_modes_are_sent_for_a_screenful_of_substructures() -> None:
-    found = told({**SMALL, "elements": 200, "substructures": 200, "max_iterations": 3})
-    assert {len(row) for row in found.sizes} == {MOST_SIZES}
-    assert len(found.sizes) == len(found.records) == 3
+def test_numbers_of_modes_are_kept_for_a_screenful_of_substructures() -> None:
+    shown = told({**SMALL, "elements": 200, "substructures": 200, "max_iterations": 3})
+    assert {len(row) for row in shown.recording.sizes} == {MOST_SIZES}
+    assert len(shown.recording.sizes) == len(shown.recording.history) == 3
 
 
 @pytest.mark.parametrize(
@@ -161,15 +114,14 @@ def test_numbers_of_modes_are_sent_for_a_screenful_of_substructures() -> None:
     [
         pytest.param({}, id="as long as the bases"),
         pytest.param({"max_iterations": 400, "tolerance": 1e-6, "pgd_modes": 2}, id="ends before"),
-        pytest.param({"method": "fast"}, id="fast"),
     ],
 )
 def test_full_stage_beside_the_bases_is_a_run_of_its_own(change: dict[str, Any]) -> None:
     values = {**SMALL, **change}
-    found = told(values)
+    recording = told(values).recording
     full = direct({**values, "linear_stage": "full", "finish": "none"})
-    assert timeless(found.beside) == timeless(full.records)[: len(found.records)]
-    assert timeless(found.records) == timeless(direct(values).records)
+    assert same(recording.beside, full.records[: len(recording.history)])
+    assert same(recording.history, direct(values).records)
 
 
 def test_checkpoints_count_their_bases_as_memory() -> None:
@@ -181,26 +133,7 @@ def test_checkpoints_count_their_bases_as_memory() -> None:
     assert kept.before(2) is None
 
 
-def test_views_draw_a_run_on_bases_and_what_they_draw_is_bounded() -> None:
-    found = told(SMALL, watch=ALL)
-    recording = Recording(1, BarSettings.checked(SMALL), "")
-    for report in found.reports:
-        if not isinstance(report, Waiting):
-            recording.take(report)
-    recording.sizes *= 100
-    basis_size = BasisSize(lambda number: None)
-    views: list[View] = [
-        SpaceModes(),
-        TimeFunctions(),
-        basis_size,
-        Convergence(),
-        Spectra(),
-        ErrorTime(),
-    ]
-    picture = Picture(recording, None, (), recording.newest, 0)
-    for view in views:
-        assert view.applies(recording.settings)
-        view.draw(picture)
-        view.draw(picture)
-    (image,) = basis_size._image.data["image"]
-    assert image.shape == (4, MOST_COLUMNS)
+def test_the_map_of_basis_sizes_is_bounded() -> None:
+    shown = told({**SMALL, "max_iterations": MOST_COLUMNS + 20, "tolerance": 1e-30})
+    image = shown.page["pgd-basis-size.image"]["image"]
+    assert image.shape == (4, min(MOST_COLUMNS, len(shown.recording.history)))

@@ -1,16 +1,19 @@
-"""A worker starts a run from the one before it where it is told to."""
+"""A run starts from the one before it where it is told to."""
 
 from __future__ import annotations
 
 from itertools import islice
 
-from direct_runs import direct, timeless
-from worker_line import STALLING, Line, is_same_picture, shown
+import numpy as np
+from direct_runs import direct
+from studios import ALL, Shown
+from test_worker_process import same
+from worker_line import STALLING
 
 from app.worker.orders import Run, Seek
-from app.worker.reports import Begun, End, Frame, Progress, Waiting
+from app.worker.sampler import Sampler
 from solver.discrete import discretise
-from solver.latin import Record, StopRules, record
+from solver.latin import Iterate, Record, StopRules, record
 from solver.latin.warm import choose_start
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -19,67 +22,67 @@ from solver.scenes.bar import BarSettings
 NEAR = {**STALLING, "friction": 0.3001}
 
 
-def warm_records(number: int) -> list[Record]:
-    """Give the records of NEAR, started from the end of STALLING, without the worker."""
+def warm_iterates(number: int) -> list[Iterate]:
+    """Give the iterates of NEAR, started from the end of STALLING, without the worker."""
     settings = BarSettings.checked(NEAR)
-    problem = discretise(settings)
-    distance = distance_to(incremental(problem), problem)
-    start, run = choose_start(problem, settings, direct(STALLING).iterate)
+    start, run = choose_start(discretise(settings), settings, direct(STALLING).iterate)
     assert start.choice.is_previous
-    rules = StopRules(settings)
-    found = (record(iterate, rules.judge(iterate), distance) for iterate in islice(run, number))
-    return timeless(found)
+    return list(islice(run, number))
 
 
-def test_warm_run_starts_from_the_run_that_it_takes_the_place_of(line: Line) -> None:
-    line.send(Run(1, "bar", STALLING))
-    line.until(End)
-    line.send(Run(2, "bar", NEAR, warm=True, pause_after=30))
-    line.until(Waiting, ticket=2)
-    assert timeless(line.records(2)) == warm_records(30)
-    assert all(begun.start.is_previous for begun in line.all(Begun, ticket=2))
+def warm_records(number: int) -> list[Record]:
+    settings, iterates = BarSettings.checked(NEAR), warm_iterates(number)
+    problem = iterates[0].problem
+    distance, rules = distance_to(incremental(problem), problem), StopRules(settings)
+    return [record(iterate, rules.judge(iterate), distance) for iterate in iterates]
+
+
+def after_the_first() -> Shown:
+    shown = Shown()
+    shown.run(1, "bar", STALLING)
+    return shown
+
+
+def test_warm_run_starts_from_the_run_that_it_takes_the_place_of() -> None:
+    shown = after_the_first()
+    shown.run(2, "bar", NEAR, warm=True, pause_after=30)
+    assert same(shown.recording.history, warm_records(30))
+    assert shown.pictures[-1].facts.was_warm
+    iterates = warm_iterates(17)
     for number in (1, 17):
-        line.send(Seek(2, number))
-        line.until(Waiting, ticket=2)
-    settings = BarSettings.checked(NEAR)
-    _, run = choose_start(discretise(settings), settings, direct(STALLING).iterate)
-    iterates = list(islice(run, 17))
-    sought = [frame for frame in line.all(Frame, ticket=2) if frame.sought]
-    for frame, iterate in zip(sought, (iterates[0], iterates[16]), strict=True):
-        assert is_same_picture(frame, shown(iterate))
+        shown.obey(Seek(2, number))
+        iterate = iterates[number - 1]
+        expected = Sampler(iterate.problem, BarSettings.checked(NEAR), ALL)
+        other = expected.frame(iterate, frozenset(), ALL)
+        assert np.array_equal(shown.frame().friction, other.friction)
 
 
-def test_warm_run_that_is_replaced_at_once_hands_on_what_it_was_given(line: Line) -> None:
-    line.send(Run(1, "bar", STALLING))
-    line.until(End)
-    line.send(
-        Run(2, "bar", {**NEAR, "peak": 901.0}, warm=True),
-        Run(3, "bar", NEAR, warm=True, pause_after=5),
-    )
-    line.until(Waiting, ticket=3)
-    assert line.all(Begun, ticket=3)[0].start.is_previous
+def test_warm_run_that_is_replaced_at_once_hands_on_what_it_was_given() -> None:
+    shown = after_the_first()
+    shown.studio.obey(Run(2, "bar", {**NEAR, "peak": 901.0}, warm=True))
+    shown.run(3, "bar", NEAR, warm=True, pause_after=5)
+    assert shown.pictures[-1].facts.was_warm
 
 
-def test_run_starts_as_its_settings_say_otherwise(line: Line) -> None:
-    line.send(Run(1, "bar", STALLING))
-    line.until(End)
-    line.send(Run(2, "bar", NEAR))
-    line.until(End, ticket=2)
-    assert timeless(line.records(2)) == timeless(direct(NEAR).records)
-    assert line.all(Begun, ticket=2)[0].start is None
+def test_the_replay_of_what_followed_a_hand_starts_from_the_run_before_that() -> None:
+    shown = after_the_first()
+    shown.run(2, "bar", NEAR, warm=True, follows_hand=True)
+    shown.run(3, "bar", NEAR, warm=True, pause_after=5)
+    assert same(shown.recording.history, warm_records(5))
 
 
-def test_a_first_run_that_may_be_warm_starts_as_its_settings_say(line: Line) -> None:
-    line.send(Run(1, "bar", NEAR, warm=True))
-    line.until(End)
-    assert line.all(Begun)[0].start is None
+def test_a_run_starts_as_its_settings_say_otherwise() -> None:
+    shown = after_the_first()
+    shown.run(2, "bar", NEAR)
+    assert same(shown.recording.history, direct(NEAR).records)
+    assert not shown.pictures[-1].facts.was_warm
+    first = Shown()
+    first.run(1, "bar", NEAR, warm=True, pause_after=3)
+    assert not first.pictures[-1].facts.was_warm
+    assert "not at hand" in first.words
 
 
-def test_full_stage_beside_a_warm_run_starts_where_that_does(line: Line) -> None:
-    reduced = {**NEAR, "linear_stage": "pgd"}
-    line.send(Run(1, "bar", STALLING))
-    line.until(End)
-    line.send(Run(2, "bar", reduced, warm=True, pause_after=5))
-    line.until(Waiting, ticket=2)
-    beside = [entry for part in line.all(Progress, ticket=2) for entry in part.beside]
-    assert timeless(beside) == warm_records(5)
+def test_full_stage_beside_a_warm_run_starts_where_that_does() -> None:
+    shown = after_the_first()
+    shown.run(2, "bar", {**NEAR, "linear_stage": "pgd"}, warm=True, pause_after=5)
+    assert same(shown.recording.beside, warm_records(5))

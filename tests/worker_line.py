@@ -1,20 +1,17 @@
-"""A worker process as tests hold it, and the pictures that it should send."""
+"""A worker process as tests hold it."""
 
 from __future__ import annotations
 
 import time
-from typing import Any
+from collections.abc import Callable
 
-import numpy as np
 import pytest
 from processes import PATIENCE
+from studios import ALL
 
 from app.worker import link
-from app.worker.orders import Look, Order
-from app.worker.reports import Frame, Progress, Report
-from app.worker.sampler import Sampler
-from solver.latin import Iterate, Record
-from solver.scenes.bar import BarSettings
+from app.worker.orders import Order, Ready, Watch
+from app.worker.reports import Picture
 
 SHORT = {"method": "paper", "tolerance": 1e-8, "max_iterations": 50}
 STALLING = {
@@ -27,11 +24,12 @@ STALLING = {
 
 
 class Line:
-    """A worker process and all that it has said."""
+    """A worker process and all that it has sent; it is asked for every picture."""
 
     def __init__(self) -> None:
         self.process, self.connection = link.start()
-        self.reports: list[Report] = []
+        self.pictures: list[Picture] = []
+        self.send(Watch(ALL), Ready())
 
     def close(self) -> None:
         self.process.kill()
@@ -42,33 +40,13 @@ class Line:
         for order in orders:
             self.connection.send(order)
 
-    def until(self, *kinds: type, ticket: int = 1) -> Any:
-        """Listen until a report of one of these kinds comes."""
+    def until(self, condition: Callable[[Picture], bool]) -> Picture:
+        """Listen until such a picture comes."""
         end = time.monotonic() + PATIENCE
         while self.connection.poll(max(end - time.monotonic(), 0.0)):
-            report: Any = self.connection.recv()
-            self.reports.append(report)
-            if report.ticket == ticket and isinstance(report, kinds):
-                return report
-        pytest.fail(f"no report of kind {kinds}")
-
-    def all(self, kind: type, ticket: int = 1) -> list[Any]:
-        said: list[Any] = [report for report in self.reports if isinstance(report, kind)]
-        return [report for report in said if report.ticket == ticket]
-
-    def records(self, ticket: int = 1) -> list[Record]:
-        return [record for part in self.all(Progress, ticket) for record in part.records]
-
-
-def shown(iterate: Iterate) -> Frame:
-    sampler = Sampler(iterate.problem, BarSettings.checked({"method": "paper"}), Look())
-    return sampler.frame(1, iterate, frozenset(), Look())
-
-
-def is_same_picture(frame: Frame, other: Frame) -> bool:
-    return (
-        frame.iteration == other.iteration
-        and np.array_equal(frame.friction, other.friction)
-        and np.array_equal(frame.status, other.status)
-        and np.array_equal(frame.end_displacement, other.end_displacement)
-    )
+            picture: Picture = self.connection.recv()
+            self.pictures.append(picture)
+            self.send(Ready())
+            if condition(picture):
+                return picture
+        pytest.fail("no such picture")

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-from bokeh.models import Range1d, Span
-
-from app.recording import columns
 from app.views.drawing import (
     BLUE,
     GREEN,
@@ -13,17 +9,20 @@ from app.views.drawing import (
     ORANGE,
     PURPLE,
     VERMILION,
-    Picture,
+    Curve,
+    Drawing,
+    Plot,
+    Scene,
+    View,
     decades,
-    empty,
-    make_figure,
-    mark_decades,
+    in_decades,
     round_up,
-    set_range,
+    spanned,
+    upright,
 )
 from app.views.legend import Key
+from app.worker.recording import History
 from app.worker.shown import has_reference
-from solver.latin import Record
 from solver.settings import Settings
 
 CURVES = (
@@ -38,106 +37,46 @@ LEAST_SPAN = (1e-2, 10.0)
 """What is shown at least; a curve beyond it widens it by whole decades."""
 ERRORS = 3
 """First of them that is an error, and needs a reference."""
-
-
+MOST_POINTS = 400
 KEYS = tuple(
     Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
 )
 
 
-class Convergence:
-    """What the method knows of itself (dashed), and how far it really is (solid).
+def applies(settings: Settings) -> bool:
+    """Every run converges, or not."""
+    return True
+
+
+def draw(scene: Scene, kept: None) -> Drawing:
+    """Draw what the method knows of itself (dashed), and how far it really is (solid).
 
     The ghost is the run before, or with separated bases, the full linear stage beside them.
     """
-
-    name = "Convergence"
-    watches = ""
-    keys = KEYS
-
-    def __init__(self) -> None:
-        self.figure = make_figure(
-            "Iteration",
-            "Indicator, error",
-            x_range=Range1d(0, 20),
-            y_range=Range1d(1e-4, 10),
-            y_axis_type="log",
-        )
-        names = [name for name, *_ in CURVES]
-        self._now = empty("iteration", *names)
-        self._ghost = empty("iteration", *names)
-        self._ticket = -1
-        self._count = 0
-        self._count_beside = 0
-        self._lowest, self._highest = LEAST_SPAN
-        made = self.figure
-        for name, color, _, dash in CURVES:
-            if dash == "solid":
-                made.line(
-                    "iteration",
-                    name,
-                    source=self._ghost,
-                    line_color=color,
-                    line_alpha=0.35,
-                    line_width=2,
-                )
-            made.line(
-                "iteration",
-                name,
-                source=self._now,
-                line_color=color,
-                line_dash=dash,
-                line_width=2.5,
-            )
-        self._shown = Span(location=0, dimension="height", line_color=VERMILION, line_width=2)
-        made.add_layout(self._shown)
-
-    def applies(self, settings: Settings) -> bool:
-        """Every run converges, or not."""
-        return True
-
-    def draw(self, picture: Picture) -> None:
-        """Add the new records."""
-        run = picture.run
-        if run.ticket != self._ticket or len(run.records) < self._count:
-            self._begin(picture)
-        else:
-            if len(run.records) > self._count:
-                new = run.history(self._count)
-                self._now.stream({name: new[name] for name in self._now.data})
-                self._fit(new)
-            if len(run.beside) > self._count_beside:
-                new = columns(run.beside[self._count_beside :])
-                self._ghost.stream({name: new[name] for name in self._ghost.data})
-        self._count, self._count_beside = len(run.records), len(run.beside)
-        before = picture.before.iteration if picture.before and not _is_reduced(picture) else 0
-        widest = max(run.iteration, before, 20)
-        set_range(self.figure.x_range, 0, round_up(widest))
-        at = picture.frame.iteration if picture.frame else 0
-        if self._shown.location != at:
-            self._shown.location = at
-
-    def _begin(self, picture: Picture) -> None:
-        """Put all records at once: rows streamed behind new data would be sent twice."""
-        self._ticket = picture.run.ticket
-        self._lowest, self._highest = LEAST_SPAN
-        now = picture.run.history()
-        self._now.data = {name: now[name] for name in self._now.data}
-        self._fit(now)
-        past: list[Record] = picture.before.records if picture.before else []
-        self.keys = KEYS if has_reference(picture.run.settings) else KEYS[:ERRORS]
-        if _is_reduced(picture):
-            past = picture.run.beside
-            self.keys = (*self.keys, Key(BLUE, "pale", "full stage"))
-        ghost = columns(past)
-        self._ghost.data = {name: ghost[name] for name in self._ghost.data}
-
-    def _fit(self, new: dict[str, np.ndarray]) -> None:
-        values = [value for name, *_ in CURVES for value in new[name]]
-        self._lowest, self._highest = decades([self._lowest, self._highest, *values], FLOOR)
-        set_range(self.figure.y_range, self._lowest, self._highest)
-        mark_decades(self.figure.yaxis[0], self.figure.y_range)
+    run, before, is_reduced = scene.run, scene.before, scene.run.settings.is_reduced
+    now = run.history.thinned(MOST_POINTS)
+    keys = KEYS if has_reference(run.settings) else KEYS[:ERRORS]
+    past: History | None = before.history if before else None
+    if is_reduced:
+        past, keys = run.beside, (*keys, Key(BLUE, "pale", "full stage"))
+    values = [value for name, *_ in CURVES for value in now[name]]
+    y = in_decades(*decades([*LEAST_SPAN, *values], FLOOR))
+    length = before.iteration if before and not is_reduced else 0
+    x = spanned(0, round_up(max(run.iteration, length, 20)))
+    curves = []
+    if past is not None:
+        ghost = past.thinned(MOST_POINTS)
+        curves += [
+            Curve(ghost["iteration"], ghost[name], color, 2, alpha=0.35)
+            for name, color, _, _ in CURVES[ERRORS:]
+        ]
+    curves += [
+        Curve(now["iteration"], now[name], color, dash=dash) for name, color, _, dash in CURVES
+    ]
+    curves.append(upright([scene.frame.iteration], y, color=VERMILION, width=2))
+    return Drawing(x, y, curves, keys=keys)
 
 
-def _is_reduced(picture: Picture) -> bool:
-    return picture.run.settings.is_reduced
+VIEW = View(
+    "Convergence", Plot("Iteration", "Indicator, error", logarithmic="y", whole="x"), applies, draw
+)

@@ -2,12 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-import numpy as np
-from bokeh.models import Range1d, Span
-
-from app.recording import columns
 from app.views.drawing import (
     BLUE,
     GREEN,
@@ -16,116 +10,62 @@ from app.views.drawing import (
     PURPLE,
     SKY,
     VERMILION,
-    Picture,
+    Curve,
+    Drawing,
+    Plot,
+    Scene,
+    View,
     decades,
-    empty,
-    make_figure,
-    mark_decades,
-    set_range,
+    in_decades,
+    upright,
 )
 from app.views.legend import Key
+from app.worker.recording import History
 from app.worker.shown import has_reference
-from solver.latin import Record
 from solver.settings import Settings
 
-NOW = Key(BLUE, "line", "now")
 PAST_COLORS = (GREEN, VERMILION, PURPLE, SKY, ORANGE, GREY)
 FLOOR = 1e-14
+MOST_POINTS = 200
 
 
-class ErrorTime:
-    """Error over the method's own time, set-up included: what settings are compared by.
+def applies(settings: Settings) -> bool:
+    """Every run takes time, but there are errors only beside a reference."""
+    return has_reference(settings)
+
+
+def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
+    """Draw error over the method's own time, set-up included: what settings are compared by.
 
     A run on separated bases has the full linear stage beside it, on a clock of its own.
     """
+    run, reference = scene.run, scene.run.reference
+    past = [one for one in scene.past if len(one.history)]
+    colors = _colors(kept or {}, [one.ticket for one in past])
+    every = [one.history for one in [*past, run]] + [run.beside]
+    histories = [one.thinned(MOST_POINTS) for one in every if len(one)]
+    times = [one["seconds"][place] for one in histories for place in (0, -1)]
+    errors = [one["error_force"][-1] for one in histories] + [0.1]
+    if reference is not None:
+        times.append(reference.seconds)
+    x = in_decades(*decades(times, 1e-6))
+    y = in_decades(decades(errors, FLOOR)[0], 2.0)
+    curves = [_curve(one.history, colors[one.ticket], 2) for one in past]
+    keys = [Key(BLUE, "line", "now")]
+    if run.settings.is_reduced:
+        keys.append(Key(BLUE, "dashed", "full stage"))
+        curves.append(_curve(run.beside, BLUE, 2.5, "dashed"))
+    curves.append(_curve(run.history, BLUE, 3))
+    keys += [Key(colors[one.ticket], "line", one.title) for one in reversed(past)]
+    if reference is not None:
+        keys.append(Key(GREY, "dotted", "incremental"))
+        curves.append(upright([reference.seconds], y, color=GREY, dash="dotted", width=2))
+    return Drawing(x, y, curves, keys=keys, kept=colors)
 
-    name = "Error against run time"
-    watches = ""
-    keys: Sequence[Key] = (NOW,)
 
-    def __init__(self) -> None:
-        self.figure = make_figure(
-            "Run time of the method (s)",
-            "Friction force error",
-            x_range=Range1d(1e-3, 1),
-            y_range=Range1d(1e-4, 2),
-            x_axis_type="log",
-            y_axis_type="log",
-        )
-        self._now = empty("seconds", "error_force")
-        self._full = empty("seconds", "error_force")
-        self._past = empty("xs", "ys", "color")
-        self._drawn: tuple[object, ...] = ()
-        self._colors: dict[int, str] = {}
-        made = self.figure
-        made.multi_line("xs", "ys", source=self._past, line_color="color", line_width=2)
-        made.line(
-            "seconds",
-            "error_force",
-            source=self._full,
-            line_color=BLUE,
-            line_dash="dashed",
-            line_width=2.5,
-        )
-        made.line("seconds", "error_force", source=self._now, line_color=BLUE, line_width=3)
-        self._incremental = Span(
-            dimension="height", line_color=GREY, line_dash="dotted", line_width=2, visible=False
-        )
-        made.add_layout(self._incremental)
-
-    def applies(self, settings: Settings) -> bool:
-        """Every run takes time, but there are errors only beside a reference."""
-        return has_reference(settings)
-
-    def draw(self, picture: Picture) -> None:
-        """Draw the run at work, and the past ones when one was added."""
-        reference = picture.run.reference
-        known = (picture.run.ticket, len(picture.past), reference is None)
-        if known != self._drawn:
-            self._drawn = known
-            self._draw_past(picture)
-            self._full.data = {"seconds": [], "error_force": []}
-            self._incremental.visible = reference is not None
-            if reference is not None:
-                self._incremental.location = reference.seconds
-        now = picture.run.history()
-        self._now.data = {name: now[name] for name in self._now.data}
-        if picture.run.beside:
-            seconds, errors = _thinned(picture.run.beside)
-            self._full.data = {"seconds": seconds, "error_force": errors}
-        self._fit(picture)
-
-    def _draw_past(self, picture: Picture) -> None:
-        runs = [run for run in picture.past if run.records]
-        colors = self._colors = _colors(self._colors, [run.ticket for run in runs])
-        thin = [_thinned(run.records) for run in runs]
-        self._past.data = {
-            "xs": [xs for xs, _ in thin],
-            "ys": [ys for _, ys in thin],
-            "color": [colors[run.ticket] for run in runs],
-        }
-        reduced, reference = picture.run.settings.is_reduced, picture.run.reference
-        self.keys = (
-            NOW,
-            *((Key(BLUE, "dashed", "full stage"),) if reduced else ()),
-            *(Key(colors[run.ticket], "line", run.title) for run in reversed(runs)),
-            *((Key(GREY, "dotted", "incremental"),) if reference else ()),
-        )
-
-    def _fit(self, picture: Picture) -> None:
-        every = [run.records for run in [*picture.past, picture.run]] + [picture.run.beside]
-        runs = [records for records in every if records]
-        if not runs:
-            return
-        times = [records[place].seconds for records in runs for place in (0, -1)]
-        errors = [records[-1].error_force for records in runs] + [0.1]
-        if picture.run.reference is not None:
-            times.append(picture.run.reference.seconds)
-        set_range(self.figure.x_range, *decades(times, 1e-6))
-        mark_decades(self.figure.xaxis[0], self.figure.x_range)
-        low, _ = decades(errors, FLOOR)
-        set_range(self.figure.y_range, low, 2.0)
-        mark_decades(self.figure.yaxis[0], self.figure.y_range)
+def _curve(history: History, color: str, width: float, dash: str = "solid") -> Curve:
+    found = history.thinned(MOST_POINTS)
+    return Curve(found["seconds"], found["error_force"], color, width, dash)
 
 
 def _colors(given: dict[int, str], tickets: list[int]) -> dict[int, str]:
@@ -136,7 +76,9 @@ def _colors(given: dict[int, str], tickets: list[int]) -> dict[int, str]:
     return found | dict(zip(new, free, strict=False))
 
 
-def _thinned(records: list[Record]) -> tuple[np.ndarray, np.ndarray]:
-    keep = np.unique(np.linspace(0, len(records) - 1, 200).astype(int))
-    history = columns([records[place] for place in keep])
-    return history["seconds"], history["error_force"]
+VIEW = View(
+    "Error against run time",
+    Plot("Run time of the method (s)", "Friction force error", logarithmic="xy"),
+    applies,
+    draw,
+)

@@ -1,181 +1,115 @@
-"""Force against displacement at the loaded end."""
+"""Force against displacement at the loaded end: what is inside the loop is dissipated."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from bokeh.models import Range1d
 
-from app.recording import Recording
 from app.views.drawing import (
     BLUE,
     ORANGE,
     SKY,
     VERMILION,
+    Axis,
+    Curve,
+    Drawing,
     Limits,
-    Picture,
+    Marks,
+    Plot,
+    Scene,
+    View,
     decimal_scale,
-    empty,
     held,
-    make_figure,
-    set_range,
+    spanned,
 )
 from app.views.legend import Key
-from app.worker.reports import Frame, Reference
-from app.worker.shown import Axes
+from app.worker.recording import Recording
+from app.worker.shown import Axes, Frame, Reference
 from solver.settings import Settings
 
-Curve = tuple[np.ndarray, np.ndarray]
-
-
-LATIN = Key(BLUE, "line", "LATIN")
+Pair = tuple[np.ndarray, np.ndarray]
+POINT = Marks((), (), VERMILION)
 STILL = 1e-6
 """Displacement that an axis reaches where nothing moves, m."""
 
 
-class Loop:
-    """The hysteresis loop: what is inside it is dissipated."""
+def applies(settings: Settings) -> bool:
+    """Tell whether there is more than one instant to make a loop of."""
+    return int(settings.values()["instants"]) > 1
 
-    name = "Hysteresis loop"
-    watches = ""
-    keys: Sequence[Key] = (LATIN,)
 
-    def __init__(self) -> None:
-        self.figure = make_figure(
-            "End displacement (mm)", "Force (N)", x_range=Range1d(-1, 1), y_range=Range1d(-1, 1)
+def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
+    """Draw the loop of the shown iterate, beside its reference and the run before."""
+    run, begun, axes = scene.run, scene.run.stand, scene.run.stand.loop
+    now = _pair(run, scene.frame)
+    limits = _limits(run, now, kept)
+    (x, across), (y, up) = (
+        _axis(quantity, one) for quantity, one in zip((axes.across, axes.up), limits, strict=True)
+    )
+
+    def scaled(pair: Pair, *style: Any, **more: Any) -> Curve:
+        return Curve(pair[0] / across, pair[1] / up, *style, **more)
+
+    curves, keys = [], [Key(BLUE, "line", "LATIN")]
+    if run.reference is not None:
+        keys.append(Key(ORANGE, "line", "reference"))
+    if scene.before is not None and (ghost := _newest(scene.before, axes)):
+        curves.append(scaled(ghost, SKY, 2))
+        keys.append(Key(SKY, "line", "run before"))
+    if run.reference is not None:
+        curves.append(scaled(_pair(run, run.reference), ORANGE, 4, alpha=0.8))
+    curves.append(scaled(now, BLUE))
+    time = begun.instants[scene.instant]
+    at = [float(np.interp(time, begun.all_instants, one)) for one in now]
+    point = replace(POINT, x=[at[0] / across], y=[at[1] / up])
+    return Drawing(x, y, curves, (point,), keys=keys, kept=limits)
+
+
+def _limits(run: Recording, now: Pair, kept: tuple[Limits, Limits] | None) -> tuple[Limits, Limits]:
+    """Hold the loop that the run should come to, where it is known."""
+    begun, settled = run.stand, None
+    if run.reference is not None:
+        settled = _pair(run, run.reference)
+    elif begun.closed_form_end is not None and begun.load is not None:
+        settled = begun.closed_form_end, begun.load
+    if settled is None:
+        old: Any = kept or (None, None)
+        across, up = (
+            held(o, float(v.min()), float(v.max())) for o, v in zip(old, now, strict=True)
         )
-        self._line = empty("x", "y")
-        self._reference = empty("x", "y")
-        self._ghost = empty("x", "y")
-        self._point = empty("x", "y")
-        self._drawn: tuple[object, ...] = ()
-        self._scales = (1.0, 1.0)
-        self._across: Limits | None = None
-        self._up: Limits | None = None
-        made = self.figure
-        made.line(
-            "x",
-            "y",
-            source=self._ghost,
-            line_color=SKY,
-            line_width=2,
-        )
-        made.line(
-            "x",
-            "y",
-            source=self._reference,
-            line_color=ORANGE,
-            line_width=4,
-            line_alpha=0.8,
-        )
-        made.line("x", "y", source=self._line, line_color=BLUE, line_width=2.5)
-        made.scatter("x", "y", source=self._point, size=11, color=VERMILION)
-
-    def applies(self, settings: Settings) -> bool:
-        """Tell whether there is more than one instant to make a loop of."""
-        return int(settings.values()["instants"]) > 1
-
-    def draw(self, picture: Picture) -> None:
-        """Draw the loop of the shown iterate."""
-        run, frame = picture.run, picture.frame
-        if run.begun is None or frame is None or frame.ticket != run.ticket:
-            return
-        x, y = _curve(run, frame)
-        settled = _settled(run)
-        if settled is None:
-            self._across, self._up = _held(self._across, x), _held(self._up, y)
-        else:
-            axes = run.begun.loop
-            self._across, self._up = (
-                _around(values, unit)
-                for values, (_, unit) in zip(settled, (axes.across, axes.up), strict=True)
-            )
-        known = (run.ticket, run.reference is None, self._across, self._up)
-        if known != self._drawn:
-            self._drawn = known
-            self._draw_base(picture)
-        across, up = self._scales
-        x, y = x / across, y / up
-        self._line.data = {"x": x, "y": y}
-        time = run.begun.instants[picture.instant]
-        all_instants = run.begun.all_instants
-        self._point.data = {
-            "x": [float(np.interp(time, all_instants, x))],
-            "y": [float(np.interp(time, all_instants, y))],
-        }
-
-    def _draw_base(self, picture: Picture) -> None:
-        run, made = picture.run, self.figure
-        assert run.begun is not None
-        assert self._across is not None
-        assert self._up is not None
-        axes = run.begun.loop
-        self._scales = (
-            _label(made.xaxis[0], made.x_range, axes.across, self._across),
-            _label(made.yaxis[0], made.y_range, axes.up, self._up),
-        )
-        reference = _curve(run, run.reference) if run.reference else None
-        ghost = _newest(picture.before, axes) if picture.before else None
-        self._reference.data = self._scaled(reference)
-        self._ghost.data = self._scaled(ghost)
-        self.keys = (
-            LATIN,
-            *((Key(ORANGE, "line", "reference"),) if reference else ()),
-            *((Key(SKY, "line", "run before"),) if ghost else ()),
-        )
-
-    def _scaled(self, curve: Curve | None) -> dict[str, object]:
-        if curve is None:
-            return {"x": [], "y": []}
-        return {"x": curve[0] / self._scales[0], "y": curve[1] / self._scales[1]}
+        return across, up
+    return _around(settled[0], begun.loop.across[1]), _around(settled[1], begun.loop.up[1])
 
 
-def _curve(run: Recording, fields: Frame | Reference) -> Curve:
+def _pair(run: Recording, fields: Frame | Reference) -> Pair:
     """Give displacement and force of an iterate or a reference."""
-    assert run.begun is not None
-    load = run.begun.load if fields.load is None else fields.load
+    load = run.stand.load if fields.load is None else fields.load
     assert load is not None
     return fields.end_displacement, load
 
 
-def _settled(run: Recording) -> Curve | None:
-    """Give the loop that the run should come to, where it is known."""
-    if run.reference is not None:
-        return _curve(run, run.reference)
-    if run.begun is None or run.begun.closed_form_end is None or run.begun.load is None:
-        return None
-    return run.begun.closed_form_end, run.begun.load
-
-
-def _newest(run: Recording, axes: Axes) -> Curve | None:
+def _newest(run: Recording, axes: Axes) -> Pair | None:
     """Give the loop that a run came to, where it is one of the same quantities."""
-    if run.newest is None or run.begun is None or run.begun.loop != axes:
-        return None
-    return _curve(run, run.newest)
+    return None if run.frame is None or run.stand.loop != axes else _pair(run, run.frame)
 
 
-def _of_angle(size: float) -> tuple[float, str]:
-    return (1e-3, "mrad") if size < 0.5 else (1.0, "rad")
-
-
-def _label(axis: Any, scale: Range1d, quantity: tuple[str, str], limits: Limits) -> float:
-    """Put limits and a unit that suits them on an axis; give the factor of the unit."""
+def _axis(quantity: tuple[str, str], limits: Limits) -> tuple[Axis, float]:
+    """Put limits and a unit that suits them on an axis; give the factor of the unit too."""
     title, unit = quantity
     size = max(-limits[0], limits[1])
-    factor, shown = decimal_scale(size, unit) if unit else _of_angle(size)
-    if axis.axis_label != f"{title} ({shown})":
-        axis.axis_label = f"{title} ({shown})"
-    set_range(scale, limits[0] / factor, limits[1] / factor)
-    return factor
-
-
-def _held(old: Limits | None, values: np.ndarray) -> Limits:
-    return held(old, float(values.min()), float(values.max()))
+    angle = (1e-3, "mrad") if size < 0.5 else (1.0, "rad")
+    factor, shown = decimal_scale(size, unit) if unit else angle
+    return spanned(limits[0] / factor, limits[1] / factor, label=f"{title} ({shown})"), factor
 
 
 def _around(values: np.ndarray, unit: str) -> Limits:
     low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
     margin = 0.12 * (high - low) or (STILL if unit == "m" else 1.0)
     return low - margin, high + margin
+
+
+VIEW = View(
+    "Hysteresis loop", Plot("End displacement (mm)", "Force (N)", marks=(POINT,)), applies, draw
+)

@@ -12,8 +12,8 @@ import panel_material_ui as pmui
 
 from app.errand import Errand
 from app.views.report import Report, bullets
-from app.words import number
 from app.worker.studies import StabilityFound, stability_of
+from app.worker.words import number
 from solver.study.stability import Row, Verdict
 from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR
 from solver.study.stability_report import COLOURS, notes, said, summary

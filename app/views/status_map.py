@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-from bokeh.events import Pan, Tap
-from bokeh.models import LinearColorMapper, Range1d, Span
 
 from app.views.drawing import (
     BACKWARD,
@@ -15,11 +13,15 @@ from app.views.drawing import (
     OPEN,
     STICK,
     VERMILION,
-    Picture,
-    empty,
+    Drawing,
+    Image,
+    Plot,
+    Scene,
+    View,
+    across,
     length_of,
-    make_figure,
-    set_range,
+    spanned,
+    upright,
 )
 from app.views.legend import Key
 from solver.settings import Settings
@@ -28,74 +30,52 @@ KEYS = (
     Key(BACKWARD, "square", "slip −"),
     Key(STICK, "square", "stick"),
     Key(FORWARD, "square", "slip +"),
-    Key(VERMILION, "line", "chosen instant"),
 )
-INSTANT = Key(VERMILION, "line", "instant")
+CHOSEN = Key(VERMILION, "line", "chosen instant")
+OPENED = (Key(OPEN, "square", "open"), Key(VERMILION, "line", "instant"))
 
 
-class StatusMap:
-    """The contact status, the cuts, and the chosen instant, which a tap or a drag moves.
+def applies(settings: Settings) -> bool:
+    """Friction is what the page is about."""
+    return True
 
-    Parameters
-    ----------
-    choose
-        Called with the time, s, that was tapped.
-    """
 
-    name = "Stick and slip"
-    watches = ""
-    keys: Sequence[Key] = KEYS
-
-    def __init__(self, choose: Callable[[float], None]) -> None:
-        self.figure = make_figure(
-            "Position x (m)", "Time t (s)", x_range=Range1d(0, 1), y_range=Range1d(0, 1)
-        )
-        self._image = empty("image", "x", "y", "dw", "dh")
-        self._cuts = empty("x")
-        self._drawn: tuple[object, ...] = ()
-        made = self.figure
-        made.grid.visible = False
-        mapper = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD, OPEN], low=0, high=3)
-        made.image("image", x="x", y="y", dw="dw", dh="dh", source=self._image, color_mapper=mapper)
-        made.vspan("x", source=self._cuts, line_color=GREY, line_width=1)
-        self._instant = Span(location=0, dimension="width", line_color=VERMILION, line_width=3)
-        made.add_layout(self._instant)
-        made.on_event(Tap, lambda event: choose(event.y))
-        made.on_event(Pan, lambda event: choose(event.y))
-
-    def applies(self, settings: Settings) -> bool:
-        """Friction is what the page is about."""
-        return True
-
-    def draw(self, picture: Picture) -> None:
-        """Draw the map of the shown iterate."""
-        run, frame = picture.run, picture.frame
-        if run.begun is None or frame is None or frame.ticket != run.ticket:
-            return
-        begun = run.begun
-        if self._drawn != (run.ticket, begun.interface):
-            self._drawn = (run.ticket, begun.interface)
-            self._cuts.data = {"x": begun.cuts}
-            can_open = begun.coefficient is not None
-            self.keys = (*KEYS[:3], Key(OPEN, "square", "open"), INSTANT) if can_open else KEYS
-        half_x = 0.5 * _step(begun.positions)
-        half_t = 0.5 * _step(begun.instants)
-        first_x, last_x = float(begun.positions[0]), float(begun.positions[-1])
-        first_t, last_t = float(begun.instants[0]), float(begun.instants[-1])
-        set_range(self.figure.x_range, 0.0, length_of(run.settings))
-        set_range(self.figure.y_range, first_t - half_t, last_t + half_t)
-        image = np.ascontiguousarray((frame.status + 1).astype(np.uint8).T)
-        self._image.data = {
-            "image": [image],
-            "x": [first_x - half_x],
-            "y": [first_t - half_t],
-            "dw": [last_x - first_x + 2 * half_x],
-            "dh": [last_t - first_t + 2 * half_t],
-        }
-        time = float(begun.instants[picture.instant])
-        if self._instant.location != time:
-            self._instant.location = time
+def draw(scene: Scene, kept: Any) -> Drawing:
+    """Draw the contact status, the cuts, and the chosen instant."""
+    begun, places, instants = scene.run.stand, scene.run.stand.positions, scene.run.stand.instants
+    half_x, half_t = 0.5 * _step(places), 0.5 * _step(instants)
+    first_x, last_x = float(places[0]), float(places[-1])
+    first_t, last_t = float(instants[0]), float(instants[-1])
+    x = spanned(0.0, length_of(scene.run.settings))
+    y = spanned(first_t - half_t, last_t + half_t)
+    image = Image(
+        np.ascontiguousarray((scene.frame.status + 1).astype(np.uint8).T),
+        left=first_x - half_x,
+        low=first_t - half_t,
+        width=last_x - first_x + 2 * half_x,
+        height=last_t - first_t + 2 * half_t,
+    )
+    curves = [
+        upright(begun.cuts, y, color=GREY, width=1),
+        across([float(instants[scene.instant])], x, color=VERMILION, width=3),
+    ]
+    can_open = begun.coefficient is not None
+    keys = (*KEYS, *OPENED) if can_open else (*KEYS, CHOSEN)
+    return Drawing(x, y, curves, image=image, keys=keys)
 
 
 def _step(axis: np.ndarray) -> float:
     return float(axis[-1] - axis[0]) / (len(axis) - 1) if len(axis) > 1 else 1.0
+
+
+VIEW = View(
+    "Stick and slip",
+    Plot(
+        "Position x (m)",
+        "Time t (s)",
+        palette=(BACKWARD, STICK, FORWARD, OPEN),
+        chooses="instant",
+    ),
+    applies,
+    draw,
+)

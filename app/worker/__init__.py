@@ -1,19 +1,18 @@
-"""What the server and a page's worker process say to each other: plain, picklable data.
+"""A page's worker process: the run, those before it, and the pictures made of them.
 
-A run has a ticket. Orders about another ticket than the one at work are ignored, and so are
-reports about a ticket that is no longer wanted: nothing depends on who is first.
+What it and the server say to each other is plain, picklable data:
 
-    server -> worker   Run, Pace, Step, Seek, Watch
-    worker -> server   per run: Taken, Begun, Frame, Begun, Reference | Unrivalled, Progress*,
-                       Frame*, then End | Refused; Waiting whenever there is nothing to do
-    link -> session    all of these, and Died when the process is gone
+    server -> worker   Run, then Pace, Step, Seek about the run with their ticket; Watch and Ready
+                       about the page
+    worker -> server   a Picture for every Ready, as soon as there is something new; one at once
+                       when a run is refused or breaks
+    link -> session    these, and Died when the process is gone
 
-Only the second Begun has the closed form, which must not hold up the first picture. Begun,
-Reference and Frame speak of one interface with friction, the one that is looked at; when another
-is chosen all three are sent again. Its forces are per length, N/m, where the bound is known, and
-tractions, Pa, where it depends on the pressure.
-Every record of a run is in exactly one Progress, and so is every record of the full stage that is
-iterated beside a run on separated bases; frames are only the newest.
+Orders about another ticket than that of the run at work are ignored. Pictures carry only what
+changed since the last, so each has to reach the browser, whatever its ticket; what a picture says
+of buttons and sliders (`Facts`) counts for the run with its ticket alone. After `Ready(afresh)`,
+and whenever the views that are seen change, a picture carries all of the page.
 
-With the full linear stage, frames have no `bases`, and Progress neither `sizes` nor `beside`.
+The first picture of a run is of its first iterate, before the reference and the closed form are
+found; a run that follows a hand is shown when it has ended, or after `IN_A_HURRY`.
 """

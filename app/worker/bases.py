@@ -45,13 +45,12 @@ def show_bases(
     )
 
 
-def sizes(records: list[Record]) -> Counts | None:
-    """Give the numbers of modes in these records, shape (n_records, n_shown); None without any."""
-    if not records or not records[0].reduction:
+def sizes(entry: Record) -> Counts | None:
+    """Give the numbers of modes in a record, shape (n_shown,); None without any."""
+    if not entry.reduction:
         return None
-    shown = thinned(len(records[0].reduction), MOST_SIZES)
-    table = [[entry.reduction[place].modes for place in shown] for entry in records]
-    return np.array(table, dtype=np.int16)
+    shown = thinned(len(entry.reduction), MOST_SIZES)
+    return np.array([entry.reduction[place].modes for place in shown], dtype=np.int16)
 
 
 def _modes(

@@ -5,26 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from app.worker.shown import STRESSES
-
-
-@dataclass(frozen=True)
-class Look:
-    """Where one looks.
-
-    Attributes
-    ----------
-    interface
-        Name of an interface with friction; the first one if there is none of this name.
-    phase
-        The chosen instant, as a share of the interval.
-    stress
-        One of `STRESSES`.
-    """
-
-    interface: str = ""
-    phase: float = 0.75
-    stress: str = STRESSES[0]
+from app.worker.shown import Look
 
 
 @dataclass(frozen=True)
@@ -35,28 +16,29 @@ class Run:
     ----------
     scene, values
         The catalogue's name and the settings' plain values.
-    pace
-        Iterations per second, None for as fast as possible, or 0 to wait. The first iteration is
-        done in any case.
+    label, notice
+        What is new in it, for the legend of runs, and what the status line has to say of it.
+    pace, is_held
+        As in Pace.
     pause_after
         Iterations after which the run waits for Pace or Step; None never waits.
-    watch
-        Names of what frames carry beyond the fields: "spectra", "modes", "mesh", "axial".
-    substructure, look
-        As in Watch.
     warm
         Whether the run may start from the last iterate of the run before, where that is better.
+    follows_hand
+        Whether a slider moves: then the run hurries to its end before it is shown, and nothing is
+        compared with it afterwards.
     """
 
     ticket: int
     scene: str
     values: dict[str, Any]
+    label: str = ""
+    notice: str = ""
     pace: float | None = None
     pause_after: int | None = None
-    watch: frozenset[str] = frozenset()
-    substructure: int | None = None
-    look: Look = Look()
+    is_held: bool = False
     warm: bool = False
+    follows_hand: bool = False
 
 
 @dataclass(frozen=True)
@@ -64,10 +46,16 @@ class Pace:
     """Go on at this many iterations per second, None for as fast as possible, or 0 to wait.
 
     A `pause_after` has no effect any more, whether reached or not.
+
+    Attributes
+    ----------
+    is_held
+        Whether it waits for a study that is timed, and not for its user.
     """
 
     ticket: int
     pace: float | None
+    is_held: bool = False
 
 
 @dataclass(frozen=True)
@@ -79,32 +67,39 @@ class Step:
 
 @dataclass(frozen=True)
 class Seek:
-    """Send the frame of an iteration that was done already; the run itself is not moved.
+    """Show an iteration that was done already, or follow the run; the run itself is not moved.
 
-    A number out of range counts as the nearest one; a newer Seek takes the place of an older.
+    Attributes
+    ----------
+    iteration
+        A number out of range counts as the nearest one; None follows.
     """
 
     ticket: int
-    iteration: int
+    iteration: int | None
 
 
 @dataclass(frozen=True)
 class Watch:
-    """Change what frames carry, and send one at once.
+    """Look elsewhere, whatever is at work."""
+
+    look: Look
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The page has painted what it has, and waits for the next picture.
 
     Attributes
     ----------
-    substructure
-        The one whose modes are carried, counted from 0; None is the last one, and so is a number
-        that is too large.
-    look
-        Where one looks; the chosen instant and stress matter for "mesh" and "axial" alone.
+    afresh
+        Whether all of it is to be sent, and not only what changed.
+    rest
+        Seconds that it wants to be left alone.
     """
 
-    ticket: int
-    watch: frozenset[str]
-    substructure: int | None = None
-    look: Look = Look()
+    afresh: bool = False
+    rest: float = 0.0
 
 
-Order = Run | Pace | Step | Seek | Watch
+Order = Run | Pace | Step | Seek | Watch | Ready

@@ -13,7 +13,6 @@ import os
 import signal
 import threading
 import time
-import traceback
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -23,10 +22,7 @@ from typing import Any
 import numpy as np
 
 from app.worker.orders import Order, Run
-from app.worker.reports import Refused, Taken, Waiting
-from app.worker.rivals import References
-from app.worker.run import WorkerRun
-from solver.definitions import SettingError
+from app.worker.studio import Studio
 
 NICENESS = 5
 """Below the server, so that pages stay alive, but not by much: the first picture of a run waits for
@@ -51,7 +47,24 @@ def main(connection: Connection) -> None:
     # A run that diverges is told by its status; the lines on stderr would help nobody.
     np.seterr(over="ignore", invalid="ignore", divide="ignore")
     with contextlib.suppress(OSError):
-        Worker(Inbox(connection), connection.send).serve()
+        serve(Inbox(connection), connection.send)
+
+
+def serve(inbox: Inbox, send: Callable[[Any], None]) -> None:
+    """Obey orders and work in between, without end."""
+    studio = Studio(inbox.shielded(send), inbox.urgent)
+    while True:
+        order = inbox.take(studio.rest())
+        if order is None and studio.paint():
+            continue
+        with contextlib.suppress(InterruptedForNextError):
+            if order is None:
+                inbox.attempt(studio.go_on)
+            elif isinstance(order, Run):
+                inbox.attempt(partial(studio.obey, order))
+            else:
+                # What is short is done whole: a page would wait for ever for a lost answer.
+                studio.obey(order)
 
 
 class Inbox:
@@ -110,86 +123,29 @@ class Inbox:
         return act
 
     def _read(self) -> None:
+        urgent_since = 0.0
         with contextlib.suppress(EOFError, OSError):
             while True:
-                order = self._connection.recv()
-                with self._changed:
-                    self._orders.append(order)
-                    self._changed.notify()
-                if isinstance(order, Run):
-                    self._hasten()
+                if self._connection.poll(POLITE if self.urgent() else None):
+                    order = self._connection.recv()
+                    with self._changed:
+                        self._orders.append(order)
+                        self._changed.notify()
+                now = time.monotonic()
+                urgent_since = (urgent_since or now) if self.urgent() else 0.0
+                if urgent_since:
+                    self._hasten(now - urgent_since)
         os._exit(0)
 
-    def _hasten(self) -> None:
+    def _hasten(self, waited: float) -> None:
         """Interrupt what is at work, or give up the process where it cannot be."""
-        began = time.monotonic()
-        while self.urgent() and not self._connection.poll(POLITE):
-            if self._interruptible:
-                _thread.interrupt_main()
-            if time.monotonic() - began > STUCK:
-                faulthandler.dump_traceback()
-                os._exit(1)
+        if waited > POLITE and self._interruptible:
+            _thread.interrupt_main()
+        if waited > STUCK:
+            faulthandler.dump_traceback()
+            os._exit(1)
 
     def _interrupt(self, number: int, frame: Any) -> None:
         if self._interruptible and self.urgent():
             self._interruptible = False
             raise InterruptedForNextError
-
-
-class Worker:
-    """The run at work, if any, and the loop that serves it."""
-
-    def __init__(self, inbox: Inbox, send: Callable[[Any], None]) -> None:
-        self._inbox = inbox
-        self._send = inbox.shielded(send)
-        self._references = References()
-        self._run: WorkerRun | None = None
-        self._told_waiting = True
-
-    def serve(self) -> None:
-        """Obey orders and work in between, without end."""
-        while True:
-            rest = self._run.rest() if self._run else None
-            if rest is None and self._run and not self._told_waiting:
-                self._send(Waiting(self._run.ticket))
-                self._told_waiting = True
-            order = self._inbox.take(rest)
-            if order is not None:
-                self._told_waiting = False
-                self._obey(order)
-            elif self._run is not None:
-                self._attempt(self._run.ticket, self._run.advance)
-
-    def _obey(self, order: Order) -> None:
-        run = self._run
-        if isinstance(order, Run):
-            self._send(Taken(order.ticket))
-            self._run = None
-            self._attempt(order.ticket, partial(self._begin, order, run))
-        elif run is not None and run.ticket == order.ticket:
-            self._attempt(run.ticket, partial(run.obey, order))
-
-    def _begin(self, order: Run, before: WorkerRun | None) -> None:
-        previous = before.last if order.warm and before is not None else None
-        self._run = WorkerRun(order, self._send, self._inbox.urgent, self._references, previous)
-
-    def _attempt(self, ticket: int, action: Callable[[], None]) -> None:
-        """Do something of a run; if it breaks, the run is over and the process lives on."""
-        try:
-            self._inbox.attempt(action)
-        except InterruptedForNextError:
-            return
-        except Exception as problem:
-            self._run = None
-            told = isinstance(problem, SettingError | FloatingPointError)
-            trace = "" if told else traceback.format_exc()
-            self._send(Refused(ticket, _sentence(problem), trace))
-
-
-def _sentence(problem: Exception) -> str:
-    if isinstance(problem, SettingError | FloatingPointError):
-        return str(problem)
-    return (
-        f"The run broke ({type(problem).__name__}: {problem}). Change a setting, or lower the "
-        "numbers of elements and instants."
-    )

@@ -3,47 +3,57 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import numpy as np
 
-from app.worker.beside import Beside, beside
-from app.worker.orders import Look, Pace, Run, Seek, Step, Watch
-from app.worker.outbox import Outbox
-from app.worker.reports import Begun, End, Frame, Report, Unrivalled
+from app.worker.bases import sizes
+from app.worker.beside import beside
+from app.worker.orders import Pace, Run, Seek, Step
+from app.worker.recording import Recording
 from app.worker.rivals import References
 from app.worker.sampler import Sampler
-from app.worker.seeking import Seeking
+from app.worker.seeking import Found, Seeking
+from app.worker.shown import Frame, Look
 from app.worker.tempo import Tempo
 from solver.discrete import Problem, discretise
 from solver.files import scene_settings
-from solver.latin import Checkpoint, Ending, Iterate, Status, StopRules, Verdict, record
+from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.warm import Start, choose_start, iterations_from
 from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted
 
+IN_A_HURRY = 0.1
+"""Seconds that a run which follows a hand has to come to its end before it is shown."""
+
 
 class WorkerRun:
     """One run, which does a small piece of work at each `advance` and obeys orders in between.
 
-    The pieces are: the first iteration and its frame; the reference; an iteration that is sought;
-    a frame that is due; the next iteration.
+    The pieces are: the first iteration; the reference; an iteration that is sought; the next one.
 
     Parameters
     ----------
     order
         What to run.
-    send
-        Takes reports.
+    look
+        Where one looks.
     urgent
         Tells whether an order waits that ends this run.
     references
         Shared by the runs of a process.
     previous
         The last iterate of the run before, if this one may start from it.
+
+    Attributes
+    ----------
+    recording
+        What is kept of it.
+    has_news
+        Whether something has changed since this was last set to False.
 
     Raises
     ------
@@ -54,22 +64,28 @@ class WorkerRun:
     def __init__(
         self,
         order: Run,
-        send: Callable[[Report], None],
+        look: Look,
         urgent: Callable[[], bool],
         references: References,
         previous: Iterate | None = None,
     ) -> None:
-        self.ticket = order.ticket
-        self._send = send
+        self.ticket, self.follows_hand = order.ticket, order.follows_hand
         self._urgent = urgent
         self._references = references
         self._settings = scene_settings(order.scene).checked(order.values)
         self._problem = discretise(self._settings)
-        self._look = order.look
-        self._sampler = Sampler(self._problem, self._settings, self._look)
+        self._sampler = Sampler(self._problem, self._settings, look)
+        self.recording = Recording(
+            order.ticket,
+            self._settings,
+            order.label,
+            order.notice,
+            self._sampler.stand(),
+            is_warm=order.warm,
+        )
+        self.has_news = False
         self._rules = StopRules(self._settings)
-        self._status: Status | None = None
-        self._compared = False
+        self._is_compared = False
         self._reference: incremental.Reference | None = None
         self._distance: Distance | None = None
         self._before: Checkpoint | None = None
@@ -77,119 +93,124 @@ class WorkerRun:
         self._previous = previous if fits(previous, self._problem) else None
         self._newest: Iterate | None = None
         self._seeking = Seeking(self._iterations)
-        self._outbox = Outbox(order.ticket, send)
+        self._sought: Found | None = None
         self._tempo = Tempo(order.pace, order.pause_after)
-        self._watch = order.watch
-        self._substructure = order.substructure
-        self._beside: Beside | None = None
+        self.is_held = order.is_held
+        self._hurries_until = time.monotonic() + IN_A_HURRY if order.follows_hand else 0.0
 
     @property
     def last(self) -> Iterate | None:
         """The last iterate, or before there is any, the one that this run may start from."""
         return self._newest or self._previous
 
+    @property
+    def is_presentable(self) -> bool:
+        """Whether there is an iterate to show, and the run does not hurry to a better one."""
+        hurries = self.recording.status is None and time.monotonic() < self._hurries_until
+        return self._newest is not None and not hurries
+
+    @property
+    def is_running(self) -> bool:
+        """Whether iterations go on by themselves."""
+        return self.rest() is not None
+
+    @property
+    def sought(self) -> int | None:
+        """The iteration that is shown in place of the newest."""
+        return self._sought[0].number if self._sought else None
+
     def rest(self) -> float | None:
         """Give the seconds until `advance` has something to do; None waits for an order."""
-        if self._newest is None or not self._compared or self._seeking.wanted is not None:
+        if self._newest is None or not self._is_compared or self._seeking.wanted is not None:
             return 0.0
-        rests = (self._rest_of_iterations(self._newest.number), self._outbox.rest())
-        return min((rest for rest in rests if rest is not None), default=None)
+        return self._rest_of_iterations(self._newest.number)
 
     def advance(self) -> None:
         """Do the next piece of work, if any is due."""
         if self._newest is None:
             self._open()
-        elif not self._compared:
+        elif not self.is_presentable:
+            self._iterate(self._newest)
+        elif not self._is_compared:
             self._compare(self._newest)
         elif self._seeking.wanted is not None:
             self._seek_on()
-        elif self._outbox.rest() == 0.0:
-            self._publish()
-        elif self._is_due():
+        elif self._rest_of_iterations(self._newest.number) == 0.0:
             self._iterate(self._newest)
 
-    def obey(self, order: Pace | Step | Seek | Watch) -> None:
+    def obey(self, order: Pace | Step | Seek) -> None:
         """Follow an order."""
+        self.has_news = True
         match order:
             case Pace():
                 self._tempo.change(order.pace)
+                self.is_held = order.is_held
             case Step():
+                self._follow()
                 self._tempo.step()
-            case Seek():
-                self._seek(order.iteration)
-            case Watch():
-                self._watch, self._substructure = order.watch, order.substructure
-                self._look_at(order.look)
+            case Seek(iteration=None):
+                self._follow()
+            case Seek(iteration=int(wanted)):
+                self._seek(wanted)
+
+    def look_at(self, look: Look) -> None:
+        """Look elsewhere: another interface has other fields to stand on."""
+        self.has_news = True
+        if look.interface in ("", self._sampler.interface):
+            return
+        self._sampler = Sampler(self._problem, self._settings, look)
+        stand = self._sampler.stand()
+        self.recording.stand = self._sampler.completed(stand) if self._is_compared else stand
+        self._show_reference()
+
+    def frame(self, watch: frozenset[str], look: Look) -> Frame:
+        """Show the iterate that is looked at."""
+        assert self._newest is not None
+        iterate, before = self._sought or (self._newest, self._before)
+        return self._sampler.frame(iterate, watch, look, before)
 
     def _open(self) -> None:
-        """Do the first iteration and show it: the picture comes first."""
-        newest = self._first()
-        if not math.isfinite(latin_indicator(newest)):
-            raise FloatingPointError(
-                "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
-                "nearer to 1."
-            )
-        self._newest = newest
-        self._send(self._begun())
-        self._send(self._frame(newest, self._before))
-
-    def _first(self) -> Iterate:
-        """Give the first iterate, from the start that is better."""
+        """Do the first iteration, from the start that is better: its picture comes first."""
         problem, settings = self._problem, self._settings
         if self._previous is None:
             self._generator = self._iterations(None)
         else:
             self._start, self._generator = choose_start(problem, settings, self._previous)
             self._previous = None
-        self._beside = beside(problem, settings, self._start)
-        return next(self._generator)
+        self.recording.choice = self._start.choice if self._start else None
+        self._full_stage = beside(problem, settings, self._start)
+        newest = next(self._generator)
+        if not math.isfinite(latin_indicator(newest)):
+            raise FloatingPointError(
+                "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
+                "nearer to 1."
+            )
+        self._newest = newest
+        self.has_news = True
+        if self.follows_hand:
+            self._account(newest, newest)
 
     def _iterations(self, checkpoint: Checkpoint | None) -> Iterator[Iterate]:
         return iterations_from(self._problem, self._settings, self._start, checkpoint)
 
-    def _begun(self) -> Begun:
-        choice = self._start.choice if self._start else None
-        return replace(self._sampler.begun(self.ticket), start=choice)
-
     def _compare(self, newest: Iterate) -> None:
+        """Find the reference and the closed form, which take longer than the first iteration."""
         try:
-            found = self._references.of(self._settings, self._problem, self._urgent)
+            self._reference = self._references.of(self._settings, self._problem, self._urgent)
         except Interrupted:
             return
-        # The closed form takes longer than the first iteration, so it comes after the picture.
-        self._send(self._sampler.completed(self._begun()))
-        self._refer(found)
-        self._account(newest, newest)
-        self._publish()
-
-    def _refer(self, found: incremental.Reference | None) -> None:
-        self._compared = True
-        self._reference = found
-        if found is not None:
-            self._distance = distance_to(found, self._problem)
+        self._is_compared = True
+        self.recording.stand = self._sampler.completed(self.recording.stand)
+        if self._reference is not None:
+            self._distance = distance_to(self._reference, self._problem)
         self._show_reference()
+        if not self.recording.iteration:
+            self._account(newest, newest)
+        self.has_news = True
 
     def _show_reference(self) -> None:
         found = self._reference
-        self._send(
-            Unrivalled(self.ticket)
-            if found is None
-            else self._sampler.reference(self.ticket, found)
-        )
-
-    def _look_at(self, look: Look) -> None:
-        """Look elsewhere: show what another interface stands on before its fields."""
-        self._look = look
-        if self._newest is None:
-            self._sampler = Sampler(self._problem, self._settings, look)
-            return
-        if look.interface not in ("", self._sampler.interface):
-            self._sampler = Sampler(self._problem, self._settings, look)
-            begun = self._begun()
-            self._send(self._sampler.completed(begun) if self._compared else begun)
-            if self._compared:
-                self._show_reference()
-        self._send(self._frame(self._newest, self._before))
+        self.recording.reference = self._sampler.reference(found) if found is not None else None
 
     def _iterate(self, newest: Iterate) -> None:
         self._tempo.count()
@@ -198,28 +219,26 @@ class WorkerRun:
     def _account(self, newest: Iterate, iterate: Iterate) -> None:
         """Record and judge an iterate; one that is not finite does not become the newest."""
         verdict = self._rules.judge(iterate)
-        self._status = verdict.status
-        if self._status is None or self._status.ending is not Ending.DIVERGED:
-            newest = self._take(newest, iterate, verdict)
-            self._seeking.keep(iterate.checkpoint)
-            if verdict.finished is not None:
-                verdict, finished = self._rules.close(verdict.finished), verdict.finished
-                self._status = verdict.status
-                newest = self._take(newest, finished, verdict)
-        if self._rest_of_iterations(newest.number) is None:
-            self._publish()
-        if self._status is not None:
-            self._send(End(self.ticket, self._status, newest.number))
+        self.recording.status = status = verdict.status
+        self.has_news = True
+        if status is not None and status.ending is Ending.DIVERGED:
+            return
+        newest = self._take(newest, iterate, verdict)
+        self._seeking.keep(iterate.checkpoint)
+        if verdict.finished is not None:
+            verdict, finished = self._rules.close(verdict.finished), verdict.finished
+            self.recording.status = verdict.status
+            self._take(newest, finished, verdict)
 
     def _take(self, newest: Iterate, iterate: Iterate, verdict: Verdict) -> Iterate:
         """Record an iterate, which becomes the newest."""
         if iterate is not newest:
             self._before = newest.checkpoint
-            self._outbox.owe_frame()
         self._newest = iterate
-        beside = self._beside
-        more = beside.follow(iterate.number, self._distance) if beside else ()
-        self._outbox.add(record(iterate, verdict, self._distance), more)
+        full = self._full_stage
+        more = full.follow(iterate.number, self._distance) if full else ()
+        entry = record(iterate, verdict, self._distance)
+        self.recording.add(entry, sizes(entry), more)
         return iterate
 
     def _seek(self, iteration: int) -> None:
@@ -229,36 +248,21 @@ class WorkerRun:
         wanted = min(max(iteration, 1), newest.number)
         if wanted == newest.number:
             self._seeking.stop()
-            self._send(self._frame(newest, self._before, sought=True))
+            self._sought = newest, self._before
         else:
             self._seeking.begin(wanted)
 
     def _seek_on(self) -> None:
         found = self._seeking.go_on()
         if found is not None:
-            self._send(self._frame(*found, sought=True))
+            self._sought, self.has_news = found, True
 
-    def _publish(self) -> None:
-        newest = self._newest
-        if newest is not None:
-            self._outbox.publish(lambda: self._frame(newest, self._before))
-
-    def _frame(self, iterate: Iterate, before: Checkpoint | None, *, sought: bool = False) -> Frame:
-        return self._sampler.frame(
-            self.ticket,
-            iterate,
-            self._watch,
-            self._look,
-            sought=sought,
-            before=before,
-            substructure=self._substructure,
-        )
-
-    def _is_due(self) -> bool:
-        return self._newest is not None and self._rest_of_iterations(self._newest.number) == 0.0
+    def _follow(self) -> None:
+        self._seeking.stop()
+        self._sought = None
 
     def _rest_of_iterations(self, done: int) -> float | None:
-        return None if self._status is not None else self._tempo.rest(done)
+        return None if self.recording.status is not None else self._tempo.rest(done)
 
 
 def fits(previous: Iterate | None, problem: Problem) -> bool:

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from app.worker.bases import show_bases
 from app.worker.meshes import Thinned
-from app.worker.orders import Look
-from app.worker.reports import Begun, Frame, Reference
 from app.worker.shown import (
     LONGEST_CURVE,
     MOST_SPECTRA,
@@ -19,7 +17,11 @@ from app.worker.shown import (
     Axes,
     Bytes,
     Floats,
+    Frame,
+    Look,
     MeshField,
+    Reference,
+    Stand,
     instant_of,
     thinned,
 )
@@ -77,7 +79,7 @@ class Sampler:
         elif isinstance(settings, StrandSettings):
             self._wires = ShownWires(problem, settings)
 
-    def begun(self, ticket: int) -> Begun:
+    def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""
         problem, law, loop = self._problem, self._law, self._loop
         bound = coefficient = None
@@ -87,8 +89,7 @@ class Sampler:
             whole = law.by_point(law.bound)[self._rows]
             bound = _floats(whole * problem.scales.force / self._lengths)
         load = loop.force if isinstance(loop.force, np.ndarray) else None
-        return Begun(
-            ticket=ticket,
+        return Stand(
             interface=self.interface,
             interfaces=tuple(problem.rubbing),
             positions=_floats(law.positions[self._rows]),
@@ -106,28 +107,27 @@ class Sampler:
             is_idle=nothing_acts(problem),
         )
 
-    def completed(self, begun: Begun) -> Begun:
+    def completed(self, stand: Stand) -> Stand:
         """Add the closed form, where there is one."""
         settings = self._settings
         if isinstance(settings, BarSettings):
             closed = closed_form(bar(settings))
             if closed is not None:
                 return replace(
-                    begun,
+                    stand,
                     closed_form=self._density(closed.friction_force),
                     closed_form_end=_floats(closed.end_displacement[self._curve]),
                 )
         if isinstance(settings, StrandSettings) and self._wires is not None:
             exact = broken_wire(strand(settings))
             if exact is not None:
-                return replace(begun, wires=self._wires.completed(exact, self._columns))
-        return begun
+                return replace(stand, wires=self._wires.completed(exact, self._columns))
+        return stand
 
-    def reference(self, ticket: int, found: incremental.Reference) -> Reference:
+    def reference(self, found: incremental.Reference) -> Reference:
         """Show a reference."""
         fields = found.contact(self.interface)
         return Reference(
-            ticket=ticket,
             interface=self.interface,
             friction=self._density(fields.tangential_force),
             pressure=None if fields.normal_force is None else self._density(fields.normal_force),
@@ -140,27 +140,21 @@ class Sampler:
 
     def frame(
         self,
-        ticket: int,
         iterate: Iterate,
         watch: frozenset[str],
         look: Look,
-        *,
-        sought: bool = False,
         before: Checkpoint | None = None,
-        substructure: int | None = None,
     ) -> Frame:
         """Show an iterate, with what is watched beyond its fields.
 
-        The iterate `before` tells what became of its modes; `substructure` is as in Watch.
+        The iterate `before` tells what became of its modes.
         """
         *normal, tangential = self._problem.contact_places[self.interface]
         force = iterate.contact_force
         instant = instant_of(look.phase, len(self._columns))
         axial = self._wires if "axial" in watch else None
         return Frame(
-            ticket=ticket,
             iteration=iterate.number,
-            sought=sought,
             interface=self.interface,
             friction=self._density(force[tangential]),
             pressure=self._density(force[normal[0]]) if normal else None,
@@ -168,7 +162,7 @@ class Sampler:
             end_displacement=_floats(self._loop.displacement(iterate.displacement)[self._curve]),
             load=self._load(iterate),
             spectra=_table(friction_spectra(iterate)) if "spectra" in watch else None,
-            bases=show_bases(iterate, before, watch, substructure),
+            bases=show_bases(iterate, before, watch, look.substructure),
             mesh=self._mesh_field(iterate, look, instant) if "mesh" in watch else None,
             axial=axial.forces(iterate, instant, self._columns[instant]) if axial else None,
         )

@@ -95,7 +95,7 @@ class ShownModes:
         Shape (n_modes, n_points); the largest entry of each is 1 in size, and the last lobe that
         is at least half as large is positive.
     time_functions
-        Shape (n_modes, n_instants), m, at the instants of Begun; mode times function is the field.
+        Shape (n_modes, n_instants), m, at the stand's instants; mode times function is the field.
     born
         Shape (n_modes,): whether more than half of the mode, in its energy, lies outside the modes
         of the iteration before.
@@ -158,7 +158,7 @@ class MeshField:
     Attributes
     ----------
     instant
-        Index of the instant among those of Begun.
+        Index of the instant among those of the stand.
     component
         One of `STRESSES`.
     displacement
@@ -182,6 +182,142 @@ class AxialForces:
 
     instant: int
     force: Floats
+
+
+@dataclass(frozen=True)
+class Look:
+    """Where one looks.
+
+    Attributes
+    ----------
+    interface
+        Name of an interface with friction; the first one if there is none of this name.
+    phase
+        The chosen instant, as a share of the interval.
+    stress
+        One of `STRESSES`.
+    substructure
+        The one whose modes are looked at, counted from 0; None is the last one, and so is a number
+        that is too large.
+    magnification
+        Factor on the displacement of bodies; None leaves it to the view.
+    views
+        Names of the views that are seen.
+    complaint
+        What the status line says about the address, or empty.
+    """
+
+    interface: str = ""
+    phase: float = 0.75
+    stress: str = STRESSES[0]
+    substructure: int | None = None
+    magnification: float | None = None
+    views: tuple[str, ...] = ()
+    complaint: str = ""
+
+
+@dataclass(frozen=True)
+class Stand:
+    """What the fields of a run stand on, thinned to `LARGEST_SIDE`, in SI.
+
+    Attributes
+    ----------
+    interface, interfaces
+        The one that is looked at, and all with friction.
+    positions, instants
+        Of the field's points and columns, m and s.
+    cuts
+        Positions where substructures meet, m.
+    bound
+        Friction bound mu p at the positions, N/m; None where it depends on the pressure.
+    coefficient
+        Coefficient of friction at the positions there; else None.
+    loop
+        What `load` and `end_displacement` are.
+    load
+        Force at the loaded end, shape (n_curve,), N; None where frames tell it.
+    all_instants
+        The instants of `load` and of end displacements, thinned to `LONGEST_CURVE`, s.
+    closed_form, closed_form_end
+        Friction force, N/m, and end displacement, m, of the closed form; None where there is
+        none, or as long as it is not computed.
+    mesh
+        Of plane bodies.
+    wires
+        Of a strand.
+    is_idle
+        Whether nothing acts on the structure, so that nothing moves.
+    """
+
+    interface: str
+    interfaces: tuple[str, ...]
+    positions: Floats
+    instants: Floats
+    cuts: Floats
+    bound: Floats | None
+    coefficient: Floats | None
+    loop: Axes
+    load: Floats | None
+    all_instants: Floats
+    closed_form: Floats | None
+    closed_form_end: Floats | None
+    mesh: Mesh | None = None
+    wires: Wires | None = None
+    is_idle: bool = False
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The reference; its fields are as in Frame."""
+
+    interface: str
+    friction: Floats
+    pressure: Floats | None
+    status: Bytes
+    end_displacement: Floats
+    load: Floats | None
+    residual: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The fields of one iterate, thinned, in SI.
+
+    Attributes
+    ----------
+    interface
+        The one whose fields these are.
+    friction
+        Friction force on the body above, shape (n_positions, n_instants), N/m, or Pa.
+    pressure
+        Same shape, Pa; None where the bound is known.
+    status
+        -1, 0, +1, or `STATUS_OPEN`, same shape.
+    end_displacement
+        Displacement of the loaded end or side, m, or its rotation, shape (n_curve,).
+    load
+        Force that it takes, N, same shape; None where the stand tells it.
+    spectra
+        Singular values, shape (n_substructures, n_values), NaN where there is none, of the
+        substructures `thinned(number, MOST_SPECTRA)`; or None.
+    bases
+        The separated bases, if there are any.
+    mesh, axial
+        What was chosen of them, where it is watched and there is any.
+    """
+
+    iteration: int
+    interface: str
+    friction: Floats
+    pressure: Floats | None
+    status: Bytes
+    end_displacement: Floats
+    load: Floats | None
+    spectra: Floats | None
+    bases: Bases | None
+    mesh: MeshField | None = None
+    axial: AxialForces | None = None
 
 
 def instant_of(phase: float, count: int) -> int:

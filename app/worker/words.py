@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from html import escape
+from typing import Literal
 
-from app.recording import Recording
-from app.worker.shown import has_reference
-from solver.latin import Ending, Record
+from app.worker.recording import Recording
+from app.worker.shown import Frame, has_reference
+from solver.latin import Ending
 
 ENDINGS = {
     Ending.CONVERGED: "✓ converged",
@@ -16,6 +17,11 @@ ENDINGS = {
     Ending.STALLED: "■ stalled",
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
+}
+STATES = {
+    "running": "<b>running</b>, iteration {}",
+    "paused": "<b>paused</b> at iteration {}",
+    "held": "<b>waits</b> for the study that is timed, at iteration {}",
 }
 AT_REST = "■ at rest"
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
@@ -45,47 +51,32 @@ MEANINGS = {
 
 def status_line(
     run: Recording,
-    running: bool,
-    sought: int | None,
-    *,
-    held: bool = False,
+    frame: Frame,
+    state: Literal["running", "paused", "held"],
+    sought: int | None = None,
     complaint: str = "",
 ) -> str:
     """Say what runs, how far it is, and how it ended with what to try (HTML).
 
-    A run that is `held` waits for a study that is timed; a complaint comes before the advice.
+    A run that is held waits for a study that is timed; a complaint comes before the advice.
     """
-    if run.notice and not run.records:
-        return f"<b>{escape(run.notice)}</b>"
     settings, parts = run.settings.values(), run.settings.n_substructures
     scale = (
         "one substructure"
         if parts == 1
-        else (f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}")
+        else f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}"
     )
-    done = run.iteration or (run.newest.iteration if run.newest else 0)
-    idle = run.begun is not None and run.begun.is_idle
+    done = run.iteration or frame.iteration
+    counted = "iteration" if done == 1 else "iterations"
     if run.status is not None:
-        counted = "iteration" if run.iteration == 1 else "iterations"
-        ending = AT_REST if idle else ENDINGS[run.status.ending]
-        state = f"<b>{ending}</b> after {run.iteration} {counted}"
-    elif run.is_broken:
-        state = f"<b>■ stopped</b> at iteration {run.iteration}"
-    elif held:
-        state = f"<b>waits</b> for the study that is timed, at iteration {done}"
-    elif not running:
-        state = f"<b>paused</b> at iteration {done}"
-    elif not done:
-        state = "<b>setting up</b>"
+        ending = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending]
+        line = f"<b>{ending}</b> after {done} {counted} · {scale}"
     else:
-        state = f"<b>running</b>, iteration {done}"
-    line = f"{state} · {scale}"
-    if run.newest is not None and run.newest.bases is not None:
-        bases = run.newest.bases
+        line = f"{STATES[state].format(done)} · {scale}"
+    if (bases := frame.bases) is not None:
         counted = "1 mode" if bases.largest == 1 else f"{bases.largest} modes"
         line += f" · {counted} at most, {bases.stored} stored"
-    if run.records:
-        last = run.records[-1]
+    if (last := run.last) is not None:
         line += f" · η = {number(last.indicator)}"
         if math.isfinite(last.error_force):
             line += f" · friction force error {percent(last.error_force)}"
@@ -93,19 +84,16 @@ def status_line(
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
     more = [f"<b>{escape(complaint)}</b>"] if complaint else []
+    more += [f"<b>{escape(run.notice)}</b>"] if run.notice else []
     more += [start_line(run)] if run.is_warm else []
     if run.status is not None:
-        more.append(NOTHING_ACTS if idle else escape(run.status.advice))
-    elif run.notice:
-        more.append(escape(run.notice))
+        more.append(NOTHING_ACTS if run.stand.is_idle else escape(run.status.advice))
     return f"{line}<br>{' '.join(more)}" if more else line
 
 
 def start_line(run: Recording) -> str:
     """Say from where a run started that could have started from the one before it (HTML)."""
     own = "coarser meshes" if run.settings.values()["start"] == "nested" else "zero"
-    if run.begun is None:
-        return ""
     if run.choice is None:
         return f"Started from {own}: the run before it was not at hand."
     previous, other = number(run.choice.previous), number(run.choice.own)
@@ -115,58 +103,51 @@ def start_line(run: Recording) -> str:
     return f"Started from {own}, since the run before it is not clearly nearer: {figures}."
 
 
-def key_figures(run: Recording, before: Recording | None, shown: Record | None) -> str:
-    """Set the figures of this run beside those of the run before (an HTML table).
+def key_figures(run: Recording, before: Recording | None, iteration: int) -> str:
+    """Set the figures of an iteration of this run beside those of the run before (an HTML table).
 
     Errors are those beside a reference; where there is none, they are left out.
     """
-    heads = HEADS if has_reference(run.settings) else tuple(_without_errors(HEADS))
-    rows = [("this run", run, shown or (run.records[-1] if run.records else None))]
+    rows = [("this run", _cells(run, iteration))]
     if before is not None:
-        rows.append(
-            (
-                f"before ({escape(before.title)})",
-                before,
-                before.records[-1] if before.records else None,
-            )
-        )
+        rows.append((f"before ({escape(before.title)})", _cells(before, before.iteration)))
+    shown = [
+        place
+        for place, text in enumerate(HEADS)
+        if has_reference(run.settings) or text not in ERRORS
+    ]
+    heads = (HEADS[place] for place in shown)
     head = "".join(f'<th title="{escape(MEANINGS.get(text, ""))}">{text}</th>' for text in heads)
     body = "".join(
-        f"<tr><th>{name}</th>{''.join(f'<td>{cell}</td>' for cell in _cells(kept, entry))}</tr>"
-        for name, kept, entry in rows
+        f"<tr><th>{name}</th>{''.join(f'<td>{cells[place]}</td>' for place in shown)}</tr>"
+        for name, cells in rows
     )
     return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _cells(run: Recording, entry: Record | None) -> Sequence[str]:
-    cells = ("–",) * len(HEADS) if entry is None else _figures(run, entry)
-    return cells if has_reference(run.settings) else _without_errors(cells)
-
-
-def _without_errors(cells: Sequence[str]) -> list[str]:
-    return [cell for cell, head in zip(cells, HEADS, strict=True) if head not in ERRORS]
-
-
-def _figures(run: Recording, entry: Record) -> tuple[str, ...]:
+def _cells(run: Recording, iteration: int) -> Sequence[str]:
+    found = run.figures_of(iteration)
+    if found is None:
+        return ("–",) * len(HEADS)
     within = run.first_within(0.01)
     return (
-        str(entry.iteration),
-        number(entry.indicator),
-        number(entry.behaviour),
-        percent(entry.estimated_error),
-        percent(entry.error_displacement),
-        percent(entry.error_force),
-        f"{1e3 * entry.seconds:.1f} ms",
-        str(within.iteration) if within else "–",
+        str(iteration),
+        number(found["indicator"]),
+        number(found["behaviour"]),
+        percent(found["estimated_error"]),
+        percent(found["error_displacement"]),
+        percent(found["error_force"]),
+        f"{1e3 * found['seconds']:.1f} ms",
+        str(within) if within else "–",
     )
 
 
 def per_iteration(run: Recording) -> float:
     """Give the time per iteration, s, without the set-up where more than one is done."""
-    first, last = run.records[0], run.records[-1]
-    if last.iteration == first.iteration:
-        return last.seconds
-    return (last.seconds - first.seconds) / (last.iteration - first.iteration)
+    seconds = run.history.column("seconds")
+    if len(seconds) == 1:
+        return float(seconds[0])
+    return float(seconds[-1] - seconds[0]) / (len(seconds) - 1)
 
 
 def number(value: float) -> str:

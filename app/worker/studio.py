@@ -1,0 +1,178 @@
+"""What a page's worker has: the run at work, those before it, where one looks, and its pictures."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable
+from html import escape
+
+from app.views.drawing import Scene
+from app.worker.easel import Easel, watched
+from app.worker.orders import Order, Ready, Run, Seek, Watch
+from app.worker.recording import Recording
+from app.worker.reports import Facts, Picture
+from app.worker.rivals import References
+from app.worker.run import WorkerRun
+from app.worker.shown import Frame, Look, instant_of
+from app.worker.words import key_figures, status_line
+from solver.definitions import SettingError
+from solver.latin import Iterate
+
+PAST_RUNS = 6
+
+_log = logging.getLogger(__name__)
+
+
+class Studio:
+    """The runs of one page, and the pictures made of them when the page is ready for one.
+
+    Parameters
+    ----------
+    send
+        Takes pictures.
+    urgent
+        Tells whether another run is ordered.
+    """
+
+    def __init__(self, send: Callable[[Picture], None], urgent: Callable[[], bool]) -> None:
+        self._send = send
+        self._urgent = urgent
+        self._references = References()
+        self._easel = Easel()
+        self._look = Look()
+        self._run: WorkerRun | None = None
+        self._last: Iterate | None = None
+        self._before: Recording | None = None
+        self._past: deque[Recording] = deque(maxlen=PAST_RUNS)
+        self._paint_at: float | None = None
+
+    def rest(self) -> float | None:
+        """Give the seconds until there is something to do; None waits for an order."""
+        if self._run is None:
+            return None
+        rests = (self._run.rest(), self._rest_of_paint(self._run))
+        return min((rest for rest in rests if rest is not None), default=None)
+
+    def paint(self) -> bool:
+        """Send a picture, if the page is ready for it and there is something new; tell."""
+        run = self._run
+        if run is None or self._rest_of_paint(run) != 0.0:
+            return False
+        self._attempt(run.ticket, lambda: self._show(run))
+        return True
+
+    def go_on(self) -> None:
+        """Do the next piece of the run at work."""
+        run = self._run
+        if run is not None:
+            self._attempt(run.ticket, run.advance)
+
+    def obey(self, order: Order) -> None:
+        """Follow an order."""
+        run = self._run
+        match order:
+            case Run():
+                self._retire()
+                self._attempt(order.ticket, lambda: self._begin(order))
+            case Ready():
+                if order.afresh:
+                    self._easel.packer.forget()
+                    self._touch()
+                self._paint_at = time.monotonic() + order.rest
+            case Watch():
+                self._watch(order.look)
+            case _ if run is not None and run.ticket == order.ticket:
+                self._attempt(run.ticket, lambda: run.obey(order))
+
+    def _begin(self, order: Run) -> None:
+        previous = self._last if order.warm else None
+        self._run = WorkerRun(order, self._look, self._urgent, self._references, previous)
+        if self._before is not None and type(self._before.settings) is not type(
+            self._run.recording.settings
+        ):
+            # Runs of another scene are nothing to compare with.
+            self._before = None
+            self._past.clear()
+
+    def _retire(self) -> None:
+        """Keep the run at work to compare the next with, unless it only followed a hand."""
+        run, self._run = self._run, None
+        if run is None or run.follows_hand:
+            return
+        self._last = run.last
+        if run.recording.is_worth_keeping:
+            run.obey(Seek(run.ticket, None))
+            run.recording.frame = run.frame(frozenset(), self._look)
+            self._before = run.recording
+            self._past.append(run.recording)
+
+    def _watch(self, look: Look) -> None:
+        if look.views != self._look.views:
+            # Figures that come, or come back, have nothing.
+            self._easel.packer.forget()
+        self._look = look
+        run = self._run
+        if run is not None:
+            self._attempt(run.ticket, lambda: run.look_at(look))
+
+    def _touch(self) -> None:
+        if self._run is not None:
+            self._run.has_news = True
+
+    def _rest_of_paint(self, run: WorkerRun) -> float | None:
+        if self._paint_at is None or not (run.has_news and run.is_presentable):
+            return None
+        return max(self._paint_at - time.monotonic(), 0.0)
+
+    def _show(self, run: WorkerRun) -> None:
+        look, recording = self._look, run.recording
+        run.has_news, self._paint_at = False, None
+        frame = run.frame(watched(recording.settings, look), look)
+        stand = recording.stand
+        instant = instant_of(look.phase, len(stand.instants))
+        scene = Scene(recording, self._before, tuple(self._past), frame, instant, look)
+        block = self._easel.paint(scene, self._words(run, frame))
+        facts = Facts(
+            iteration=frame.iteration,
+            done=recording.iteration or frame.iteration,
+            instants=len(stand.instants),
+            instant=instant,
+            time=float(stand.instants[instant]),
+            duration=float(stand.instants[-1]) or 1.0,
+            interface=stand.interface,
+            interfaces=stand.interfaces,
+            follows=run.sought is None,
+            is_over=recording.status is not None,
+            was_warm=recording.choice is not None and recording.choice.is_previous,
+        )
+        self._send(Picture(run.ticket, facts, block))
+
+    def _words(self, run: WorkerRun, frame: Frame) -> dict[str, str]:
+        state = "held" if run.is_held else "running" if run.is_running else "paused"
+        recording = run.recording
+        return {
+            "status": status_line(recording, frame, state, run.sought, self._look.complaint),
+            "figures": key_figures(recording, self._before, frame.iteration),
+        }
+
+    def _attempt(self, ticket: int, action: Callable[[], None]) -> None:
+        """Do something of a run; if it breaks, the run is over and the process lives on."""
+        try:
+            action()
+        except Exception as problem:
+            self._run = None
+            if not isinstance(problem, SettingError | FloatingPointError):
+                _log.exception("A run broke.")
+            block = self._easel.say({"status": f"<b>{escape(_sentence(problem))}</b>"})
+            self._send(Picture(ticket, Facts(is_broken=True), block))
+
+
+def _sentence(problem: Exception) -> str:
+    if isinstance(problem, SettingError | FloatingPointError):
+        return str(problem)
+    return (
+        f"The run broke ({type(problem).__name__}: {problem}). Change a setting, or lower the "
+        "numbers of elements and instants."
+    )

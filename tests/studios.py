@@ -1,0 +1,92 @@
+"""A worker's studio in this process, asked for pictures as a page asks, and what it shows."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from app.views.catalogue import VIEWS
+from app.views.drawing import Drawing, Scene
+from app.worker.block import unpack
+from app.worker.easel import watched
+from app.worker.orders import Order, Ready, Run, Watch
+from app.worker.recording import Recording
+from app.worker.reports import Picture
+from app.worker.run import WorkerRun
+from app.worker.shown import Frame, Look
+from app.worker.studio import Studio
+
+ALL = Look(views=tuple(view.name for view in VIEWS))
+Models = dict[str, dict[str, Any]]
+
+
+class Shown:
+    """A studio and a page that paints at once.
+
+    Attributes
+    ----------
+    pictures
+        All that it sent.
+    models
+        What the page has after each of them.
+    """
+
+    def __init__(self, look: Look = ALL) -> None:
+        self.pictures: list[Picture] = []
+        self.models: list[Models] = []
+        self.studio = Studio(self._paint, lambda: False)
+        self.studio.obey(Watch(look))
+        self.studio.obey(Ready())
+
+    def obey(self, *orders: Order) -> None:
+        for order in orders:
+            self.studio.obey(order)
+        self.work()
+
+    def run(self, ticket: int, scene: str, values: dict[str, Any], **options: Any) -> None:
+        self.obey(Run(ticket, scene, values, **options))
+
+    def work(self) -> None:
+        """Go on until there is nothing to do."""
+        while (rest := self.studio.rest()) is not None:
+            time.sleep(rest)
+            if not self.studio.paint():
+                self.studio.go_on()
+
+    @property
+    def page(self) -> Models:
+        return self.models[-1]
+
+    @property
+    def words(self) -> str:
+        found: str = self.page["status"]["text"]
+        return found
+
+    @property
+    def at_work(self) -> WorkerRun:
+        assert self.studio._run is not None
+        return self.studio._run
+
+    @property
+    def recording(self) -> Recording:
+        return self.at_work.recording
+
+    def frame(self, look: Look = ALL) -> Frame:
+        return self.at_work.frame(watched(self.recording.settings, look), look)
+
+    def scene(self, look: Look = ALL, instant: int = 5) -> Scene:
+        studio = self.studio
+        past = tuple(studio._past)
+        return Scene(self.recording, studio._before, past, self.frame(look), instant, look)
+
+    def _paint(self, picture: Picture) -> None:
+        self.pictures.append(picture)
+        before = self.models[-1] if self.models else {}
+        self.models.append({**before, **unpack(picture.block)})
+        self.studio.obey(Ready())
+
+
+def keys(drawing: Drawing | None) -> list[str]:
+    """Give the words of a legend."""
+    assert drawing is not None
+    return [key.text for key in drawing.keys]

@@ -1,0 +1,58 @@
+"""Private parts of Panel and Bokeh that the page touches are there, and do what they are for."""
+
+from __future__ import annotations
+
+import inspect
+
+import panel as pn
+import panel_material_ui as pmui
+from bokeh.server.session import ServerSession
+from panel.util import edit_readonly
+from tornado.websocket import WebSocketHandler
+
+from app.figures import make_figure
+from app.innards import GATHER_MS, gather_briefly, ignore_business
+from app.pulse import Pulse
+from app.views.catalogue import VIEWS
+
+
+def test_a_widget_gathers_as_long_as_it_is_told() -> None:
+    slider = pmui.FloatSlider()
+    assert slider._debounce > GATHER_MS
+    gather_briefly(slider)
+    assert slider._debounce == GATHER_MS
+
+
+def test_sockets_can_be_told_to_send_at_once() -> None:
+    assert "_subscribed_connections" in inspect.getsource(ServerSession)
+    assert hasattr(WebSocketHandler, "set_nodelay")
+
+
+def test_a_busy_server_changes_nothing_on_the_page() -> None:
+    page = pmui.Page()
+    ignore_business(page)
+    changes: list[object] = []
+    page.param.watch(changes.append, "busy")
+    with edit_readonly(pn.state):
+        pn.state.busy = True
+        pn.state.busy = False
+    assert not changes
+
+
+def test_tags_of_a_pane_are_those_of_its_model() -> None:
+    assert pn.pane.HTML("", tags=["status"]).get_root().tags == ["status"]
+
+
+def test_pictures_are_bytes_in_the_browser_too() -> None:
+    root = Pulse(picture=b"1234").get_root()
+    assert root.data.picture == b"1234"
+
+
+def test_what_a_picture_sets_has_its_name_in_the_figure() -> None:
+    for view in VIEWS:
+        made = make_figure(view, lambda height: None)
+        names = {model.name for model in made.references() if model.name}
+        expected = {"x", "y"} | {marks.kind for marks in view.plot.marks}
+        expected |= {"bodies", "box"} if view.plot.equal else {"curves"}
+        expected |= {"colors", "scale", "bar"} if view.plot.scale else set()
+        assert {f"{view.slug}.{name}" for name in expected} <= names
