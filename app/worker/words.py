@@ -33,9 +33,9 @@ HEADS = (
     "Displacement error",
     "Friction force error",
     "Run time",
-    "Iterations to 1 % force error",
+    "Iterations to 1 %",
 )
-ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 % force error")
+ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
 MEANINGS = {
     "LATIN indicator η": "Distance between the two stages of the method, which also depends on k.",
     "k-free indicator": "By how much the iterate breaks the laws of the interfaces, as a share of "
@@ -43,7 +43,7 @@ MEANINGS = {
     "Estimated force error": "How wrong the contact force is, as the run itself estimates it, "
     "without a reference.",
     "Run time": "All that the run needs to end: set-up, iterations, indicators, estimate.",
-    "Iterations to 1 % force error": "After which the friction force is within 1 % of the "
+    "Iterations to 1 %": "After which the friction force is within 1 % of the "
     "reference for the first time.",
 }
 """What stands over a figure's name when one points at it."""
