@@ -110,7 +110,7 @@ class Dashboard:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
 
-    def end(self, context: Any) -> None:
+    def end(self) -> None:
         """Leave nothing behind when the page is gone."""
         self.session.close()
 

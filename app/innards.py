@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 import panel as pn
+from bokeh.document import Document
 from panel.util import edit_readonly
 
 GATHER_MS = 1
@@ -40,3 +41,14 @@ def ignore_business(page: Any) -> None:
     """
     with edit_readonly(page):
         page.busy = page.param.loading
+
+
+def forget(document: Document) -> None:
+    """Take a document that is closed from Panel's table of views.
+
+    Panel leaves the roots there that it adds by itself, and with them, whole, every page that ever
+    was: 4 to 5.5 MB each.
+    """
+    for reference, (_, _, owner, _) in list(pn.state._views.items()):
+        if owner is document:
+            del pn.state._views[reference]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
+from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
@@ -11,6 +13,7 @@ from panel.io.state import set_curdoc
 
 from app.address import settings_from_query
 from app.dashboard import TICK_MS, Dashboard
+from app.innards import forget
 from app.pages import Pages, most_pages
 from app.session import Session
 from app.worker.bench import shared_bench
@@ -37,7 +40,7 @@ def open_page() -> pmui.Page:
     document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     dashboard.session.wake = lambda: document.add_next_tick_callback(dashboard.tick)
-    pn.state.on_session_destroyed(dashboard.end)
+    pn.state.on_session_destroyed(partial(_end, dashboard, document))
     return dashboard.page
 
 
@@ -57,6 +60,12 @@ def rehearse() -> None:
         dashboard.page.server_doc(document)
         document.to_json()
         session.close()
+
+
+def _end(dashboard: Dashboard, document: Document, context: Any) -> None:
+    """Leave nothing behind when a page is gone."""
+    dashboard.end()
+    forget(document)
 
 
 def _full() -> pmui.Page:

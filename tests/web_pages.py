@@ -6,10 +6,11 @@ import asyncio
 import json
 import re
 import time
+from contextlib import suppress
 from typing import Any
 
 from tornado.httpclient import AsyncHTTPClient
-from tornado.websocket import WebSocketClientConnection, websocket_connect
+from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, websocket_connect
 
 READY = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
 
@@ -58,14 +59,13 @@ class WebPage:
 
     async def live(self) -> None:
         """Acknowledge pictures until the page is closed."""
-        while True:
-            kind, content = await self._message()
-            if kind == "":
-                return
-            for event in content.get("events", ()) if kind == "PATCH-DOC" else ():
-                if event.get("model", {}).get("id") == self._pulse and event["attr"] == "frame":
-                    self.times.append(time.monotonic())
-                    await self.set("painted", event["new"])
+        with suppress(WebSocketClosedError):
+            while (message := await self._message())[0]:
+                kind, content = message
+                for event in content.get("events", ()) if kind == "PATCH-DOC" else ():
+                    if event.get("model", {}).get("id") == self._pulse and event["attr"] == "frame":
+                        self.times.append(time.monotonic())
+                        await self.set("painted", event["new"])
 
     async def set(self, name: str, value: Any) -> None:
         """Set a parameter of its pulse."""

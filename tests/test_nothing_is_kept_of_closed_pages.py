@@ -1,0 +1,79 @@
+"""Of pages that were closed the server keeps nothing: no page, no document, no process."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+from collections.abc import Iterator
+
+import panel as pn
+import pytest
+from bokeh.document import Document
+from bokeh.server.server import Server
+from panel.io.server import get_server
+from web_pages import WebPage, until
+
+from app import serve
+from app.dashboard import Dashboard
+from app.session import Session
+
+WAVES, PAGES = 2, 3
+
+
+def alive() -> dict[str, int]:
+    """Count what there is of pages after a full collection."""
+    for _ in range(3):
+        gc.collect()
+    kinds = (Dashboard, Session, Document)
+    found = gc.get_objects()
+    return {kind.__name__: sum(isinstance(one, kind) for one in found) for kind in kinds}
+
+
+@pytest.fixture
+def loop() -> Iterator[asyncio.AbstractEventLoop]:
+    made = asyncio.new_event_loop()
+    asyncio.set_event_loop(made)
+    yield made
+    made.close()
+    asyncio.set_event_loop(None)
+
+
+async def visit(server: Server, address: str) -> None:
+    pages = [WebPage(address) for _ in range(PAGES)]
+    lives = []
+    for page in pages:
+        await page.open()
+        lives.append(asyncio.create_task(page.live()))
+    await until(lambda: all(len(page.times) > 1 for page in pages))
+    for page in pages:
+        page.close()
+    await asyncio.gather(*lives)
+    await until(lambda: not server.get_sessions("/app"))
+    await until(lambda: len(serve.PAGES) == 0)
+
+
+# Panel hands its download button both names of one parameter.
+@pytest.mark.filterwarnings("ignore")
+def test_waves_of_pages_leave_nothing(loop: asyncio.AbstractEventLoop) -> None:
+    async def waves() -> list[dict[str, int]]:
+        pn.extension(notifications=True)
+        server = get_server(
+            {"/app": lambda: serve.open_page()},
+            port=0,
+            show=False,
+            start=True,
+            unused_session_lifetime_milliseconds=5000,
+            check_unused_sessions_milliseconds=500,
+        )
+        counts = []
+        for _ in range(WAVES):
+            await visit(server, f"http://localhost:{server.port}/app")
+            # A task of Panel's own, which begins with the first page, has this one in its context.
+            await until(lambda: alive()["Dashboard"] <= 1)
+            counts.append(alive())
+        server.stop()
+        return counts
+
+    first, *_, last = loop.run_until_complete(waves())
+    assert last["Session"] <= 1
+    assert all(last[kind] <= first[kind] for kind in last)
