@@ -9,6 +9,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.address import query_of
 from app.cards import Cards
 from app.innards import ignore_business, send_without_delay
 from app.looks import Looks
@@ -180,6 +181,7 @@ class Dashboard:
         holds = session.wanted is self._asked_for
         complaint = session.look.complaint if holds else ""
         session.watch(views=tuple(view.name for view in self._shown), complaint=complaint)
+        self._pulse.query = query_of(session.wanted)
         self._dim()
         self._offer_looks()
         self.transport.show()

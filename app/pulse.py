@@ -20,9 +20,11 @@ class Pulse(JSComponent):
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
+    query = param.String(default="", doc="The settings that hold, as an address carries them.")
     copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
 
     _esm = """
+    const WAIT = 8000
     export function render({model, view}) {
       const found = new Map()
       const named = (name) => {
@@ -81,7 +83,26 @@ class Pulse(JSComponent):
           one.setv(one.type === "ColumnDataSource" ? {data: values} : values, {sync: false})
         }
       }
+      let lost = false
+      const come_back = async () => {
+        if (!lost) { return }
+        try {
+          await fetch(location.pathname, {method: "HEAD"})
+          // A server that still knows this page sends a picture; another one makes it anew.
+          setTimeout(() => {
+            if (lost) { location.replace(location.pathname + model.query) }
+          }, WAIT)
+        } catch { setTimeout(come_back, 1000) }
+      }
+      view.model.document.on_event("connection_lost", () => {
+        if (lost) { return }
+        lost = true
+        const text = "&lt;b&gt;not connected&lt;/b&gt;, trying again"
+        named("status").setv({text}, {sync: false})
+        come_back()
+      })
       model.on("frame", () => {
+        lost = false
         const frame = model.frame
         paint()
         requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {

@@ -50,10 +50,11 @@ def browser() -> Iterator[Browser]:
 class Server:
     """`panel serve app` in a process group of its own."""
 
-    def __init__(self, log: Path) -> None:
+    def __init__(self, log: Path, port: int = 0) -> None:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
+            port = port or free.getsockname()[1]
+        self.port = port
         self.address = f"http://localhost:{port}/app"
         self.health = f"http://localhost:{port}/liveness"
         self._log = log
