@@ -50,7 +50,10 @@ class Tour:
         self._await_end("-")
         choose(self.page.get_by_role("combobox", name=re.compile("^Pace")), "as fast as it can")
         # What all views make of it is tested without a browser, which paints one the sooner.
-        for box in self.page.get_by_role("checkbox").all()[1:]:
+        boxes = self.page.get_by_role("checkbox")
+        # A menu hides all else from roles until it has closed.
+        boxes.first.wait_for()
+        for box in boxes.all()[1:]:
             box.press("Space")
         expect(self.page.locator(".card")).to_have_count(1)
         self.page.get_by_text("More settings").click()
