@@ -158,3 +158,13 @@ def test_a_block_gives_back_what_was_packed() -> None:
     assert list(unpack(packer.pack(models))) == ["b"]
     packer.forget()
     assert set(unpack(packer.pack(models))) == set(models)
+
+
+def test_errors_of_a_run_that_follows_a_hand_come_with_its_reference() -> None:
+    shown = Shown()
+    shown.run(1, "block", {**SMALL["block"], "friction": 0.31}, follows_hand=True)
+    errors = shown.recording.history.column("error_force")
+    assert len(errors) > 1
+    assert np.isfinite(errors).all()
+    assert errors[-1] < 1e-8
+    assert "force error" in shown.words

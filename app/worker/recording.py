@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.worker.shown import Counts, Frame, Reference, Stand, thinned
-from solver.latin import Record, Status
+from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
+from solver.reference.distance import Distance
 from solver.settings import Settings
 
 COLUMNS = (
@@ -44,6 +45,11 @@ class History:
             self._table = np.concatenate([self._table, np.empty_like(self._table)], axis=1)
         self._table[:, self._count] = [getattr(entry, name) for name in COLUMNS]
         self._count += 1
+
+    def change(self, iteration: int, **figures: float) -> None:
+        """Put in what was not known yet when an iteration was added."""
+        for name, value in figures.items():
+            self._table[COLUMNS.index(name), iteration - 1] = value
 
     def column(self, name: str) -> NDArray[np.float64]:
         """Give one quantity of all iterations."""
@@ -101,6 +107,17 @@ class Recording:
             self.sizes.append(sizes)
         for other in beside:
             self.beside.add(other)
+
+    def measure(self, iterates: Sequence[Iterate], distance: Distance) -> None:
+        """Put in the errors of iterates that were recorded before there was a reference."""
+        for iterate in iterates:
+            errors = {
+                "error_displacement": distance.of_displacement(iterate),
+                "error_force": distance.of_friction_force(iterate),
+            }
+            self.history.change(iterate.number, **errors)
+            if self.last is not None and self.last.iteration == iterate.number:
+                self.last = replace(self.last, **errors)
 
     @property
     def title(self) -> str:

@@ -88,6 +88,7 @@ class WorkerRun:
         self._is_compared = False
         self._reference: incremental.Reference | None = None
         self._distance: Distance | None = None
+        self._unmeasured: list[Iterate] = []
         self._before: Checkpoint | None = None
         self._start: Start | None = None
         self._previous = previous if fits(previous, self._problem) else None
@@ -203,6 +204,8 @@ class WorkerRun:
         self.recording.stand = self._sampler.completed(self.recording.stand)
         if self._reference is not None:
             self._distance = distance_to(self._reference, self._problem)
+            self.recording.measure(self._unmeasured, self._distance)
+        self._unmeasured.clear()
         self._show_reference()
         if not self.recording.iteration:
             self._account(newest, newest)
@@ -235,6 +238,8 @@ class WorkerRun:
         if iterate is not newest:
             self._before = newest.checkpoint
         self._newest = iterate
+        if not self._is_compared:
+            self._unmeasured.append(iterate)
         full = self._full_stage
         more = full.follow(iterate.number, self._distance) if full else ()
         entry = record(iterate, verdict, self._distance)
