@@ -39,7 +39,7 @@ def open_page() -> pmui.Page:
     pn.state.onload(dashboard.loaded)
     document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)
-    dashboard.session.wake = lambda: document.add_next_tick_callback(dashboard.tick)
+    dashboard.session.keeper.wake = lambda: document.add_next_tick_callback(dashboard.tick)
     pn.state.on_session_destroyed(partial(_end, dashboard, document))
     return dashboard.page
 

@@ -1,36 +1,33 @@
 """A page's state and its one owner: settings, what is looked at, and the worker that has the run.
 
-Reports of the worker arrive on another thread and wait in a mailbox; everything else happens on
-the page's own event loop. No field comes here: pictures go through as bytes.
+All of it happens on the page's own event loop. No field comes here: pictures go through as bytes.
 """
 
 from __future__ import annotations
 
 import logging
-import threading
 import time
-from collections import deque
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
-from html import escape
 from typing import Any
 
 from app.errand import Errand
+from app.keeper import Hire, Keeper
+from app.labels import label_of
 from app.pages import Pages
 from app.worker.bench import Bench
-from app.worker.block import Packer
+from app.worker.block import said
 from app.worker.link import Link
-from app.worker.orders import Order, Pace, Ready, Run, Seek, Step, Watch
-from app.worker.reports import Died, Facts, Report
+from app.worker.orders import Pace, Ready, Run, Seek, Step, Watch
+from app.worker.reports import Died, Facts
 from app.worker.shown import Look
-from solver.definitions import about
 from solver.files import scene_settings
 from solver.settings import Settings
 
 DEFAULT_PACE = 20.0
 LEFT_ALONE = 180.0
 """Seconds after which a page that nobody sees gives its process back."""
+HELD_STILL = 0.5
+"""Seconds after which a slider that does not move counts as let go."""
 RESTARTS = 2
 """Times that a run is started again after its process died."""
 AGAIN = "The worker stopped unexpectedly; the run was started again."
@@ -54,7 +51,7 @@ class Session:
     settings
         Of the first run, for which `start` has to be called.
     hire
-        Gives a worker process, whose reports go to what it is called with.
+        Gives a worker process.
 
     Attributes
     ----------
@@ -75,8 +72,8 @@ class Session:
         The reports that this page has asked for.
     crowd
         Most runs of other pages that were at work at a time during the last study.
-    wake
-        Called on another thread when a report has come.
+    keeper
+        Has the worker process.
     """
 
     def __init__(
@@ -84,10 +81,10 @@ class Session:
         pages: Pages,
         bench: Bench,
         settings: Settings,
-        hire: Callable[[Callable[[Report], None]], Link] = Link,
+        hire: Hire = Link,
     ) -> None:
         self.settings = settings
-        self.wake: Callable[[], None] = lambda: None
+        self.keeper = Keeper(hire)
         self.ticket = 0
         self.facts: Facts | None = None
         self.look = Look()
@@ -100,13 +97,9 @@ class Session:
         self._label = ""
         self._pending: Settings | None = None
         self._follows_hand = self._pending_follows_hand = False
-        self._alone = self._held = self._closed = False
-        self._alone_since = 0.0
-        self._mailbox: deque[tuple[int, Report]] = deque()
-        self._lock = threading.Lock()
-        self._hire = hire
-        self._link: Link | None = None
-        self._hired = self._deaths = 0
+        self._alone = self._held = False
+        self._alone_since = self._moved_at = 0.0
+        self._deaths = 0
         self._pages = pages
         pages.add(self)
 
@@ -126,7 +119,7 @@ class Session:
             changed = {
                 name: value for name, value in settings.values().items() if value != before[name]
             }
-            self._label = _label(settings, changed) if changed else self._label
+            self._label = label_of(settings, changed) if changed else self._label
         self.settings = settings
         self.ticket += 1
         self.facts, self._pending, self._deaths = None, None, 0
@@ -153,6 +146,7 @@ class Session:
         if settings.values() == self.settings.values() and self._pending is None:
             return
         self._pending, self._pending_follows_hand = settings, by_hand
+        self._moved_at = time.monotonic()
         self._start_pending()
 
     def let_go(self) -> None:
@@ -169,11 +163,8 @@ class Session:
 
     def collect(self) -> list[bytes]:
         """Take the waiting reports; give the pictures that the page has to be given."""
-        with self._lock:
-            reports = [report for number, report in self._mailbox if number == self._hired]
-            self._mailbox.clear()
         blocks: list[bytes] = []
-        for report in reports:
+        for report in self.keeper.collect():
             if isinstance(report, Died):
                 blocks.append(self._bury())
             else:
@@ -185,7 +176,7 @@ class Session:
 
     def ask(self, *, rest: float = 0.0, afresh: bool = False) -> None:
         """Have the next picture made, after some seconds of rest."""
-        self._send(Ready(afresh, rest))
+        self.keeper.send(Ready(afresh, rest))
 
     def go(self) -> None:
         """Let iterations go on by themselves; a run that ended, or broke, starts again."""
@@ -193,13 +184,13 @@ class Session:
         if self.is_over:
             self.start()
         else:
-            self._send(Seek(self.ticket, None))
+            self.keeper.send(Seek(self.ticket, None))
             self._keep_pace()
 
     def pause(self) -> None:
         """Wait after the present iteration."""
         self.running = False
-        self._send(Pace(self.ticket, 0.0))
+        self.keeper.send(Pace(self.ticket, 0.0))
 
     def step(self) -> None:
         """Do one iteration and wait; a run that broke starts again, one that ended stays."""
@@ -207,7 +198,7 @@ class Session:
         if self.facts is not None and self.facts.is_broken:
             self.start()
         else:
-            self._send(Step(self.ticket))
+            self.keeper.send(Step(self.ticket))
 
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""
@@ -217,7 +208,7 @@ class Session:
     def seek(self, iteration: int) -> None:
         """Look at an iteration that was done already; the last one follows the run."""
         done = self.facts.done if self.facts else 0
-        self._send(Seek(self.ticket, iteration if iteration < done else None))
+        self.keeper.send(Seek(self.ticket, iteration if iteration < done else None))
 
     def look_at(self, phase: float) -> None:
         """Choose the instant at which fields are drawn, as a share of the interval."""
@@ -228,7 +219,7 @@ class Session:
         look = replace(self.look, **changes)
         if look != self.look:
             self.look = look
-            self._send(Watch(look))
+            self.keeper.send(Watch(look))
 
     def choose_substructure(self, number: int) -> None:
         """Choose the substructure whose modes are looked at, counted from 0."""
@@ -237,17 +228,15 @@ class Session:
 
     def close(self) -> None:
         """Leave: the process of the run ends, and so do the reports."""
-        self._closed = True
-        self._part()
+        self.keeper.close()
         self._pages.remove(self)
-        self.wake = lambda: None
         for errand in self._errands:
             errand.cancel()
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody sees the page, and let it go on afterwards."""
         self._alone, self._alone_since = alone, time.monotonic()
-        if not alone and self._link is None and self.ticket and not self.is_over:
+        if not alone and self.keeper.link is None and self.ticket and not self.is_over:
             self._work()
         else:
             self._keep_pace()
@@ -255,7 +244,10 @@ class Session:
     def attend(self) -> bool:
         """Do what is due: hear the reports, hold the run while one is timed; tell if it is new."""
         if self._alone and time.monotonic() - self._alone_since > LEFT_ALONE:
-            self._part()
+            self.keeper.part()
+            self.facts = None
+        if self._follows_hand and time.monotonic() - self._moved_at > HELD_STILL:
+            self.let_go()
         heard = [errand.collect() for errand in self._errands]
         if self.study.is_begun != self._held:
             self._held = self.study.is_begun
@@ -278,7 +270,7 @@ class Session:
     @property
     def is_at_work(self) -> bool:
         """Whether iterations of the run go on at present."""
-        return self._link is not None and not self.is_over and self._is_free
+        return self.keeper.link is not None and not self.is_over and self._is_free
 
     @property
     def is_held(self) -> bool:
@@ -308,7 +300,7 @@ class Session:
     def _keep_pace(self) -> None:
         if self.goes_on:
             pace = self.pace if self._is_free else 0.0
-            self._send(Pace(self.ticket, pace, is_held=self._held))
+            self.keeper.send(Pace(self.ticket, pace, is_held=self._held))
 
     def _leave_scene(self) -> None:
         """Keep the settings for a return."""
@@ -318,12 +310,8 @@ class Session:
 
     def _work(self, *, warm: bool = False) -> None:
         """Have a process do the run from its beginning."""
-        if self._link is None and not self._closed:
-            self._hired += 1
-            self._link = self._hire(partial(self._receive, self._hired))
-            self._send(Watch(self.look))
-            self._send(Ready())
-        self._send(
+        self.keeper.begin(Watch(self.look), Ready())
+        self.keeper.send(
             Run(
                 self.ticket,
                 self.settings.scene,
@@ -338,20 +326,8 @@ class Session:
             )
         )
 
-    def _send(self, order: Order) -> None:
-        if self._link is not None:
-            self._link.send(order)
-
-    def _part(self) -> None:
-        """End the process; what it had is lost, and the run would begin again."""
-        if self._link is not None:
-            self._link.close()
-            self._link = None
-            self.facts = None
-
     def _bury(self) -> bytes:
         """Follow the end of a process: start the run again, or give it up; say so."""
-        self._link = None
         self._deaths += 1
         again = self._deaths <= RESTARTS
         words = AGAIN if again else GIVEN_UP
@@ -360,24 +336,3 @@ class Session:
         if again:
             self._work()
         return said(words)
-
-    def _receive(self, number: int, report: Report) -> None:
-        with self._lock:
-            self._mailbox.append((number, report))
-        self.wake()
-
-
-def said(words: str) -> bytes:
-    """Give a picture of words alone, in the status line."""
-    return Packer().pack({"status": {"text": escape(f"<b>{escape(words)}</b>")}})
-
-
-def _label(settings: Settings, changed: dict[str, Any]) -> str:
-    definitions = settings.definitions()
-    parts = []
-    for name, value in list(changed.items())[:2]:
-        unit = about(definitions[name]).unit
-        text = f"{value:.4g}" if isinstance(value, float) else str(value)
-        text = "points" if isinstance(value, tuple) else text
-        parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
-    return ", ".join(parts) + (", ..." if len(changed) > 2 else "")

@@ -9,11 +9,12 @@ from app.views.catalogue import VIEWS
 from app.views.drawing import Drawing, Scene
 from app.worker.block import unpack
 from app.worker.easel import watched
+from app.worker.frames import Frame
 from app.worker.orders import Order, Ready, Run, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Picture
 from app.worker.run import WorkerRun
-from app.worker.shown import Frame, Look
+from app.worker.shown import Look
 from app.worker.studio import Studio
 
 ALL = Look(views=tuple(view.name for view in VIEWS))

@@ -220,11 +220,11 @@ def test_a_killed_process_is_replaced_and_the_run_goes_on(session_at_work: Sessi
     session = session_at_work
     for _ in range(RESTARTS):
         until(session, lambda facts: facts.done > 2)
-        before = session._link
+        before = session.keeper.link
         assert before is not None
         assert before.pid is not None
         os.kill(before.pid, signal.SIGKILL)
-        wait_for(lambda link=before: session.collect() and session._link is not link)
+        wait_for(lambda link=before: session.collect() and session.keeper.link is not link)
     until(session, lambda facts: facts.done > 2)
 
 

@@ -148,3 +148,17 @@ def test_a_dragged_slider_hurries_and_let_go_it_replays() -> None:
     shown(session, link)
     session.let_go()
     assert len(link.orders) == count
+
+
+def test_a_slider_that_stands_still_counts_as_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    link = LoneLink()
+    session = Session(Pages(1), Bench(), BarSettings.checked({}), link.hire)
+    session.start()
+    shown(session, link)
+    session.change("peak", 910.0, by_hand=True)
+    shown(session, link)
+    assert link.orders[-1].follows_hand
+    monkeypatch.setattr("app.session.HELD_STILL", -1.0)
+    session.attend()
+    assert not link.orders[-1].follows_hand
+    assert link.orders[-1].values["peak"] == 910.0

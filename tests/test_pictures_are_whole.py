@@ -73,7 +73,10 @@ def test_no_picture_is_made_that_the_page_is_not_ready_for() -> None:
     assert studio.rest() is None
 
 
-def test_a_run_that_follows_a_hand_is_shown_at_its_end_and_is_no_run_before() -> None:
+def test_a_run_that_follows_a_hand_is_shown_at_its_end_and_is_no_run_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("app.worker.run.IN_A_HURRY", 60.0)
     shown = Shown()
     shown.run(1, "bar", SMALL["bar"])
     count = len(shown.pictures)

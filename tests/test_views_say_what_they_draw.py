@@ -11,7 +11,8 @@ from studios import ALL, Shown, keys
 
 from app.views import convergence, error_time, friction, loop
 from app.views.catalogue import VIEWS, fitting
-from app.views.drawing import Scene, decades
+from app.views.drawing import Scene
+from app.views.scales import decades
 from app.worker.recording import COLUMNS
 from solver.scenes import CATALOGUE
 

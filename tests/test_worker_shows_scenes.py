@@ -10,7 +10,7 @@ import pytest
 from studios import ALL, Shown
 
 from app.views.deformed import fitting
-from app.views.drawing import held
+from app.views.scales import held
 from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.orders import Watch
 from app.worker.shown import STATUS_OPEN, Look, Mesh, has_reference

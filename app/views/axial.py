@@ -14,16 +14,14 @@ from app.views.drawing import (
     VERMILION,
     Curve,
     Drawing,
-    Limits,
     Plot,
     Scene,
     View,
-    decimal_scale,
-    held,
     length_of,
     spanned,
 )
 from app.views.legend import Key
+from app.views.scales import Limits, decimal_scale, held
 from app.worker.shown import Wires
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings

@@ -14,11 +14,11 @@ from app.views.drawing import (
     Scene,
     View,
     across,
-    round_up,
     spanned,
     upright,
 )
 from app.views.legend import Key
+from app.views.scales import round_up
 from solver.settings import Settings
 
 MOST_COLUMNS = 240

@@ -14,13 +14,12 @@ from app.views.drawing import (
     Plot,
     Scene,
     View,
-    decades,
     in_decades,
-    round_up,
     spanned,
     upright,
 )
 from app.views.legend import Key
+from app.views.scales import decades, round_up
 from app.worker.recording import History
 from app.worker.shown import has_reference
 from solver.settings import Settings

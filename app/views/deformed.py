@@ -4,20 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    GREY,
-    Bodies,
-    Colors,
-    Drawing,
-    Limits,
-    Plot,
-    Scene,
-    View,
-    decimal_scale,
-    held,
-    round_up,
-)
+from app.views.drawing import GREY, Bodies, Colors, Drawing, Plot, Scene, View
 from app.views.legend import Key
+from app.views.scales import Limits, decimal_scale, held, round_up
 from app.worker.shown import Mesh
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

@@ -14,15 +14,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from app.views.legend import Key
+from app.worker.frames import Frame
 from app.worker.recording import Recording
-from app.worker.shown import Frame, Look
+from app.worker.shown import Look
 from solver.settings import Settings
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"
 SKY, VERMILION = "#56B4E9", "#D55E00"
 BACKWARD, STICK, FORWARD, OPEN = BLUE, "#D9D9D9", ORANGE, "#4D4D4D"
 VIRIDIS = ("#470e61", "#433d84", "#33628d", "#25828e", "#1fa287", "#42be71", "#91d742", "#d8e219")
-FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
 
 
 @dataclass(frozen=True)
@@ -245,60 +245,6 @@ def in_decades(low: float, high: float) -> Axis:
     powers = range(round(np.log10(low)), round(np.log10(high)) + 1)
     ticks = tuple(10.0**power for power in powers)[:: max(1, len(powers) // 5)]
     return Axis(float(low), float(high), ticks=ticks)
-
-
-def decimal_scale(size: float, unit: str) -> tuple[float, str]:
-    """Choose an SI prefix for values of a size; give the factor to divide by, and the unit."""
-    if not (np.isfinite(size) and size > 0.0):
-        return 1.0, unit
-    fitting = [(factor, prefix) for prefix, factor in FACTORS.items() if size >= 0.5 * factor] or [
-        (1e-9, "n")
-    ]
-    factor, prefix = max(fitting)
-    return factor, prefix + unit
-
-
-def decades(values: ArrayLike, floor: float) -> tuple[float, float]:
-    """Give whole decades around the positive values, not below a floor."""
-    found = np.asarray(values, dtype=np.float64).ravel()
-    finite = found[np.isfinite(found) & (found > 0.0)]
-    low = max(float(finite.min(initial=np.inf if len(finite) else 1e-1)), floor)
-    high = max(float(finite.max(initial=0.0)) if len(finite) else 1.0, 10.0 * low)
-    return 10.0 ** float(np.floor(np.log10(low))), 10.0 ** float(np.ceil(np.log10(high)))
-
-
-def round_up(value: float) -> float:
-    """Give the next of 1, 2, 5, 10, 20, ... so that a growing axis moves seldom."""
-    if value <= 0.0:
-        return 1.0
-    decade = 10.0 ** np.floor(np.log10(value))
-    steps = (1.0, 2.0, 5.0, 10.0)
-    return float(next(step * decade for step in steps if step * decade >= 0.999 * value))
-
-
-Limits = tuple[float, float]
-FILLED = 0.6
-"""Share of an axis that values have to fill, or it is drawn in."""
-ROOM = 1.1
-
-
-def held(old: Limits | None, low: float, high: float) -> Limits:
-    """Give round limits around values and zero: those there were, as long as they suit.
-
-    A browser spends more on an axis whose labels change than on all that it draws.
-    """
-    low, high = min(low, 0.0), max(high, 0.0)
-    span = high - low
-    if not np.isfinite(span):
-        return old or (0.0, 1.0)
-    if old is not None:
-        inside = old[0] <= low and high <= old[1]
-        if inside and span >= FILLED * (old[1] - old[0]):
-            return old
-    if span == 0.0:
-        return 0.0, 1.0
-    step = round_up(ROOM * span) / 10.0
-    return float(np.floor(ROOM * low / step) * step), float(np.ceil(ROOM * high / step) * step)
 
 
 def shaded(count: int, palette: Sequence[str] = VIRIDIS) -> list[str]:

@@ -15,11 +15,11 @@ from app.views.drawing import (
     Plot,
     Scene,
     View,
-    decades,
     in_decades,
     upright,
 )
 from app.views.legend import Key
+from app.views.scales import decades
 from app.worker.recording import History
 from app.worker.shown import has_reference
 from solver.settings import Settings

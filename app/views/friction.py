@@ -17,12 +17,12 @@ from app.views.drawing import (
     Scene,
     View,
     across,
-    decimal_scale,
     length_of,
     spanned,
     upright,
 )
 from app.views.legend import Key
+from app.views.scales import decimal_scale
 from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

@@ -15,18 +15,17 @@ from app.views.drawing import (
     Axis,
     Curve,
     Drawing,
-    Limits,
     Marks,
     Plot,
     Scene,
     View,
-    decimal_scale,
-    held,
     spanned,
 )
 from app.views.legend import Key
+from app.views.scales import Limits, decimal_scale, held
+from app.worker.frames import Frame, Reference
 from app.worker.recording import Recording
-from app.worker.shown import Axes, Frame, Reference
+from app.worker.shown import Axes
 from solver.settings import Settings
 
 Pair = tuple[np.ndarray, np.ndarray]

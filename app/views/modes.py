@@ -19,11 +19,11 @@ from app.views.drawing import (
     Plot,
     Scene,
     View,
-    decimal_scale,
     spanned,
     upright,
 )
 from app.views.legend import Key
+from app.views.scales import decimal_scale
 from app.worker.shown import ShownModes
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

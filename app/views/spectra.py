@@ -17,13 +17,12 @@ from app.views.drawing import (
     Plot,
     Scene,
     View,
-    decades,
     in_decades,
-    round_up,
     shaded,
     spanned,
 )
 from app.views.legend import Key
+from app.views.scales import decades, round_up
 from solver.settings import Settings
 
 FLOOR = 1e-8

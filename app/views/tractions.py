@@ -11,18 +11,17 @@ from app.views.drawing import (
     PURPLE,
     Curve,
     Drawing,
-    Limits,
     Plot,
     Scene,
     View,
-    decimal_scale,
-    held,
     length_of,
     spanned,
     upright,
 )
 from app.views.legend import Key
-from app.worker.shown import Frame, Reference, instant_of
+from app.views.scales import Limits, decimal_scale, held
+from app.worker.frames import Frame, Reference
+from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 

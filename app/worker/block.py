@@ -16,6 +16,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Mapping, Sequence
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -123,3 +124,8 @@ def _read(value: Any, numbers: bytes, start: int) -> Any:
         return np.frombuffer(numbers, dtype, rows * columns, start + at).reshape(rows, columns)
     corners = np.frombuffer(numbers, np.uint32, where[1], start + where[0]).reshape(-1, 4)
     return corners, np.frombuffer(numbers, np.float32, where[3], start + where[2]).reshape(-1, 2)
+
+
+def said(words: str) -> bytes:
+    """Give a picture of words alone, in the status line."""
+    return Packer().pack({"status": {"text": escape(f"<b>{escape(words)}</b>")}})

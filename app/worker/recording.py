@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.shown import Counts, Frame, Reference, Stand, thinned
+from app.worker.frames import Frame, Reference, Stand
+from app.worker.shown import Counts, thinned
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
 from solver.reference.distance import Distance

@@ -17,8 +17,6 @@ class Facts:
         How many can be chosen, the one that is, its time and that of the last, s.
     interface, interfaces
         The one that is looked at, and all with friction.
-    follows
-        Whether the newest iterate is shown.
     is_over
         Whether the run has ended: only another one can go on.
     is_broken
@@ -35,7 +33,6 @@ class Facts:
     duration: float = 1.0
     interface: str = ""
     interfaces: tuple[str, ...] = ()
-    follows: bool = True
     is_over: bool = False
     is_broken: bool = False
     was_warm: bool = False

@@ -5,17 +5,19 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator
+from typing import Literal
 
 import numpy as np
 
 from app.worker.bases import sizes
 from app.worker.beside import beside
+from app.worker.frames import Frame
 from app.worker.orders import Pace, Run, Seek, Step
 from app.worker.recording import Recording
 from app.worker.rivals import References
 from app.worker.sampler import Sampler
 from app.worker.seeking import Found, Seeking
-from app.worker.shown import Frame, Look
+from app.worker.shown import Look
 from app.worker.tempo import Tempo
 from solver.discrete import Problem, discretise
 from solver.files import scene_settings
@@ -111,9 +113,13 @@ class WorkerRun:
         return self._newest is not None and not hurries
 
     @property
-    def is_running(self) -> bool:
-        """Whether iterations go on by themselves."""
-        return self.rest() is not None
+    def state(self) -> Literal["running", "paused", "held", "by hand"]:
+        """What it does, for the status line."""
+        if self.follows_hand:
+            return "by hand"
+        if self.is_held:
+            return "held"
+        return "running" if self.rest() is not None else "paused"
 
     @property
     def sought(self) -> int | None:

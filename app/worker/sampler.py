@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.worker.bases import show_bases
+from app.worker.frames import Frame, Reference, Stand
 from app.worker.meshes import Thinned
 from app.worker.shown import (
     LONGEST_CURVE,
@@ -17,11 +18,8 @@ from app.worker.shown import (
     Axes,
     Bytes,
     Floats,
-    Frame,
     Look,
     MeshField,
-    Reference,
-    Stand,
     instant_of,
     thinned,
 )

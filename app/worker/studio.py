@@ -10,12 +10,13 @@ from html import escape
 
 from app.views.drawing import Scene
 from app.worker.easel import Easel, watched
+from app.worker.frames import Frame
 from app.worker.orders import Order, Ready, Run, Seek, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Facts, Picture
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
-from app.worker.shown import Frame, Look, instant_of
+from app.worker.shown import Look, instant_of
 from app.worker.words import key_figures, status_line
 from solver.definitions import SettingError
 from solver.latin import Iterate
@@ -143,15 +144,13 @@ class Studio:
             duration=float(stand.instants[-1]) or 1.0,
             interface=stand.interface,
             interfaces=stand.interfaces,
-            follows=run.sought is None,
             is_over=recording.status is not None,
             was_warm=recording.choice is not None and recording.choice.is_previous,
         )
         self._send(Picture(run.ticket, facts, block))
 
     def _words(self, run: WorkerRun, frame: Frame) -> dict[str, str]:
-        state = "held" if run.is_held else "running" if run.is_running else "paused"
-        recording = run.recording
+        state, recording = run.state, run.recording
         return {
             "status": status_line(recording, frame, state, run.sought, self._look.complaint),
             "figures": key_figures(recording, self._before, frame.iteration),

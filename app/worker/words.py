@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from html import escape
 from typing import Literal
 
+from app.worker.frames import Frame
 from app.worker.recording import Recording
-from app.worker.shown import Frame, has_reference
+from app.worker.shown import has_reference
 from solver.latin import Ending
 
 ENDINGS = {
@@ -52,13 +53,14 @@ MEANINGS = {
 def status_line(
     run: Recording,
     frame: Frame,
-    state: Literal["running", "paused", "held"],
+    state: Literal["running", "paused", "held", "by hand"],
     sought: int | None = None,
     complaint: str = "",
 ) -> str:
     """Say what runs, how far it is, and how it ended with what to try (HTML).
 
-    A run that is held waits for a study that is timed; a complaint comes before the advice.
+    A run "by hand" is replayed once the slider is let go; one that is held waits for a study that
+    is timed. A complaint comes before the advice.
     """
     settings, parts = run.settings.values(), run.settings.n_substructures
     scale = (
@@ -68,7 +70,10 @@ def status_line(
     )
     done = run.iteration or frame.iteration
     counted = "iteration" if done == 1 else "iterations"
-    if run.status is not None:
+    if state == "by hand":
+        ending = ENDINGS[run.status.ending] if run.status else "running"
+        line = f"<b>follows the slider</b>, {ending} at iteration {done} · {scale}"
+    elif run.status is not None:
         ending = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending]
         line = f"<b>{ending}</b> after {done} {counted} · {scale}"
     else:

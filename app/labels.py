@@ -1,0 +1,20 @@
+"""How runs are called where they are compared."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from solver.definitions import about
+from solver.settings import Settings
+
+
+def label_of(settings: Settings, changed: dict[str, Any]) -> str:
+    """Name settings by what is new in them."""
+    definitions = settings.definitions()
+    parts = []
+    for name, value in list(changed.items())[:2]:
+        unit = about(definitions[name]).unit
+        text = f"{value:.4g}" if isinstance(value, float) else str(value)
+        text = "points" if isinstance(value, tuple) else text
+        parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
+    return ", ".join(parts) + (", ..." if len(changed) > 2 else "")
