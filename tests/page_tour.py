@@ -47,7 +47,7 @@ class Tour:
         query = "&".join(f"{name}={value}" for name, value in sizes.items())
         self.base = small(scene).replace(max_iterations=ITERATIONS)
         self.page: Page = visit(f"?scene={scene}&{query}")
-        self._await_end("-")
+        self._await_end("-", self.base)
         choose(self.page.get_by_role("combobox", name=re.compile("^Pace")), "as fast as it can")
         # What all views make of it is tested without a browser, which paints one the sooner.
         boxes = self.page.get_by_role("checkbox")
@@ -81,7 +81,7 @@ class Tour:
         assert move.after is not None
         former = self._evaluate("before()")
         self._move(move)
-        words = self._await_end(former)
+        words = self._await_end(former, move.after)
         where = f"{described(move)}: {words}"
         assert OVER.search(words), where
         assert ERROR.search(words) or not has_errors(move.after), where
@@ -138,15 +138,17 @@ class Tour:
             polling=POLL_MS,
         )
 
-    def _await_end(self, former: str) -> str:
-        """Wait until another run has ended, and its errors are told, or could not be."""
-        self.page.wait_for_function(
-            f"""(former) => {{{MODEL}
+    def _await_end(self, former: str, settings: Settings) -> str:
+        """Wait until another run has ended, and its errors are told where it has any."""
+        found = self.page.wait_for_function(
+            f"""([former, hasErrors]) => {{{MODEL}
               if (!window.Bokeh || !Bokeh.documents.length || !model("status")) {{ return false }}
               const words = text("status")
-              return before() !== former && /after \\d+ iter|broke|gave|stopped/.test(words)
+              if (/broke|gave|stopped/.test(words)) {{ return words }}
+              const isTold = !hasErrors || /force error/.test(words)
+              return before() !== former && isTold && /after \\d+ iter/.test(words) && words
             }}""",
-            arg=former,
+            arg=[former, has_errors(settings)],
             polling=POLL_MS,
         )
-        return unescape(str(self._evaluate('text("status")')))
+        return unescape(str(found.json_value()))
