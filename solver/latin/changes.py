@@ -20,8 +20,8 @@ iterations is foreseen by that as well as one that converges as a power of a num
 bars and strands, from 10 % to 0.05 % of error, the estimate was 1 to 300 times the truth in 19 of
 20 iterates; the least was 0.2 of it, on a bar of 400 elements (measured)."""
 SLOWEST = 0.97
-"""Ratio at most: that of a force that converges as the iterations to the power of -0.085. Four wires
-of 320 elements come to as little as -0.07 (measured)."""
+"""Ratio at most: that of a force that converges as the iterations to the power of -0.085. Four
+wires of 320 elements come to as little as -0.07 (measured)."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
 VANISHING = 1e-8
