@@ -24,6 +24,9 @@ SLOWEST = 0.97
 wires of 320 elements come to as little as -0.07 (measured)."""
 SPACING = 1.1
 """Ratio of the iterations whose contact forces are kept to look back at."""
+RARELY = 2.0
+"""Ratio of the iterations at which it is asked anew which forces count as none: a matter of orders
+of magnitude, and dear beside a small iteration."""
 VANISHING = 1e-8
 """Share of all forces at interfaces below which contact forces count as none, as in distances."""
 ROUNDING = 64.0 * float(np.finfo(float).eps)
@@ -51,6 +54,7 @@ class ForceChanges:
     def __init__(self) -> None:
         self._past: list[_Past] = []
         self._least = 0.0
+        self._least_next = 0.0
         self.last = math.nan
 
     def left(self, iterate: Iterate) -> float:
@@ -65,7 +69,8 @@ class ForceChanges:
         if not self._past or number >= SPACING * self._past[-1].number:
             now = _Past(number, force, self.last)
             self._past = [*_still_needed(self._past, number), now]
-            self._least = _least(iterate)
+            if number >= self._least_next:
+                self._least, self._least_next = _least(iterate), RARELY * number
         earlier = before and _at(self._past, LOOK_BACK * before.number)
         if before is None or earlier is None:
             return 0.0 if self.last == 0.0 else math.nan

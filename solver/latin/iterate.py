@@ -136,7 +136,15 @@ class Iterate:
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What is needed to go on from here."""
+        """What is needed to go on from here.
+
+        Raises
+        ------
+        ValueError
+            If the run was told that nobody would.
+        """
+        if self.memory is not None and self.memory[0] and not self.history:
+            raise ValueError("an accelerated run has checkpoints if it is made resumable")
         return Checkpoint(
             self.number,
             self.seconds,

@@ -27,7 +27,11 @@ from solver.settings import Settings
 
 
 def iterations(
-    problem: Problem, settings: Settings, start: Checkpoint | None = None
+    problem: Problem,
+    settings: Settings,
+    start: Checkpoint | None = None,
+    *,
+    resumable: bool = True,
 ) -> Iterator[Iterate]:
     """Iterate between the local and the linear stage, without end.
 
@@ -38,6 +42,9 @@ def iterations(
     start
         Where to go on from; without one the settings say where to start, and a body that contact
         alone holds where it comes to rest.
+    resumable
+        Whether iterates shall have checkpoints: what an acceleration remembers is kept for them,
+        as much again as it holds itself.
 
     Yields
     ------
@@ -48,13 +55,14 @@ def iterations(
     engine = Engine(problem, settings, start)
     number = start.number if start else 0
     read, outgoing = engine.incoming, engine.outgoing
-    history = list(start.history) if start else []
+    history = list(start.history) if start and resumable else []
     while True:
         number += 1
         if engine.turn():
             read, outgoing, history = engine.incoming, engine.outgoing, []
         local_error = engine.step(number, clock)
-        history = [*history, outgoing][-engine.remembered :] if engine.remembered else []
+        if resumable:
+            history = [*history, outgoing][-engine.remembered :] if engine.remembered else []
         outgoing = engine.outgoing
         clock.stop()
         yield Iterate(
