@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.worker.shown import (
     MOST_MODES,
@@ -16,6 +15,7 @@ from app.worker.shown import (
     ShownModes,
     thinned,
 )
+from solver.arrays import Array
 from solver.latin import Checkpoint, Iterate, Record
 from solver.reduction.basis import Modes, Reduction
 
@@ -23,8 +23,6 @@ BORN = 0.5
 """Share of a mode's energy outside the modes before, from which it counts as born."""
 LOBE = 0.5
 """Share of a mode's largest entry, from which an entry may fix the sign."""
-
-Array = NDArray[np.float64]
 
 
 def show_bases(

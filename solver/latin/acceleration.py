@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg.lapack import dposv
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
 from solver.latin.linear import FullLinearStage
-from solver.laws import Contact
 
 MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
@@ -38,10 +38,9 @@ def anderson(
         np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
         for group in stage.groups
     ]
-    contacts = [law for law in problem.of_law(Contact) if isinstance(law, Contact)]
     growth = 1.0
-    if contacts:
-        is_held = any(law.below is None for law in contacts)
+    if problem.opens:
+        is_held = any(law.is_on_support for law in problem.rubbing.values())
         growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
     return Anderson(weights, memory, growth, blocks)
 

@@ -9,7 +9,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
 
 DENSE_UP_TO = 50

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem, sliding_rows
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.direction import automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Course, contact_status
@@ -96,7 +97,7 @@ class DirectionUpdate:
         share = np.count_nonzero(course.status, axis=1) / course.status.shape[1]
         k, first = automatic(self._problem), 0
         for law in self._problem.rubbing.values():
-            for rows in sliding_rows(law):
+            for rows in law.tangent.sides:
                 k[rows] *= SLIDING ** share[first + law.points]
             first += len(law.positions)
         k.flags.writeable = False

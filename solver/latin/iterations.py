@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.linalg import LinAlgError
 
+from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.discrete import coarser_problems
-from solver.discrete.problem import Array, Problem
+from solver.discrete.problem import Problem
 from solver.latin.acceleration import Anderson, anderson
 from solver.latin.blocks import Blocks
 from solver.latin.direction import search_direction

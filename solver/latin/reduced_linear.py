@@ -12,7 +12,8 @@ from functools import partial
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem, Substructure
+from solver.arrays import Array
+from solver.discrete.problem import Problem, Substructure
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis

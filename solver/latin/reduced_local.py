@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.linalg import qr
 
-from solver.discrete.problem import Array, Indices, Problem, sliding_rows
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.latin.linear import Group
 from solver.latin.local import LocalStage
 from solver.latin.reduced_linear import Family, ReducedLinearStage
-from solver.laws import Friction
 from solver.reduction.basis import References
 from solver.settings import Settings
 
@@ -41,11 +41,13 @@ class ReducedLocalStage:
         self._refresh = settings.local_refresh
         self._rubs = np.zeros(problem.n_rows, dtype=bool)
         self._partner = np.arange(problem.n_rows)
-        for law in problem.of_law(Friction):
-            assert isinstance(law, Friction)
-            self._rubs[np.concatenate(sliding_rows(law))] = True
-            if law.below is not None:
-                self._partner[law.rows], self._partner[law.below] = law.below, law.rows
+        for law in problem.rubbing.values():
+            if law.opens:
+                continue
+            above, below = law.tangent
+            self._rubs[np.concatenate(law.tangent.sides)] = True
+            if below is not None:
+                self._partner[above], self._partner[below] = below, above
         self._laws: LocalStage | None = None
         self.references: References | None = None
 

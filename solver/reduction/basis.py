@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.discrete.problem import Array, Indices
+from solver.arrays import Array, Indices
 
 
 @dataclass

@@ -14,7 +14,8 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
 """Relative difference up to which two entries count as equally large when a sign is fixed."""

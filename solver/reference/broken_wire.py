@@ -12,13 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solver.arrays import Array
 from solver.reference.closed_form import ClosedForm, closed_form
 from solver.scenes.bar import Bar
 from solver.scenes.strand import Strand
-
-Array = NDArray[np.float64]
 
 STEPS = 100
 PRECISION = 1e-13

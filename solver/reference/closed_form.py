@@ -12,12 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solver.laws.friction import play
+from solver.arrays import Array
+from solver.laws.play import play
 from solver.scenes.bar import Bar
-
-Array = NDArray[np.float64]
 
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""

@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.band import Band, pairs
 from solver.reference.solution import Interrupted, Reference, States
@@ -136,7 +137,7 @@ class _Structure:
 
     def __init__(self, problem: Problem) -> None:
         law = problem.friction
-        rubbing = problem.row_dofs[law.rows]
+        rubbing = problem.row_dofs[law.tangent.above]
         self.point_dofs = np.zeros(len(law.positions), dtype=np.intp)
         self.point_dofs[law.points] = rubbing
         self.band = Band(assembled_stiffness(problem))

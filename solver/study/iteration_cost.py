@@ -10,8 +10,9 @@ from itertools import islice
 
 import numpy as np
 
+from solver.arrays import space_time
 from solver.discrete import discretise
-from solver.discrete.problem import Problem, space_time
+from solver.discrete.problem import Problem
 from solver.latin import StopRules, iterations, solve
 from solver.latin.direction import search_direction
 from solver.latin.iterations import Clock, Engine
@@ -96,7 +97,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
 
 def _floor(problem: Problem, stage: FullLinearStage) -> Callable[[], None]:
     law = problem.friction
-    friction = np.zeros((4, problem.n_instants, len(law.rows)))
+    friction = np.zeros((4, problem.n_instants, len(law.points)))
     low, high, before, after = friction
     rows = np.zeros((3, problem.n_instants, problem.n_rows))
     one, two, three = rows
