@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
-from app.views.catalogue import fitting
+from app.views.catalogue import VIEWS, fitting
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -54,6 +55,8 @@ class Dashboard:
         self._asked_for = session.wanted
         self._alone = True
         self._loaded = False
+        self._room = FIRST_ROW
+        self._owed: list[Callable[[], None]] = []
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
@@ -90,13 +93,14 @@ class Dashboard:
         self._alone = False
         self.session.start()
         send_without_delay()
-        # The first row comes first: two thirds of what the page is made of are not in it.
-        self._sidebar.fill()
-        self._arrange()
         self._on_narrow()
+        # Half of what the page is made of comes in slices, between which others are served.
+        self._owed = [self._make_room, self._sidebar.fill]
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
+        if self._owed:
+            self._owed.pop(0)()
         alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
         if alone != self._alone:
             self._alone = alone
@@ -174,8 +178,7 @@ class Dashboard:
         wanted = self._sidebar.offer([view.name for view in fit])
         self._shown = [view for view in fit if view.name in wanted]
         self.transport.arrange(session.wanted)
-        cards = [self._cards.of(view) for view in self._shown]
-        cards = cards[: None if self._loaded else FIRST_ROW]
+        cards = [self._cards.of(view) for view in self._shown[: self._room]]
         if list(self._plots) != cards:
             self._plots[:] = cards
         holds = session.wanted is self._asked_for
@@ -186,6 +189,11 @@ class Dashboard:
         self._offer_looks()
         self.transport.show()
         self._tabs.refresh()
+
+    def _make_room(self) -> None:
+        """Show all views, and not only the first row."""
+        self._room = len(VIEWS)
+        self._arrange()
 
     def _dim(self) -> None:
         """Tell plots that do not show the run's scene from those that do."""
@@ -218,8 +226,6 @@ class Dashboard:
     def _on_painted(self, event: Any) -> None:
         if event.new != self._pulse.frame:
             return
-        if self.session.facts is not None:
-            self._sidebar.catch_up()
         if self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
 

@@ -9,16 +9,17 @@ from typing import Any
 
 import panel as pn
 from bokeh.document import Document
+from panel.custom import JSComponent
 from panel.util import edit_readonly
 
-GATHER_MS = 1
-"""For how long Panel gathers what a widget sends, instead of 50 ms: only what came while the server
-was busy, and a slider's two messages about one move, each of which costs Panel 4 ms."""
 
+class Prompt(JSComponent):
+    """A component whose changes are heard at once.
 
-def gather_briefly(widget: Any) -> None:
-    """Hear of a widget's changes at once."""
-    widget._debounce = GATHER_MS
+    Panel gathers what a browser changes for 50 ms, which every painted picture would wait for.
+    """
+
+    _debounce = 0
 
 
 def send_without_delay() -> None:

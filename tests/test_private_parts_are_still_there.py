@@ -7,20 +7,20 @@ import inspect
 import panel as pn
 import panel_material_ui as pmui
 from bokeh.server.session import ServerSession
+from panel.custom import JSComponent
+from panel.reactive import Syncable
 from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
 
 from app.figures import make_figure
-from app.innards import GATHER_MS, gather_briefly, ignore_business
+from app.innards import Prompt, ignore_business
 from app.pulse import Pulse
 from app.views.catalogue import VIEWS
 
 
-def test_a_widget_gathers_as_long_as_it_is_told() -> None:
-    slider = pmui.FloatSlider()
-    assert slider._debounce > GATHER_MS
-    gather_briefly(slider)
-    assert slider._debounce == GATHER_MS
+def test_components_would_gather_changes_if_they_were_not_told() -> None:
+    assert JSComponent._debounce > Prompt._debounce == 0
+    assert "self._debounce" in inspect.getsource(Syncable)
 
 
 def test_sockets_can_be_told_to_send_at_once() -> None:
