@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
-from app.views.catalogue import VIEWS, fitting
+from app.views.catalogue import fitting
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -56,7 +55,6 @@ class Dashboard:
         self._alone = True
         self._loaded = False
         self._room = FIRST_ROW
-        self._owed: list[Callable[[], None]] = []
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
@@ -94,13 +92,13 @@ class Dashboard:
         self.session.start()
         send_without_delay()
         self._on_narrow()
-        # Half of what the page is made of comes in slices, between which others are served.
-        self._owed = [self._make_room, self._sidebar.fill]
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
-        if self._owed:
-            self._owed.pop(0)()
+        if self._loaded and self._room < len(self._shown):
+            # A card at a time: all at once, every other page would stand still.
+            self._room += 1
+            self._arrange()
         alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
         if alone != self._alone:
             self._alone = alone
@@ -189,11 +187,6 @@ class Dashboard:
         self._offer_looks()
         self.transport.show()
         self._tabs.refresh()
-
-    def _make_room(self) -> None:
-        """Show all views, and not only the first row."""
-        self._room = len(VIEWS)
-        self._arrange()
 
     def _dim(self) -> None:
         """Tell plots that do not show the run's scene from those that do."""

@@ -36,6 +36,8 @@ thead td { opacity: 0.75; }
 td input { width: 100%; padding: 3px 4px; }
 td input:invalid { border-color: #D55E00; }
 button { width: 26px; cursor: pointer; }
+button.wide { width: auto; padding: 4px 12px; margin: 4px 6px 8px 0; }
+input[type=file] { display: block; width: 100%; margin-top: 4px; font: inherit; }
 .points { max-height: 240px; overflow-y: auto; }
 """
 
@@ -53,10 +55,13 @@ class Form(JSComponent):
     shown
         The value of each control that applies, by name; "" has the number of the newest message
         that was obeyed.
+    file
+        A text that the browser is to save, and anything that tells it from the one before.
     """
 
     items = param.List(default=[])
     shown = param.Dict(default={})
+    file = param.List(default=[])
 
     _esm = """
     export function render({model}) {
@@ -182,12 +187,28 @@ class Form(JSComponent):
         }
         return [...parts, table]
       }
-      const kinds = {slider, choice, flip, checks, curve}
+      const share = (row, item) => {
+        const text = (bytes) => {
+          try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) }
+          catch { return null }
+        }
+        const upload = named(item, make("input", {type: "file", accept: ".toml,.csv"}))
+        upload.onchange = async () => {
+          const [file] = upload.files
+          if (file) { tell(row, [file.name, text(await file.arrayBuffer())]) }
+          upload.value = ""
+        }
+        const buttons = item.buttons.map(([name, title]) =>
+          make("button", {title, className: "wide", onclick: () => tell(row, name)}, name))
+        row.show = () => {}
+        return [...buttons, make("label", {}, item.label, upload)]
+      }
+      const kinds = {slider, choice, flip, checks, curve, share}
       const added = (item) => {
         const written = JSON.stringify(item), kept = rows.get(item.name)
         if (kept && kept.written === written) { return kept }
         const row = {name: item.name, written, count: 0}
-        row.box = make("div", {className: `setting-${item.name}`, title: item.help},
+        row.box = make("div", {className: `setting-${item.name}`, title: item.help || ""},
           ...kinds[item.kind](row, item))
         return row
       }
@@ -225,6 +246,11 @@ class Form(JSComponent):
         }
         for (const head of heads) { head.hidden = head.rows.every((box) => box.hidden) }
       }
+      model.on("file", () => {
+        const href = URL.createObjectURL(new Blob([model.file[0]], {type: "application/toml"}))
+        make("a", {href, download: "slipfront.toml"}).click()
+        setTimeout(() => URL.revokeObjectURL(href), 1e4)
+      })
       model.on("items", build)
       model.on("shown", show)
       build()

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from io import StringIO
 from typing import Any
-
-import panel_material_ui as pmui
 
 from app.address import query_of
 from app.form import POINTS, Form, item_of
@@ -36,7 +33,7 @@ ORDER = (
 )
 
 # None of these is the name of a setting.
-SCENE, WARM, VIEWS = "the-scene", "start-from-before", "the-views"
+SCENE, WARM, VIEWS, SHARE = "the-scene", "start-from-before", "the-views", "share"
 SCENE_ITEM = {
     "name": SCENE,
     "kind": "choice",
@@ -54,6 +51,18 @@ WARM_ITEM = {
     "group": METHOD,
 }
 VIEWS_ITEM = {"name": VIEWS, "kind": "checks", "help": "What is drawn.", "group": "Views"}
+LINK, SAVE, DEFAULTS = "Link", "Save", "Defaults"
+SHARE_ITEM = {
+    "name": SHARE,
+    "kind": "share",
+    "group": "Share",
+    "buttons": [
+        [LINK, "Put the settings into the address bar, and copy it."],
+        [SAVE, "Save the settings; the command line reads them too."],
+        [DEFAULTS, "Bring all settings back to their defaults."],
+    ],
+    "label": "Open settings (.toml) or load (.csv)",
+}
 
 WARM_NOTE = """\
 # The run on the page started from the solution of the run before it, so its iterations and times
@@ -99,13 +108,8 @@ class Sidebar:
         self._in_hand: set[str] = set()
         self._has_obeyed = False
         self._heard = self._answered = 0
-        self._form = Form(sizing_mode="stretch_width", margin=(4, 10))
-        self._form.on_msg(lambda message: self.hear(**message.data))
-        self.view = pmui.Column(self._form, sizing_mode="stretch_width", margin=0)
-
-    def fill(self) -> None:
-        """Put in what is not needed at first."""
-        self.view[1:] = self._share()
+        self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
+        self.view.on_msg(lambda message: self.hear(**message.data))
 
     def show(self, settings: Settings) -> None:
         """Show the settings that hold."""
@@ -119,9 +123,10 @@ class Sidebar:
             SCENE: settings.scene,
             WARM: self._session.warm_start,
             VIEWS: [self._views, wanted],
+            SHARE: None,
             "": self._answered,
         }
-        self._form.param.update(items=_items(type(settings)), shown={**values, **own})
+        self.view.param.update(items=_items(type(settings)), shown={**values, **own})
 
     def hear(self, name: str, value: Any, hand: bool, count: int) -> None:
         """Follow what the user does with a control."""
@@ -133,6 +138,8 @@ class Sidebar:
         elif name == VIEWS:
             self._unwanted = (self._unwanted | set(self._views)) - set(value)
             self._rearrange()
+        elif name == SHARE:
+            self._on_share(value)
         elif value is None:
             self._let_go(name)
         elif value == POINTS:
@@ -164,40 +171,15 @@ class Sidebar:
         self._session.choose_scene(scene)
         self._after_change()
 
-    def _share(self) -> list[Any]:
-        link = pmui.Button(
-            label="Link",
-            icon="link",
-            variant="outlined",
-            size="small",
-            description="Put the settings into the address bar, and copy it.",
-        )
-        link.on_click(lambda event: self._copy(query_of(self._session.settings)))
-        save = pmui.FileDownload(
-            label="Save",
-            callback=self._saved,
-            filename="slipfront.toml",
-            size="small",
-            variant="outlined",
-            description="Save the settings; the command line reads them too.",
-        )
-        default = pmui.Button(
-            label="Defaults",
-            icon="undo",
-            variant="outlined",
-            size="small",
-            description="Bring all settings back to their defaults.",
-        )
-        default.on_click(lambda event: self._adopt(type(self._session.settings).checked({})))
-        upload = pmui.FileInput(
-            label="Open settings (.toml) or load (.csv)",
-            accept=".toml,.csv",
-            size="small",
-            sizing_mode="stretch_width",
-        )
-        upload.param.watch(self._on_upload, "value")
-        heading = pmui.Typography("Share", variant="overline", margin=(6, 10, -6, 10))
-        return [heading, pmui.Row(link, save, default), upload]
+    def _on_share(self, value: Any) -> None:
+        if value == LINK:
+            self._copy(query_of(self._session.settings))
+        elif value == SAVE:
+            self.view.file = [self._saved(), self._heard]
+        elif value == DEFAULTS:
+            self._adopt(type(self._session.settings).checked({}))
+        else:
+            self._open(*value)
 
     def _let_go(self, name: str) -> None:
         """Follow the end of a drag."""
@@ -224,29 +206,28 @@ class Sidebar:
         self.show(self._session.wanted)
         self._rearrange()
 
-    def _on_upload(self, event: Any) -> None:
-        if event.new is None:
+    def _open(self, filename: str, text: str | None) -> None:
+        """Take the settings or the load path of a file."""
+        if text is None:
+            self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
             return
         try:
-            text = event.new.decode("utf-8-sig")
-            if event.obj.filename.endswith(".toml"):
+            if filename.endswith(".toml"):
                 self._adopt(settings_from_toml(text))
             else:
-                self._on_setting(*load_in(text, event.obj.filename, self._session.wanted))
+                self._on_setting(*load_in(text, filename, self._session.wanted))
         except SettingError as refusal:
             self._complain(str(refusal))
-        except UnicodeDecodeError:
-            self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
 
-    def _saved(self) -> StringIO:
+    def _saved(self) -> str:
         facts = self._session.facts
         warm = facts is not None and facts.was_warm
-        return StringIO((WARM_NOTE if warm else "") + dump(self._session.settings))
+        return (WARM_NOTE if warm else "") + dump(self._session.settings)
 
 
 @cache
 def _items(settings: type[Settings]) -> list[dict[str, Any]]:
-    """Say what controls there are, those behind "more" last but the choice of views."""
+    """Say what controls there are, those behind "more" before the choice of views."""
     made = [item_of(name, definition) for name, definition in settings.definitions().items()]
     found = [item for item in made if item is not None]
     open_ones = [item for item in found if not item["more"]]
@@ -254,4 +235,5 @@ def _items(settings: type[Settings]) -> list[dict[str, Any]]:
     open_ones.sort(key=lambda item: groups.index(item["group"]))
     after = max(i for i, item in enumerate(open_ones) if item["group"] == METHOD) + 1
     open_ones.insert(after, WARM_ITEM)
-    return [SCENE_ITEM, *open_ones, *(item for item in found if item["more"]), VIEWS_ITEM]
+    more = [item for item in found if item["more"]]
+    return [SCENE_ITEM, *open_ones, *more, VIEWS_ITEM, SHARE_ITEM]

@@ -33,8 +33,8 @@ def edited(sidebar: Sidebar, value: Any) -> Any:
     sidebar.hear("load", value, False, 7)
     sidebar.obey()
     # What tells the browser that this edit was heard, and is to show what came of it.
-    assert sidebar._form.shown[""] == 7
-    return sidebar._form.shown["load"]
+    assert sidebar.view.shown[""] == 7
+    return sidebar.view.shown["load"]
 
 
 def test_a_refused_edit_is_answered_with_what_holds(sidebar: Sidebar) -> None:
@@ -52,10 +52,10 @@ def test_a_table_begins_as_the_preset_that_it_replaces(sidebar: Sidebar) -> None
 
 
 def test_only_controls_that_apply_have_a_value(sidebar: Sidebar) -> None:
-    assert "substructures" in sidebar._form.shown
-    assert "seed" not in sidebar._form.shown
+    assert "substructures" in sidebar.view.shown
+    assert "seed" not in sidebar.view.shown
     edited(sidebar, "random")
-    assert "seed" in sidebar._form.shown
+    assert "seed" in sidebar.view.shown
 
 
 def test_columns_of_a_table_have_units() -> None:

@@ -65,7 +65,7 @@ def test_of_the_moves_between_two_ticks_the_newest_of_each_setting_counts(
     sidebar.obey()
     assert changed == [("peak", 910.0), ("peak", 930.0), ("substructures", 8)]
     assert (session.wanted.peak, session.wanted.substructures) == (930.0, 8)
-    assert sidebar._form.shown["peak"] == 930.0
+    assert sidebar.view.shown["peak"] == 930.0
 
 
 def test_after_a_tick_without_a_move_the_next_is_obeyed_at_once_again(
