@@ -18,7 +18,7 @@ from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
-from app.views.catalogue import fitting
+from app.views.catalogue import VIEWS, fitting
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -95,10 +95,8 @@ class Dashboard:
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
-        if self._loaded and self._room < len(self._shown):
-            # A card at a time: all at once, every other page would stand still.
-            self._room += 1
-            self._arrange()
+        if self._loaded and self._room < len(VIEWS):
+            self._fill()
         alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
         if alone != self._alone:
             self._alone = alone
@@ -187,6 +185,18 @@ class Dashboard:
         self._offer_looks()
         self.transport.show()
         self._tabs.refresh()
+
+    def _fill(self) -> None:
+        """Make one of the cards below the first row, or show them all.
+
+        In slices, between which other pages are served; shown at once, as every time costs 12 ms.
+        """
+        made = next((view for view in self._shown if not self._cards.has(view)), None)
+        if made is not None:
+            self._cards.of(made)
+        else:
+            self._room = len(VIEWS)
+            self._arrange()
 
     def _dim(self) -> None:
         """Tell plots that do not show the run's scene from those that do."""
