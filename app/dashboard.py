@@ -55,6 +55,7 @@ class Dashboard:
         self._alone = True
         self._loaded = False
         self._room = FIRST_ROW
+        self._logged = (0, "")
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
@@ -106,6 +107,7 @@ class Dashboard:
             self._tabs.refresh()
         self._sidebar.obey()
         self._pass_on(self.session.collect())
+        self._log()
         is_lost = self._pulse.painted < self._pulse.frame
         if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
@@ -221,6 +223,16 @@ class Dashboard:
                 self._dim()
                 self._offer_looks()
                 self.transport.show()
+
+    def _log(self) -> None:
+        """Tell whoever serves the page what its run has come to; a drag is no news till its end."""
+        session = self.session
+        if session.facts is None or session.follows_hand:
+            return
+        came_to = "broke" if session.facts.is_broken else "ended" if session.is_over else "started"
+        if (session.ticket, came_to) != self._logged:
+            self._logged = session.ticket, came_to
+            pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
 
     def _connections(self) -> int:
         context = pn.state.curdoc.session_context if pn.state.curdoc else None

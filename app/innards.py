@@ -5,11 +5,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import panel as pn
 from bokeh.document import Document
 from panel.custom import JSComponent
+from panel.io.liveness import LivenessHandler
 from panel.util import edit_readonly
 
 
@@ -31,6 +33,20 @@ def send_without_delay() -> None:
     context = pn.state.curdoc.session_context if pn.state.curdoc else None
     for connection in context.session._subscribed_connections if context is not None else ():
         connection._socket.set_nodelay(True)
+
+
+def alive_with(facts: Callable[[], Mapping[str, Any]]) -> None:
+    """Have the liveness endpoint of Panel, which says but `true`, say how the server fares."""
+    get = LivenessHandler.get
+
+    async def tell(handler: LivenessHandler) -> None:
+        await get(handler)
+        if handler.get_argument("endpoint", default=None) is None:
+            # What was written is not sent yet.
+            handler.clear()
+            handler.write({handler.request.path: True, **facts()})
+
+    LivenessHandler.get = tell  # type: ignore[method-assign]
 
 
 def ignore_business(page: Any) -> None:
