@@ -15,11 +15,12 @@ def on_server_loaded(server_context: Any) -> None:
     # Here and not above: what a hook's module does to the path while it loads is undone.
     if ROOT not in sys.path:
         sys.path.insert(0, ROOT)
-    from app.innards import alive_with
+    from app.innards import alive_with, open_in_turn
     from app.serve import LATENESS, facts, rehearse
 
     rehearse()
     alive_with(facts)
+    open_in_turn()
     IOLoop.current().spawn_callback(LATENESS.watch)
     # What is imported stays: without this, every full collection walks it for 0.15 s, in which
     # all pages stand still.

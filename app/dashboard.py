@@ -175,13 +175,15 @@ class Dashboard:
         fit = fitting(session.wanted)
         wanted = self._sidebar.offer([view.name for view in fit])
         self._shown = [view for view in fit if view.name in wanted]
+        there = self._shown[: self._room]
         self.transport.arrange(session.wanted)
-        cards = [self._cards.of(view) for view in self._shown[: self._room]]
+        cards = [self._cards.of(view) for view in there]
         if list(self._plots) != cards:
             self._plots[:] = cards
         holds = session.wanted is self._asked_for
         complaint = session.look.complaint if holds else ""
-        session.watch(views=tuple(view.name for view in self._shown), complaint=complaint)
+        # The worker sends what a view had already only when the choice of views changes.
+        session.watch(views=tuple(view.name for view in there), complaint=complaint)
         self._pulse.query = query_of(session.wanted)
         self._dim()
         self._offer_looks()

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -12,6 +13,7 @@ import panel as pn
 from bokeh.document import Document
 from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
+from panel.io.server import DocHandler
 from panel.util import edit_readonly
 
 
@@ -47,6 +49,22 @@ def alive_with(facts: Callable[[], Mapping[str, Any]]) -> None:
             handler.write({handler.request.path: True, **facts()})
 
     LivenessHandler.get = tell  # type: ignore[method-assign]
+
+
+def open_in_turn() -> None:
+    """Have pages opened one after the other.
+
+    What has come in meanwhile is all done in one turn of the event loop: of thirty pages that are
+    asked for together, everybody else waits for all.
+    """
+    get, turn = DocHandler.get, asyncio.Lock()
+
+    async def wait(handler: DocHandler, *args: Any, **options: Any) -> None:
+        async with turn:
+            await get(handler, *args, **options)
+            await asyncio.sleep(0)
+
+    DocHandler.get = wait  # type: ignore[method-assign]
 
 
 def ignore_business(page: Any) -> None:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
 import inspect
 
 import panel as pn
 import panel_material_ui as pmui
+import pytest
 from bokeh.server.session import ServerSession
 from panel.custom import JSComponent
+from panel.io.server import DocHandler
 from panel.reactive import Syncable
 from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
 
 from app.figures import make_figure
-from app.innards import Prompt, ignore_business
+from app.innards import Prompt, ignore_business, open_in_turn
 from app.pulse import Pulse
 from app.views.catalogue import VIEWS
 
@@ -37,6 +40,24 @@ def test_a_busy_server_changes_nothing_on_the_page() -> None:
         pn.state.busy = True
         pn.state.busy = False
     assert not changes
+
+
+def test_pages_are_opened_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert inspect.iscoroutinefunction(inspect.unwrap(DocHandler.get))
+    said: list[str] = []
+
+    async def get(name: str) -> None:
+        said.append(f"{name} begins")
+        await asyncio.sleep(0)
+        said.append(f"{name} ends")
+
+    async def both() -> None:
+        monkeypatch.setattr(DocHandler, "get", get)
+        open_in_turn()
+        await asyncio.gather(DocHandler.get("one"), DocHandler.get("two"))
+
+    asyncio.run(both())
+    assert said == ["one begins", "one ends", "two begins", "two ends"]
 
 
 def test_tags_of_a_pane_are_those_of_its_model() -> None:
