@@ -186,6 +186,8 @@ class Sidebar:
         self._in_hand.discard(name)
         self.obey()
         self._session.let_go()
+        # A slider whose move was refused waits for the answer to this, its last message.
+        self.show(self._session.wanted)
 
     def _on_setting(self, name: str, value: Any, *, by_hand: bool = False) -> None:
         """Make the first change at once, and of those before the next tick the newest then.

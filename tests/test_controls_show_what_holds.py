@@ -41,6 +41,12 @@ def test_a_refused_edit_is_answered_with_what_holds(sidebar: Sidebar) -> None:
     assert edited(sidebar, [[0, 0], [0, 500]]) == tuple(TABLE)
 
 
+def test_a_slider_that_was_refused_is_answered_when_it_is_let_go(sidebar: Sidebar) -> None:
+    sidebar.hear("substructures", 51, True, 1)
+    sidebar.hear("substructures", None, False, 2)
+    assert (sidebar.view.shown["substructures"], sidebar.view.shown[""]) == (10, 2)
+
+
 def test_an_edit_that_is_taken_stays(sidebar: Sidebar) -> None:
     assert edited(sidebar, [[0, 0], [2, 500]]) == ((0.0, 0.0), (2.0, 500.0))
 
