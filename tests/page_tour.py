@@ -102,7 +102,14 @@ class Tour:
         if isinstance(definition, param.Boolean):
             place.get_by_role("switch").press("Space")
         elif isinstance(definition, param.Selector | Curve):
-            choose(place.get_by_role("combobox"), value if isinstance(value, str) else POINTS)
+            # Also one that does not apply, and is hidden, as it is brought back last.
+            place.locator("select").evaluate(
+                """(select, value) => {
+                  select.value = value
+                  select.dispatchEvent(new Event("change"))
+                }""",
+                value if isinstance(value, str) else POINTS,
+            )
         elif value in definition.softbounds:
             key = "Home" if value == definition.softbounds[0] else "End"
             place.get_by_role("slider").press(key)
@@ -127,11 +134,15 @@ class Tour:
         place = self.page.locator(f".setting-{name}")
         if isinstance(settings.definitions()[name], param.Selector | Curve):
             shown = value if isinstance(value, str) else POINTS
-            expect(place.get_by_role("combobox")).to_have_value(shown)
+            expect(place.locator("select")).to_have_value(shown)
         elif isinstance(value, bool):
             expect(place.get_by_role("switch")).to_be_checked(checked=value)
         else:
-            expect(place.get_by_role("slider")).to_have_attribute("aria-valuenow", f"{value:g}")
+            self.page.wait_for_function(
+                "([range, value]) => Math.abs(range.ariaValueNow - value) <= 1e-3 * Math.abs(value)",
+                arg=[place.get_by_role("slider").element_handle(), value],
+                polling=POLL_MS,
+            )
 
     def _await_end(self, former: str, settings: Settings) -> str:
         """Wait until another run has ended, and its errors are told where it has any."""
