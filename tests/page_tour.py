@@ -116,7 +116,7 @@ class Tour:
         else:
             at = math.log10(value) if about(definition).logarithmic else value
             # What `fill` refuses as no step: the number nearest to it that the slider takes.
-            place.get_by_role("slider").evaluate(
+            place.locator("input[type=range]").evaluate(
                 """(range, at) => {
                   range.value = at
                   range.dispatchEvent(new Event("input"))
@@ -139,7 +139,8 @@ class Tour:
             expect(place.get_by_role("switch")).to_be_checked(checked=value)
         else:
             self.page.wait_for_function(
-                "([range, value]) => Math.abs(range.ariaValueNow - value) <= 1e-3 * Math.abs(value)",
+                """([range, value]) =>
+                  Math.abs(range.ariaValueNow - value) <= 1e-3 * Math.abs(value)""",
                 arg=[place.get_by_role("slider").element_handle(), value],
                 polling=POLL_MS,
             )
