@@ -96,7 +96,16 @@ class Anderson:
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
         self._start, self._residual, self._residual_before = np.zeros((3, len(self._root)))
-        self.seen, self.count, self.smallest = 0, 0, np.inf
+        self.restore((0, 0, np.inf))
+
+    @property
+    def memory(self) -> tuple[int, int, float]:
+        """What it counts: `seen`, `count` and `smallest`."""
+        return self.seen, self.count, self.smallest
+
+    def restore(self, memory: tuple[int, int, float]) -> None:
+        """Count on from there."""
+        self.seen, self.count, self.smallest = memory
 
     @property
     def remembered(self) -> int:
@@ -130,7 +139,7 @@ class Anderson:
         if not size > 0.0 or not np.isfinite(size):
             return False
         if size > self._growth * self.smallest:
-            self.seen, self.count, self.smallest = 0, 0, np.inf
+            self.restore((0, 0, np.inf))
         self.smallest = min(self.smallest, size)
         if self.seen:
             self._remember()

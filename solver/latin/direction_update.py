@@ -25,6 +25,29 @@ TRIAL = 20
 """Iterations after which the new k must have made the k-free indicator smaller, again and again."""
 
 
+class ConstantDirection:
+    """A search direction that stays what it is.
+
+    Parameters
+    ----------
+    k
+        Shape (n_rows,), scaled, read-only.
+    """
+
+    is_due = False
+    course: Course | None = None
+
+    def __init__(self, k: Array) -> None:
+        self.k = k
+
+    def see(self, position: Array) -> None:
+        """Nothing depends on W^."""
+
+    def turn(self, displacement: Array, force: Array) -> tuple[Array, Array] | None:
+        """Nothing changes."""
+        return None
+
+
 class DirectionUpdate:
     """k(x, t) in separated form: a profile in x from the status, constant in t.
 
@@ -49,6 +72,11 @@ class DirectionUpdate:
         self._problem = problem
         self._first = k
         self.course = course or Course("first", k)
+
+    @property
+    def k(self) -> Array:
+        """Search direction of the rows by now, shape (n_rows,), scaled, read-only."""
+        return self.course.k
 
     @property
     def is_due(self) -> bool:

@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from solver.arrays import Array, Indices, space_time
+from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Substructure
 from solver.latin.acceleration import anderson
+from solver.latin.cycle import Cycle, Everywhere, Parts
 from solver.latin.direction import automatic
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage
@@ -53,22 +54,18 @@ def nested_start(
     start: Checkpoint | None = None
     for coarse, finer in reversed(list(zip(coarser, [problem, *coarser], strict=False))):
         own = _direction(coarse)
-        local = LocalStage(coarse, own)
         linear = FullLinearStage(coarse, own, multiscale=True)
-        state = linear.start(start)
-        incoming = linear.incoming(state, space_time(coarse.n_rows, coarse.n_instants))
         mix = anderson(coarse, linear, settings.anderson_memory)
+        local = Everywhere(LocalStage(coarse, own), linear)
+        cycle = Cycle(coarse, Parts(own, local, linear, mix, RELAXATION), start)
         points = max(len(law.positions) for law in coarse.rubbing.values())
         enough = RESIDUAL / (points - 1) ** 2
         for _ in range(settings.nested_iterations):
-            linear.read(local(incoming))
-            mix.start(state)
-            linear.advance(state, RELAXATION)
-            mix(state)
-            linear.incoming(state, incoming)
+            cycle.local_stage()
+            cycle.linear_stage()
             if mix.relative_residual <= enough:
                 break
-        outgoing = linear.to_boundary(state)
+        outgoing, incoming = cycle.outgoing, cycle.incoming
         displacement = 0.5 * (outgoing + incoming)
         force = 0.5 * own[:, None] * (outgoing - incoming)
         wanted = k if finer is problem else _direction(finer)

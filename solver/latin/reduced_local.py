@@ -9,6 +9,8 @@ from scipy.linalg import qr
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
+from solver.latin.clock import Clock
+from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group
 from solver.latin.local import LocalStage
 from solver.latin.reduced_linear import Family, ReducedLinearStage
@@ -186,6 +188,41 @@ class ReducedLocalStage:
         root = np.sqrt(basis.k)[:, None]
         chosen = _pivots((root * basis.modes).T[:, friction], friction, wanted)
         return np.union1d(np.flatnonzero(~rubs), chosen)
+
+
+class AtReferences:
+    """The laws at reference points and instants, and now and then everywhere."""
+
+    def __init__(
+        self, stage: LocalStage, linear: ReducedLinearStage, few: ReducedLocalStage, clock: Clock
+    ) -> None:
+        self.stage, self._linear, self.few, self._clock = stage, linear, few, clock
+
+    @property
+    def references(self) -> References | None:
+        """Those at use, or None before they are chosen."""
+        return self.few.references
+
+    def obey(self, number: int, incoming: Array, state: list[list[Family]]) -> float:
+        """Obey the laws, as `LocalPart` says."""
+        if not self.few.is_reduced(number):
+            self._linear.read(self.stage(incoming))
+            return 0.0
+        self.few(state)
+        self._clock.stop()
+        # What the laws say everywhere is for those who look, and for the error of the few.
+        error = self._linear.distance_of_target(self.stage(incoming))
+        self._clock.go_on()
+        return error
+
+    def keep_up(self, number: int, state: list[list[Family]]) -> None:
+        """Choose references anew when it is time to."""
+        self.few.keep_up(number, state)
+
+    def recall(self, start: Checkpoint, state: list[list[Family]]) -> None:
+        """Use the references of a checkpoint."""
+        if start.references is not None:
+            self.few.adopt(start.references, state)
 
 
 def _pivots(functions: Array, places: Indices, wanted: int) -> Indices:

@@ -14,8 +14,9 @@ from solver.arrays import space_time
 from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import StopRules, iterations, solve
+from solver.latin.clock import Clock
 from solver.latin.direction import search_direction
-from solver.latin.iterations import Clock, Engine
+from solver.latin.iterations import Method
 from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
 from solver.latin.response import DenseResponse
@@ -177,9 +178,10 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
     number = len(solve(problem, settings, watch=False).records)
 
     def bare() -> None:
-        engine, clock = Engine(problem, settings, None), Clock(0.0)
+        cycle = Method(problem, settings, None, Clock()).cycle
         for count in range(1, number + 1):
-            engine.step(count, clock)
+            cycle.local_stage(count)
+            cycle.linear_stage(count)
 
     def kept() -> None:
         for _ in islice(iterations(problem, settings), number):
