@@ -1,4 +1,4 @@
-"""Contact that gives way before it slips: Jenkins' element in series (theory.md, 8)."""
+"""Contact that gives way before it slips: Jenkins' element in series (solver/README.md, 8)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Unilateral contact with Coulomb friction holds pointwise on any input (theory.md, 2)."""
+"""Unilateral contact with Coulomb friction holds pointwise on any input (solver/README.md, 2)."""
 
 from __future__ import annotations
 

@@ -14,8 +14,8 @@ from solver.scenes.bar import Bar
 def discretise_bar(scene: Bar) -> Problem:
     """Cut the bar into substructures and write the laws of its interfaces.
 
-    Lengths are scaled by L, forces by ES (theory.md, 1). Rows are ordered by law: the friction
-    rows of all substructures, then their left ends, then their right ends.
+    Lengths are scaled by L, forces by ES (solver/README.md, 1). Rows are ordered by law: the
+    friction rows of all substructures, then their left ends, then their right ends.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
     substructure. On the friction points it is that of a

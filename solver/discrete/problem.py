@@ -255,7 +255,7 @@ class Problem:
         Returns
         -------
         P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
-        theory.md, 2).
+        solver/README.md, 2).
         """
         entries, places, numbers, loads = [], [], [], []
         n_macro = 0

@@ -1,4 +1,4 @@
-"""Indicators that the iteration computes of itself; none is an error (theory.md, 4)."""
+"""Indicators that the iteration computes of itself; none is an error (solver/README.md, 4)."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class BehaviourIndicator:
 
 
 def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
-    """Check the linear stage's fields against the interface laws alone (theory.md, 4).
+    """Check the linear stage's fields against the interface laws alone (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q

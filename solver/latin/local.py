@@ -15,7 +15,7 @@ class LocalStage:
     """Interface laws along the search direction E+, ready for one problem and one k.
 
     It reads z = W - F/k of the linear stage alone, and what it gives is read as
-    W^ + F^/k = 2 W^ - z (theory.md, 2). Laws of one kind are applied together.
+    W^ + F^/k = 2 W^ - z (solver/README.md, 2). Laws of one kind are applied together.
 
     Parameters
     ----------

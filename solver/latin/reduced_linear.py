@@ -1,4 +1,4 @@
-"""The linear stage on separated bases (paper, section 2.2; theory.md, 3).
+"""The linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
 
 With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G = k (u - Z)
 (paper, eq. 3), whose G + k Z is k u. So the search direction is met as well as modes can: the

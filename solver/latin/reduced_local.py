@@ -1,4 +1,4 @@
-"""The local stage at reference points and instants (paper, end of section 3.2; theory.md, 3)."""
+"""The local stage at reference points and instants (paper, section 3.2; solver/README.md, 3)."""
 
 from __future__ import annotations
 

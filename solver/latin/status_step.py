@@ -4,7 +4,7 @@ Statuses that an iterate shows make the problem linear, instant after instant. T
 solution itself shows to be wrong are mended where they stand, a Newton method that begins where
 LATIN ends. If statuses and solution agree at every instant, all laws and equilibrium hold: then it
 is the solution of the discrete problem up to rounding, whatever k and the method were, and it is
-called certified (theory.md, 7). LATIN finds the fronts, the step finishes.
+called certified (solver/README.md, 7). LATIN finds the fronts, the step finishes.
 """
 
 from __future__ import annotations

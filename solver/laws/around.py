@@ -1,6 +1,6 @@
 """What is around an interface with friction, and the search direction k that suits it.
 
-Small k converges fast globally and slowly locally, large k the reverse (theory.md, 5).
+Small k converges fast globally and slowly locally, large k the reverse (solver/README.md, 5).
 """
 
 from __future__ import annotations

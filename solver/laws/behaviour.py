@@ -1,4 +1,4 @@
-"""How far fields are from friction and contact, whatever k (theory.md, 4)."""
+"""How far fields are from friction and contact, whatever k (solver/README.md, 4)."""
 
 from __future__ import annotations
 

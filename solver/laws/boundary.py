@@ -1,4 +1,4 @@
-"""Interfaces with the outside: prescribed displacement, prescribed force (theory.md, 2)."""
+"""Interfaces with the outside: prescribed displacement, prescribed force (solver/README.md, 2)."""
 
 from __future__ import annotations
 

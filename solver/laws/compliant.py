@@ -1,4 +1,4 @@
-"""Compliant friction: a spring in series with the slider, Jenkins' element (theory.md, 8).
+"""Compliant friction: a spring in series with the slider, Jenkins' element (solver/README.md, 8).
 
 Asperities, or the part of a joint that no mesh shows, give way before they slip. The slider stands
 at p = w + f / k_t, where w is the tangential jump and f the friction force on the body above; it

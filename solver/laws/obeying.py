@@ -1,4 +1,4 @@
-"""Friction in the local stage, along the search direction E+ (paper, problem 2.1; theory.md, 2).
+"""Friction in the local stage, along E+ (paper, problem 2.1; solver/README.md, 2).
 
 With z of the jump and the compliances 1/k of both sides added, both components are scalar: contact
 presses where the bodies would overlap, friction is the play operator.

@@ -67,7 +67,7 @@ class Perfect(Interface):
 
 
 def perfect(first: Array, second: Array, share: Array) -> Array:
-    """Find the common displacement of two glued sides (theory.md, 2).
+    """Find the common displacement of two glued sides (solver/README.md, 2).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The play operator: Coulomb friction pointwise, in closed form (theory.md, 2).
+"""The play operator: Coulomb friction pointwise, in closed form (solver/README.md, 2).
 
 A clip of a clip is a clip, so the recursion in time is an associative scan: for few points, blocks
 of instants are composed side by side; for many points, walking in time already keeps the processor
@@ -27,7 +27,7 @@ def play(target: Array, reach: Array) -> Array:
 
     Returns
     -------
-    Position with friction, shape (n_points, n_times), m (theory.md, 2).
+    Position with friction, shape (n_points, n_times), m (solver/README.md, 2).
     """
     reach = reach if reach.ndim == target.ndim else reach[:, None]
     result: Array = Play(*target.shape)(target, reach).copy()

@@ -1,4 +1,4 @@
-"""Finding the pair that a residual asks for (paper, problem 2.3; theory.md, 3)."""
+"""Finding the pair that a residual asks for (paper, problem 2.3; solver/README.md, 3)."""
 
 from __future__ import annotations
 

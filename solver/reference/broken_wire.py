@@ -1,4 +1,4 @@
-"""The broken wire in closed form: each side of its break is a friction bar (theory.md, 6).
+"""The broken wire in closed form: each side of its break is a friction bar (solver/README.md, 6).
 
 Unbroken, all wires carry the tension T and nothing slips. The break adds a force n to the broken
 wire, -T at its two new ends, which the neighbours take over in equal shares: with m of them, what

@@ -1,4 +1,4 @@
-"""Errors: distances to a reference (theory.md, 4)."""
+"""Errors: distances to a reference (solver/README.md, 4)."""
 
 from __future__ import annotations
 

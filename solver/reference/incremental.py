@@ -1,6 +1,7 @@
 """The incremental reference: friction solved instant by instant, on the assembled structure.
 
-Over one instant the displacement increment v minimises a strictly convex function (theory.md, 6),
+Over one instant the displacement increment v minimises a strictly convex function
+(solver/README.md, 6),
 
     phi(v) = 1/2 v' K v - g' v + sum r |v|,
 
@@ -31,7 +32,7 @@ ROUNDING = 32.0 * float(np.finfo(float).eps)
 
 
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve instant by instant (theory.md, 6), as `IncrementalRod` does."""
+    """Solve instant by instant (solver/README.md, 6), as `IncrementalRod` does."""
     start = time.perf_counter()
     found = IncrementalRod(problem).march(stop=stop)
     return replace(found, seconds=time.perf_counter() - start)

@@ -1,4 +1,4 @@
-"""Parallel elastic wires that rub on their neighbours, one of them broken (theory.md, 6)."""
+"""Parallel elastic wires that rub on their neighbours, one of them broken (solver/README.md, 6)."""
 
 from __future__ import annotations
 
