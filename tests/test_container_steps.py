@@ -105,7 +105,7 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
 
 
 def test_a_proxy_sends_every_browser_to_one_of_several_servers():
-    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "app" / "README.md").read_text(), re.DOTALL)
     services = yaml.safe_load(text)["services"]
     (rules,) = [config["content"] for config in yaml.safe_load(text)["configs"].values()]
     (port,) = instructions("EXPOSE")
