@@ -96,7 +96,7 @@ def test_a_step_that_needs_more_systems_gets_them_in_time(command):
 
 def test_a_few_small_changes_after_a_nested_start_are_no_convergence():
     settings = from_words(
-        "strand substructures=10 search_direction=paper nested_iterations=83 "
+        "strand substructures=10 search_direction=paper "
         "tolerance=0.06794181529902267 "
         "instants=4 wires=8 break_position=0.18720674155082684 elements=332 max_iterations=12 "
         "load=[[0.10762277265272469,5.829812280248028],[0.37488092644833393,19.189573831159976],"

@@ -50,7 +50,7 @@ def test_every_setting_that_can_do_anything_is_drawn_sooner_or_later(scene):
     if len(definitions["local_stage"].objects) == 1:
         never |= {name for name in definitions if name.startswith("local_")}
     if len(definitions["start"].objects) == 1:
-        never |= {"start", "nested_iterations"}
+        never |= {"start"}
     assert set(definitions) - drawn == never
 
 

@@ -21,7 +21,7 @@ SIZE = {"elements": 20, "substructures": 4, "instants": 41}
 FORMS: dict[str, dict[str, Any]] = {
     "paper": {},
     "anderson": {"search_direction": "auto", "acceleration": "anderson"},
-    "nested": {"start": "nested", "nested_iterations": 3},
+    "nested": {"start": "nested"},
     "pgd": {"linear_stage": "pgd"},
 }
 

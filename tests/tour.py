@@ -33,8 +33,7 @@ NEVER = {
 }
 """Settings of a scene that nothing makes apply, with those that depend on them."""
 DEPENDENT = {
-    "local_stage": {"local_points", "local_instants", "local_refresh"},
-    "start": {"nested_iterations"},
+    "local_stage": {"local_points", "local_instants"},
 }
 HALVINGS = 8
 Reach = Callable[[Settings, str], list[Any]]

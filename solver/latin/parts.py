@@ -69,7 +69,7 @@ def _plugged(problem: Problem, settings: Settings, k: Array, clock: Clock) -> Pa
         linear = full = FullLinearStage(problem, k, multiscale=settings.multiscale, blocks=blocks)
         local = Everywhere(stage, linear)
         if settings.acceleration == "anderson":
-            acceleration = anderson(problem, full, settings.anderson_memory, blocks)
+            acceleration = anderson(problem, full, blocks)
     return Parts(k, local, linear, acceleration, float(settings.relaxation))
 
 
@@ -89,5 +89,5 @@ def start_of(problem: Problem, settings: Settings, k: Array) -> Checkpoint | Non
     if problem.rest is not None:
         return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
     if settings.start == "nested":
-        return nested_start(coarser_problems(settings), settings, problem, k)
+        return nested_start(coarser_problems(settings), problem, k)
     return None

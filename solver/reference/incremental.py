@@ -50,10 +50,17 @@ class IncrementalRod:
     ----------
     problem
         A structure with one frictional interface of known bound.
+
+    Raises
+    ------
+    ValueError
+        If its law is no play operator.
     """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
+        if not problem.friction.is_plain:
+            raise ValueError("this solver knows Coulomb's friction of known bound on a support")
         self._structure = _Structure(problem)
 
     def march(

@@ -161,7 +161,6 @@ FORMS: dict[str, dict[str, object]] = {
         "local_stage": "reduced",
         "local_points": 0.1,
         "local_instants": 0.1,
-        "local_refresh": 10,
     },
 }
 FIRST, LAST = 20, 60
