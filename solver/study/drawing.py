@@ -48,9 +48,9 @@ body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem aut
 figure {{ margin: 0 0 3.5rem; }}
 img {{ max-width: 100%; height: auto; }}
 li b {{ font-weight: 600; }}
-.caption {{ color: #555; font-size: 0.9rem; }}
+.caption {{ opacity: 0.75; font-size: 0.9rem; }}
 table {{ border-collapse: collapse; font-size: 0.9rem; }}
-th, td {{ padding: 0.2rem 0.8rem 0.2rem 0; text-align: right; border-bottom: 1px solid #ddd; }}
+th, td {{ padding: 0.2rem 0.8rem 0.2rem 0; text-align: right; border-bottom: 1px solid #8884; }}
 th:first-child, td:first-child {{ text-align: left; }}
 </style>
 {body}
@@ -75,13 +75,22 @@ FIGURE = """<figure id="figure-{number}">
 """
 
 
-def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
+Drawn = tuple[PaperFigure, bytes]
+"""A figure, and its PNG."""
+
+
+def drawn(figure: PaperFigure) -> Drawn:
+    """Draw a figure."""
+    return figure, png(figure.panels, f"Fig. {figure.number}: {figure.title}")
+
+
+def write_figures(figures: Sequence[Drawn], folder: Path) -> list[Path]:
     """Write `figure-N.png` for each figure, and `figures.html` with all of them.
 
     Parameters
     ----------
     figures
-        What to draw.
+        What is drawn.
     folder
         An existing folder; files of these names are replaced.
 
@@ -94,12 +103,11 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
     OSError
         When a file cannot be written.
     """
-    images = [png(figure.panels, f"Fig. {figure.number}: {figure.title}") for figure in figures]
-    files = [folder / f"figure-{figure.number}.png" for figure in figures]
-    for file, image in zip(files, images, strict=True):
+    files = [folder / f"figure-{figure.number}.png" for figure, _ in figures]
+    for file, (_, image) in zip(files, figures, strict=True):
         file.write_bytes(image)
     together = folder / "figures.html"
-    together.write_text(html(figures, images), encoding="utf-8")
+    together.write_text(html(figures), encoding="utf-8")
     return [*files, together]
 
 
@@ -131,7 +139,7 @@ def png(panels: Sequence[Panel], heading: str) -> bytes:
     return small.getvalue()
 
 
-def html(figures: Sequence[PaperFigure], images: Sequence[bytes]) -> str:
+def html(figures: Sequence[Drawn]) -> str:
     """Write the page, with the images inside it."""
     parts = [
         FIGURE.format(
@@ -146,7 +154,7 @@ def html(figures: Sequence[PaperFigure], images: Sequence[bytes]) -> str:
             ),
             caption=escape(figure.caption),
         )
-        for figure, image in zip(figures, images, strict=True)
+        for figure, image in figures
     ]
     return PAGE.format(title="the paper's figures", body=BODY.format(figures="\n".join(parts)))
 

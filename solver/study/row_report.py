@@ -17,7 +17,7 @@ PAGE = """<!DOCTYPE html>
 body {{ font: 15px/1.45 system-ui, sans-serif; max-width: 90rem; margin: 2rem auto;
   padding: 0 1rem; color: #222; background: #fff; }}
 table {{ border-collapse: collapse; font-size: 0.85rem; margin-bottom: 2rem; }}
-th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left;
+th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: left;
   vertical-align: top; }}
 td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
 td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
@@ -101,7 +101,9 @@ def _cells(row: Values, colours: Mapping[str, str]) -> str:
     for column, value in row.items():
         if column == "verdict":
             colour = colours[str(value)]
-            cells.append(f'<td class="verdict" style="border-color: {colour}">{value}</td>')
+            cells.append(
+                f'<td class="verdict {value}" style="border-left-color: {colour}">{value}</td>'
+            )
         elif isinstance(value, float):
             text = number(value, ".2f" if column == "seconds" else ".1e")
             cells.append(f'<td class="number">{text}</td>')
@@ -110,7 +112,7 @@ def _cells(row: Values, colours: Mapping[str, str]) -> str:
         elif isinstance(value, int):
             cells.append(f'<td class="number">{value}</td>')
         else:
-            kind = ' class="settings"' if column == "settings" else ""
+            kind = ' class="settings"' if column in ("settings", "advice") else ""
             cells.append(f"<td{kind}>{escape(str(value))}</td>")
     return "".join(cells)
 

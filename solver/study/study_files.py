@@ -9,7 +9,7 @@ from solver.study.error_against_time import Study
 from solver.study.growth import Growth
 from solver.study.study_report import write_tables
 
-NO_PAGE = "The page needs matplotlib: pip install 'slipfront[figures]'"
+NO_PAGE = "The page needs matplotlib: pip install matplotlib pillow"
 
 
 def write_study(study: Study, found: Sequence[Growth], folder: Path) -> tuple[list[Path], bool]:

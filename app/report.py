@@ -1,8 +1,11 @@
-"""What the tabs of long reports share: ask, watch, cancel, read, and take away."""
+"""What the tabs of long reports share: ask, watch, cancel, read, and take away.
+
+What is read is the page that the command line writes, as it grows.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from html import escape
 from io import BytesIO
 from typing import Any
@@ -10,14 +13,13 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app.errand import Errand
+from app.errand import Errand, Found
 
 
 class Report:
     """A tab on which a report is asked for, watched while it is made, and read.
 
-    A subclass says what is asked (`_ask`), what can be chosen (`_choices`), and shows what came
-    of it (`_show`).
+    A subclass says what is asked (`_ask`) and what can be chosen (`_choices`).
 
     Parameters
     ----------
@@ -37,15 +39,25 @@ class Report:
     def __init__(self, errand: Errand, style: str, title: str, words: str) -> None:
         self._errand = errand
         self._style = style
-        self._heading = f"<h2>{escape(title)}</h2><p>{escape(words)}</p>"
-        self._results = self._column()
+        self._words = f"<h2>{escape(title)}</h2><p>{escape(words)}</p>"
+        self._shown: tuple[Found | None, bool] = None, False
+        self._newest: Found | None = None
         self._progress = self._text("", role="progress")
+        self._heading, self._sheet = self._text(""), self._text("")
+        self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
+        self._past.param.watch(lambda event: self._put(event.new), "value")
+        self._files = self._row(margin=(0, 6, 8, 6))
+        self._card = self._column(
+            self._heading, self._sheet, self._files, role="card paper", visible=False
+        )
         self.view = self._column(margin=(4, 10), visible=False)
 
     def open(self) -> None:
         """Show the report; nothing is computed before somebody asks."""
         if not self.view.objects:
-            self.view[:] = [self._card(self._text(self._heading), *self._bar()), self._results]
+            top = self._column(self._text(self._words), *self._bar(), role="card paper")
+            top.margin = (0, 0, 12, 0)
+            self.view[:] = [top, self._card]
         self._refresh()
 
     def refresh(self) -> None:
@@ -57,13 +69,18 @@ class Report:
         raise NotImplementedError
 
     def _choices(self) -> list[Any]:
-        raise NotImplementedError
-
-    def _show(self) -> None:
-        raise NotImplementedError
+        return []
 
     def _refusal(self) -> str:
         """Say why it cannot be asked for at present, if so."""
+        return ""
+
+    def _found(self) -> list[Found]:
+        """Give the reports that are whole, oldest first."""
+        return list(self._errand.found)
+
+    def _title(self, found: Found) -> str:
+        """Say what stands above a report that is whole (HTML)."""
         return ""
 
     def _bar(self) -> list[Any]:
@@ -73,15 +90,8 @@ class Report:
         )
         self._start.on_click(lambda event: self._on_start())
         self._cancel.on_click(lambda event: self._on_cancel())
-        row = pn.FlexBox(
-            self._start,
-            self._cancel,
-            *self._choices(),
-            align_items="center",
-            flex_wrap="wrap",
-            sizing_mode="stretch_width",
-            margin=(0, 6),
-        )
+        choices = self._choices()
+        row = self._row(self._start, self._cancel, *choices, self._past, align_items="center")
         return [row, self._progress]
 
     def _on_start(self) -> None:
@@ -98,7 +108,25 @@ class Report:
         self._cancel.visible = errand.is_busy
         waiting = f"<b>{escape(refusal)}</b>" if refusal and not errand.is_busy else ""
         self._progress.object = waiting or progress(errand)
-        self._show()
+        found = self._found()
+        options = {f"{number}: {one.title}": one for number, one in enumerate(found, start=1)}
+        if found and options != self._past.options:
+            self._past.param.update(options=options, value=found[-1], visible=len(found) > 1)
+        newest = errand.growing if errand.is_busy or not found else found[-1]
+        if newest is not self._newest and newest.html:
+            self._newest = newest
+            self._put(newest)
+
+    def _put(self, found: Found) -> None:
+        """Show one report, with its files if it is whole."""
+        is_whole = found in self._found()
+        if (found, is_whole) == self._shown:
+            return
+        self._shown = found, is_whole
+        self._heading.object = self._title(found) if is_whole else ""
+        self._sheet.object = found.html
+        self._files[:] = downloads(found.files) if is_whole else []
+        self._card.visible = True
 
     def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:
         """Put parts one below the other, as high as they are."""
@@ -110,8 +138,9 @@ class Report:
             **{"margin": 0, **options},
         )
 
-    def _card(self, *parts: Any) -> pn.Column:
-        return self._column(*parts, role="card paper", margin=(0, 0, 12, 0))
+    def _row(self, *parts: Any, **options: Any) -> pn.FlexBox:
+        options = {"margin": (0, 6), **options}
+        return pn.FlexBox(*parts, flex_wrap="wrap", sizing_mode="stretch_width", **options)
 
     def _text(self, html: str, role: str = "report") -> pn.pane.HTML:
         return pn.pane.HTML(
@@ -122,27 +151,22 @@ class Report:
             margin=(6, 14),
         )
 
-    def _downloads(self, files: Mapping[str, bytes]) -> pn.FlexBox:
-        """Give a button for each file."""
-        return pn.FlexBox(
-            *(
-                pmui.FileDownload(
-                    label=name,
-                    callback=lambda data=data: BytesIO(data),
-                    filename=name,
-                    size="small",
-                    variant="outlined",
-                )
-                for name, data in files.items()
-            ),
-            flex_wrap="wrap",
-            sizing_mode="stretch_width",
-            margin=(0, 6, 8, 6),
+
+def downloads(files: Mapping[str, bytes]) -> list[Any]:
+    """Give a button for each file."""
+    return [
+        pmui.FileDownload(
+            label=name,
+            callback=lambda data=data: BytesIO(data),
+            filename=name,
+            size="small",
         )
+        for name, data in files.items()
+    ]
 
 
 def progress(errand: Errand) -> str:
-    """Say how far a job is, or why it brought nothing (HTML)."""
+    """Say how far a report is, or why it came to nothing (HTML)."""
     if errand.is_busy:
         share = f"{100.0 * errand.share:.0f}"
         bar = (
@@ -151,21 +175,3 @@ def progress(errand: Errand) -> str:
         )
         return f"{bar} {escape(errand.doing)} <small>({escape(errand.title)})</small>"
     return f"<b>{escape(errand.notice)}</b>" if errand.notice else ""
-
-
-def bullets(lines: Sequence[str]) -> str:
-    """Write sentences as a list (HTML)."""
-    return "<ul>" + "".join(f"<li>{escape(line)}</li>" for line in lines) + "</ul>"
-
-
-def table(rows: Sequence[Sequence[str]]) -> str:
-    """Write a table whose first row is its head (HTML)."""
-    head, *rest = rows
-    heads = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    body = "".join(
-        f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rest
-    )
-    return (
-        f'<div class="scroll"><table><thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>'
-        "</div>"
-    )
