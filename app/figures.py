@@ -17,7 +17,8 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure
 
-from app.views.drawing import View, shaded
+from app.views.colors import shaded
+from app.views.drawing import View
 
 FIT = """
 const [left, right, low, high] = box.data.edge

@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from unpacking import unpack
+
 from app.views.catalogue import VIEWS
 from app.views.drawing import Drawing, Scene
-from app.worker.block import unpack
 from app.worker.easel import watched
 from app.worker.frames import Frame
 from app.worker.orders import Order, Ready, Run, Watch

@@ -16,6 +16,7 @@ import pytest
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
 from studios import Shown
+from unpacking import unpack
 
 from app.errand import Errand
 from app.pages import Pages
@@ -23,7 +24,6 @@ from app.session import GIVEN_UP, RESTARTS, Session
 from app.transport import Transport
 from app.worker import bench, link
 from app.worker.bench import STOPPED, Bench
-from app.worker.block import unpack
 from app.worker.link import Link
 from app.worker.orders import Run, Step
 from app.worker.reports import Died, Facts, Picture, Report

@@ -4,24 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    length_of,
-    spanned,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held
+from app.views.scales import Limits, decimal_scale, held, length_of, spanned
 from app.worker.shown import Wires
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings

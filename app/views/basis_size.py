@@ -4,21 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    VERMILION,
-    VIRIDIS,
-    Colors,
-    Drawing,
-    Image,
-    Plot,
-    Scene,
-    View,
-    across,
-    spanned,
-    upright,
-)
+from app.views.colors import VERMILION, VIRIDIS
+from app.views.drawing import Colors, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import round_up
+from app.views.scales import across, round_up, spanned, upright
 from solver.settings import Settings
 
 MOST_COLUMNS = 240

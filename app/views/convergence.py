@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    in_decades,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decades, round_up
+from app.views.scales import decades, in_decades, round_up, spanned, upright
 from app.worker.recording import History
 from app.worker.shown import has_reference
 from solver.settings import Settings

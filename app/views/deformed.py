@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import GREY, Bodies, Colors, Drawing, Plot, Scene, View
+from app.views.colors import GREY
+from app.views.drawing import Bodies, Colors, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, round_up
 from app.worker.shown import Mesh

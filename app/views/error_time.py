@@ -2,24 +2,10 @@
 
 from __future__ import annotations
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    in_decades,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decades
+from app.views.scales import decades, in_decades, upright
 from app.worker.recording import History
 from app.worker.shown import has_reference
 from solver.settings import Settings

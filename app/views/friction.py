@@ -4,25 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    SKY,
-    Axis,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    across,
-    length_of,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, SKY
+from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decimal_scale
+from app.views.scales import across, decimal_scale, length_of, spanned, upright
 from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

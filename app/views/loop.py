@@ -7,22 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    ORANGE,
-    SKY,
-    VERMILION,
-    Axis,
-    Curve,
-    Drawing,
-    Marks,
-    Plot,
-    Scene,
-    View,
-    spanned,
-)
+from app.views.colors import BLUE, ORANGE, SKY, VERMILION
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held
+from app.views.scales import Limits, decimal_scale, held, spanned
 from app.worker.frames import Frame, Reference
 from app.worker.recording import Recording
 from app.worker.shown import Axes

@@ -6,24 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Axis,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decimal_scale
+from app.views.scales import decimal_scale, spanned, upright
 from app.worker.shown import ShownModes
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings

@@ -6,23 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.views.drawing import (
-    GREY,
-    VERMILION,
-    VIRIDIS,
-    Colors,
-    Curve,
-    Drawing,
-    Marks,
-    Plot,
-    Scene,
-    View,
-    in_decades,
-    shaded,
-    spanned,
-)
+from app.views.colors import GREY, VERMILION, VIRIDIS, shaded
+from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decades, round_up
+from app.views.scales import decades, in_decades, round_up, spanned
 from solver.settings import Settings
 
 FLOOR = 1e-8

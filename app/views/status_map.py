@@ -6,24 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from app.views.drawing import (
-    BACKWARD,
-    FORWARD,
-    GREY,
-    OPEN,
-    STICK,
-    VERMILION,
-    Drawing,
-    Image,
-    Plot,
-    Scene,
-    View,
-    across,
-    length_of,
-    spanned,
-    upright,
-)
+from app.views.colors import BACKWARD, FORWARD, GREY, OPEN, STICK, VERMILION
+from app.views.drawing import Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
+from app.views.scales import across, length_of, spanned, upright
 from solver.settings import Settings
 
 KEYS = (

@@ -4,22 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    GREY,
-    ORANGE,
-    PURPLE,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    length_of,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREY, ORANGE, PURPLE
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held
+from app.views.scales import Limits, decimal_scale, held, length_of, spanned, upright
 from app.worker.frames import Frame, Reference
 from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
