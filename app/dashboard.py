@@ -196,7 +196,7 @@ class Dashboard:
             self._plots.styles = DIMMED if is_dimmed else CLEAR
 
     def _offer_looks(self) -> None:
-        bodies = any(view.watches == "mesh" for view in self._shown)
+        bodies = any(view.plot.equal for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
 
     def _pass_on(self, blocks: list[bytes]) -> None:

@@ -40,7 +40,7 @@ def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | No
         bodies=Bodies(mesh.quads, moved, field.stress / np.float32(unit), _box(mesh, reach)),
         colors=Colors(low, high, (low, 0.5 * (low + high), high), name),
         keys=(
-            Key(GREY, "bare", field.component),
+            Key(GREY, "bare", scene.look.stress),
             Key(GREY, "bare", f"displacement × {factor:g}"),
         ),
         kept=(limits, fit),
@@ -74,5 +74,4 @@ VIEW = View(
     Plot("x (m)", "y (m)", palette=CIVIDIS, scale="MPa", equal=True),
     applies,
     draw,
-    watches="mesh",
 )

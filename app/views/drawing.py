@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from app.views.legend import Key
-from app.worker.frames import Frame
 from app.worker.recording import Recording
+from app.worker.sampler import Frame
 from app.worker.shown import Look
 from solver.settings import Settings
 
@@ -192,15 +192,12 @@ class View:
     draw
         Gives the drawing of a scene, None as long as the scene has not what it needs; also given
         what the drawing before wanted to be kept.
-    watches
-        What a frame must carry beyond the fields, or an empty text.
     """
 
     name: str
     plot: Plot
     applies: Callable[[Settings], bool]
     draw: Callable[[Scene, Any], Drawing | None]
-    watches: str = ""
     slug: str = field(init=False)
 
     def __post_init__(self) -> None:

@@ -11,7 +11,7 @@ from app.views.colors import BLUE, ORANGE, SKY, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned
-from app.worker.frames import Frame, Reference
+from app.worker.frames import Fields
 from app.worker.recording import Recording
 from app.worker.shown import Axes
 from solver.settings import Settings
@@ -70,7 +70,7 @@ def _limits(run: Recording, now: Pair, kept: tuple[Limits, Limits] | None) -> tu
     return _around(settled[0], begun.loop.across[1]), _around(settled[1], begun.loop.up[1])
 
 
-def _pair(run: Recording, fields: Frame | Reference) -> Pair:
+def _pair(run: Recording, fields: Fields) -> Pair:
     """Give displacement and force of an iterate or a reference."""
     load = run.stand.load if fields.load is None else fields.load
     assert load is not None

@@ -31,7 +31,7 @@ def applies_in_time(settings: Settings) -> bool:
 def draw_space(scene: Scene, kept: None) -> Drawing | None:
     """Draw displacement modes along the chosen substructure, dashed when just born."""
     bases = scene.frame.bases
-    if bases is None or bases.modes is None:
+    if bases is None:
         return None
     modes = bases.modes
     # A substructure of one element may rub at one point only.
@@ -46,7 +46,7 @@ def draw_space(scene: Scene, kept: None) -> Drawing | None:
 def draw_time(scene: Scene, kept: None) -> Drawing | None:
     """Draw the time functions of the same modes, each over its largest value, which is told."""
     bases, instants = scene.frame.bases, scene.run.stand.instants
-    if bases is None or bases.modes is None:
+    if bases is None:
         return None
     modes = bases.modes
     sizes = np.abs(modes.time_functions).max(axis=1, initial=0.0)
@@ -84,12 +84,10 @@ SPACE_MODES = View(
     Plot("Position x (m)", "Displacement / largest"),
     applies_in_space,
     draw_space,
-    watches="modes",
 )
 TIME_FUNCTIONS = View(
     "PGD time functions",
     Plot("Time t (s)", "Time function / largest"),
     applies_in_time,
     draw_time,
-    watches="modes",
 )

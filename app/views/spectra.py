@@ -22,15 +22,13 @@ def applies(settings: Settings) -> bool:
     return int(settings.values()["instants"]) > 1
 
 
-def draw(scene: Scene, kept: None) -> Drawing | None:
+def draw(scene: Scene, kept: None) -> Drawing:
     """Draw how fast the singular values fall, each over the largest of all.
 
     Rings are the sizes of the chosen separated basis's modes; crosses are the singular values of
     the field that it has to hold.
     """
     spectra, bases = scene.frame.spectra, scene.frame.bases
-    if spectra is None:
-        return None
     count, width = spectra.shape
     total = scene.run.settings.n_substructures
     numbers = np.linspace(1, total, count).round().astype(int)
@@ -41,13 +39,12 @@ def draw(scene: Scene, kept: None) -> Drawing | None:
         Curve(modes, values, color, name=str(number))
         for values, color, number in zip(scaled, shaded(count), numbers, strict=False)
     ]
-    found = bases.values if bases else None
     marks: tuple[Marks, ...] = ()
     keys: tuple[Key, ...] = ()
     more = np.zeros(0)
-    if bases is not None and found is not None:
-        more = found.wanted
-        marks = (_sizes(found.wanted, CROSS), _sizes(found.basis, RING))
+    if bases is not None:
+        own, more = bases.values
+        marks = (_sizes(more, CROSS), _sizes(own, RING))
         keys = (
             Key(VERMILION, "ring", f"PGD, sub. {bases.substructure + 1}"),
             Key(GREY, "cross", "its field"),
@@ -81,5 +78,4 @@ VIEW = View(
     ),
     applies,
     draw,
-    watches="spectra",
 )

@@ -8,7 +8,7 @@ from app.views.colors import BLUE, GREY, ORANGE, PURPLE
 from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, length_of, spanned, upright
-from app.worker.frames import Frame, Reference
+from app.worker.frames import Fields
 from app.worker.shown import instant_of
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
@@ -60,7 +60,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
 
 def _pair(
     places: np.ndarray,
-    fields: Frame | Reference,
+    fields: Fields,
     instant: int,
     factor: float,
     color: str = "",
