@@ -43,7 +43,11 @@ class Control:
     ----------
     view
         What stands on the page.
+    is_dragged
+        Whether a change may be one of many.
     """
+
+    is_dragged = False
 
     def __init__(self, name: str, definition: param.Parameter, report: Report) -> None:
         self.name = name
@@ -81,7 +85,7 @@ class Control:
 
     def _on_value(self, event: param.parameterized.Event) -> None:
         if not self._showing:
-            self._report(self.name, self._read(event.new))
+            self._report(self.name, self._read(event.new), by_hand=self.is_dragged)
 
     def _common(self) -> dict[str, Any]:
         return {
@@ -117,6 +121,8 @@ class SliderControl(Control):
         Called with the setting's name when a drag, or a press of a key, has ended.
     """
 
+    is_dragged = True
+
     def __init__(
         self,
         name: str,
@@ -127,31 +133,17 @@ class SliderControl(Control):
         super().__init__(name, definition, report)
         self.widget.param.watch(lambda event: self._showing or let_go(name), "value_throttled")
 
-    def _on_value(self, event: param.parameterized.Event) -> None:
-        if not self._showing:
-            self._report(self.name, self._read(event.new), by_hand=True)
-
     def _make_widget(self) -> Any:
         low, high = self.definition.softbounds
-        whole = isinstance(self.definition, param.Integer)
         if self._logarithmic:
-            return pmui.FloatSlider(
-                start=math.log10(low),
-                end=math.log10(high),
-                step=(math.log10(high) - math.log10(low)) / 240,
-                format=CustomJSTickFormatter(code=LOGARITHMIC),
-                **self._common(),
-            )
-        if whole:
+            low, high = math.log10(low), math.log10(high)
+            code, step = LOGARITHMIC, (high - low) / 240
+        elif isinstance(self.definition, param.Integer):
             return pmui.IntSlider(start=low, end=high, **self._common())
-        step = 10.0 ** math.floor(math.log10((high - low) / 80))
-        return pmui.FloatSlider(
-            start=low,
-            end=high,
-            step=step,
-            format=CustomJSTickFormatter(code=LINEAR),
-            **self._common(),
-        )
+        else:
+            code, step = LINEAR, 10.0 ** math.floor(math.log10((high - low) / 80))
+        written = CustomJSTickFormatter(code=code)
+        return pmui.FloatSlider(start=low, end=high, step=step, format=written, **self._common())
 
     @property
     def _logarithmic(self) -> bool:

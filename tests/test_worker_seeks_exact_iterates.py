@@ -11,9 +11,9 @@ from studios import ALL, Shown
 from test_worker_process import same
 from worker_line import SHORT, STALLING
 
-from app.worker.checkpoints import Checkpoints
 from app.worker.orders import Pace, Seek
 from app.worker.sampler import Frame, Sampler
+from app.worker.seeking import Checkpoints
 from solver.latin import Checkpoint
 from solver.scenes.bar import BarSettings
 

@@ -13,8 +13,8 @@ from test_worker_process import same
 
 from app.views.basis_size import MOST_COLUMNS
 from app.worker.bases import Bases
-from app.worker.checkpoints import Checkpoints
 from app.worker.orders import Seek
+from app.worker.seeking import Checkpoints
 from app.worker.shown import MOST_MODES, MOST_SIZES, Look, ShownModes
 
 SMALL: dict[str, Any] = {

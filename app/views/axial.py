@@ -69,6 +69,6 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
 VIEW = View(
     "Force in the wires",
     Plot("Position x (m)", "Axial force (N)"),
-    applies,
     draw,
+    applies,
 )

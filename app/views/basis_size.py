@@ -8,15 +8,9 @@ from app.views.colors import VERMILION, VIRIDIS
 from app.views.drawing import Colors, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import across, round_up, spanned, upright
-from solver.settings import Settings
 
 MOST_COLUMNS = 240
 """Iterations that are drawn at most; a small plot has no more pixels."""
-
-
-def applies(settings: Settings) -> bool:
-    """Only separated bases have modes."""
-    return settings.is_reduced
 
 
 def draw(scene: Scene, kept: None) -> Drawing | None:
@@ -52,6 +46,6 @@ VIEW = View(
         chooses="substructure",
         whole="y",
     ),
-    applies,
     draw,
+    lambda settings: settings.is_reduced,
 )

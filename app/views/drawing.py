@@ -17,6 +17,7 @@ from app.views.legend import Key
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
 from app.worker.shown import Look
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 
@@ -177,6 +178,16 @@ class Plot:
     whole: str = ""
 
 
+def is_plane(settings: Settings) -> bool:
+    """Tell whether there are plane bodies, which press on each other as they deform."""
+    return isinstance(settings, PlaneSettings)
+
+
+def has_instants(settings: Settings) -> bool:
+    """Tell whether there are several instants: one makes no loop, and has one singular value."""
+    return int(settings.values()["instants"]) > 1
+
+
 @dataclass(frozen=True)
 class View:
     """One plot of the page.
@@ -187,17 +198,17 @@ class View:
         Its name in the choice of views.
     plot
         Its figure.
-    applies
-        Tells whether the view says anything about a run with such settings.
     draw
         Gives the drawing of a scene, None as long as the scene has not what it needs; also given
         what the drawing before wanted to be kept.
+    applies
+        Tells whether the view says anything about a run with such settings.
     """
 
     name: str
     plot: Plot
-    applies: Callable[[Settings], bool]
     draw: Callable[[Scene, Any], Drawing | None]
+    applies: Callable[[Settings], bool] = lambda settings: True
     slug: str = field(init=False)
 
     def __post_init__(self) -> None:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, SKY
-from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View
+from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import across, decimal_scale, length_of, spanned, upright
 from app.worker.shown import instant_of
-from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 
 def applies(settings: Settings) -> bool:
     """Plane bodies have no bound that is known beforehand, and tractions instead."""
-    return not isinstance(settings, PlaneSettings)
+    return not is_plane(settings)
 
 
 def draw(scene: Scene, kept: Any) -> Drawing | None:
@@ -62,6 +61,6 @@ def _before(scene: Scene, factor: float) -> Curve | None:
 VIEW = View(
     "Friction force",
     Plot("Position x (m)", "Friction force (N/m)"),
-    applies,
     draw,
+    applies,
 )

@@ -8,23 +8,17 @@ from typing import Any
 import numpy as np
 
 from app.views.colors import BLUE, ORANGE, SKY, VERMILION
-from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned
 from app.worker.frames import Fields
 from app.worker.recording import Recording
 from app.worker.shown import Axes
-from solver.settings import Settings
 
 Pair = tuple[np.ndarray, np.ndarray]
 POINT = Marks((), (), VERMILION)
 STILL = 1e-6
 """Displacement that an axis reaches where nothing moves, m."""
-
-
-def applies(settings: Settings) -> bool:
-    """Tell whether there is more than one instant to make a loop of."""
-    return int(settings.values()["instants"]) > 1
 
 
 def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
@@ -98,5 +92,8 @@ def _around(values: np.ndarray, unit: str) -> Limits:
 
 
 VIEW = View(
-    "Hysteresis loop", Plot("End displacement (mm)", "Force (N)", marks=(POINT,)), applies, draw
+    "Hysteresis loop",
+    Plot("End displacement (mm)", "Force (N)", marks=(POINT,)),
+    draw,
+    has_instants,
 )

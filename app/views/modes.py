@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
-from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View
+from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, has_instants, is_plane
 from app.views.legend import Key
 from app.views.scales import decimal_scale, spanned, upright
 from app.worker.shown import ShownModes
-from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
@@ -20,12 +19,12 @@ UP = Axis(-1.12, 1.12)
 
 def applies_in_space(settings: Settings) -> bool:
     """Only separated bases have modes, and only those of wires are curves."""
-    return settings.is_reduced and not isinstance(settings, PlaneSettings)
+    return settings.is_reduced and not is_plane(settings)
 
 
 def applies_in_time(settings: Settings) -> bool:
     """Only separated bases have time functions, and one instant makes no function."""
-    return settings.is_reduced and bool(settings.values()["instants"] > 1)
+    return settings.is_reduced and has_instants(settings)
 
 
 def draw_space(scene: Scene, kept: None) -> Drawing | None:
@@ -82,12 +81,12 @@ def _length(size: float) -> str:
 SPACE_MODES = View(
     "PGD space modes",
     Plot("Position x (m)", "Displacement / largest"),
-    applies_in_space,
     draw_space,
+    applies_in_space,
 )
 TIME_FUNCTIONS = View(
     "PGD time functions",
     Plot("Time t (s)", "Time function / largest"),
-    applies_in_time,
     draw_time,
+    applies_in_time,
 )

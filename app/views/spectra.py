@@ -7,19 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from app.views.colors import GREY, VERMILION, VIRIDIS, shaded
-from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, Scene, View
+from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned
-from solver.settings import Settings
 
 FLOOR = 1e-8
 LEAST = 1e-30
 CROSS, RING = Marks((), (), GREY, "cross"), Marks((), (), VERMILION, "ring")
-
-
-def applies(settings: Settings) -> bool:
-    """One instant has one singular value."""
-    return int(settings.values()["instants"]) > 1
 
 
 def draw(scene: Scene, kept: None) -> Drawing:
@@ -76,6 +70,6 @@ VIEW = View(
         marks=(CROSS, RING),
         names="substructure",
     ),
-    applies,
     draw,
+    has_instants,
 )

@@ -10,7 +10,6 @@ from app.views.colors import BACKWARD, FORWARD, GREY, OPEN, STICK, VERMILION
 from app.views.drawing import Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import across, length_of, spanned, upright
-from solver.settings import Settings
 
 KEYS = (
     Key(BACKWARD, "square", "slip −"),
@@ -19,11 +18,6 @@ KEYS = (
 )
 CHOSEN = Key(VERMILION, "line", "chosen instant")
 OPENED = (Key(OPEN, "square", "open"), Key(VERMILION, "line", "instant"))
-
-
-def applies(settings: Settings) -> bool:
-    """Friction is what the page is about."""
-    return True
 
 
 def draw(scene: Scene, kept: Any) -> Drawing:
@@ -62,6 +56,5 @@ VIEW = View(
         palette=(BACKWARD, STICK, FORWARD, OPEN),
         chooses="instant",
     ),
-    applies,
     draw,
 )

@@ -8,7 +8,6 @@ import logging
 import os
 import signal
 import threading
-import traceback
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
@@ -58,31 +57,28 @@ class Call(Future[Any]):
     def live(self) -> None:
         """Start the process, wait for what comes of it, and have the process end."""
         try:
-            problem, result, trace = self._converse()
+            said = self._converse()
         except (OSError, EOFError):
             # The process is gone; or, where the fork server was gone, it has never been there.
-            problem, result, trace = STOPPED, None, ""
-        except Exception as broken:
-            problem, result, trace = _sentence(broken), None, traceback.format_exc()
+            said = BrokenCallError(STOPPED)
+        except Exception as problem:
+            said = _broken(problem)
         if self.process is not None:
             self.process.kill()
             self.process.join()
-        if trace:
-            _log.error("A report broke.\n%s", trace)
-        if problem:
-            self.set_exception(BrokenCallError(problem))
+        if isinstance(said, BrokenCallError):
+            self.set_exception(said)
         else:
-            self.set_result(result)
+            self.set_result(said)
 
-    def _converse(self) -> tuple[str, Any, str]:
+    def _converse(self) -> Any:
         started, ours = start(main, self._work)
         with self._starting:
             self.process = started
             if self._unwanted:
                 started.kill()
         with ours:
-            said: tuple[str, Any, str] = ours.recv()
-            return said
+            return ours.recv()
 
 
 class Bench(Executor):
@@ -156,17 +152,18 @@ def main(connection: Connection, work: Callable[[], Any]) -> None:
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     threading.Thread(target=_end_with, args=(connection,), daemon=True).start()
-    said: tuple[str, Any, str]
     try:
-        said = "", work(), ""
+        said = work()
     except Exception as problem:
-        said = _sentence(problem), None, traceback.format_exc()
+        said = _broken(problem)
     with contextlib.suppress(OSError):
         connection.send(said)
 
 
-def _sentence(problem: Exception) -> str:
-    return f"It broke ({type(problem).__name__}: {problem})."
+def _broken(problem: Exception) -> BrokenCallError:
+    """Log where something broke, on either side of the pipe, and say it in a sentence."""
+    _log.error("A report broke.", exc_info=problem)
+    return BrokenCallError(f"It broke ({type(problem).__name__}: {problem}).")
 
 
 def _end_with(connection: Connection) -> None:
