@@ -6,14 +6,16 @@ import atexit
 import contextlib
 import logging
 import os
+import shutil
 import signal
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from functools import cache, partial
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from typing import Any
 
 from app.worker.link import start
@@ -37,7 +39,7 @@ class Call(Future[Any]):
         Where it is done; None before that has started.
     """
 
-    def __init__(self, work: Callable[[], Any]) -> None:
+    def __init__(self, work: partial[Any]) -> None:
         super().__init__()
         self.process: BaseProcess | None = None
         self._work = work
@@ -146,12 +148,12 @@ def shared_bench() -> Executor:
     return bench
 
 
-def main(connection: Connection, work: Callable[[], Any]) -> None:
+def main(connection: Connection, work: partial[Any]) -> None:
     """Do a call in this process, and say what came of it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    threading.Thread(target=_end_with, args=(connection,), daemon=True).start()
+    threading.Thread(target=_end_with, args=(connection, work.args), daemon=True).start()
     try:
         said = work()
     except Exception as problem:
@@ -166,8 +168,14 @@ def _broken(problem: Exception) -> BrokenCallError:
     return BrokenCallError(f"It broke ({type(problem).__name__}: {problem}).")
 
 
-def _end_with(connection: Connection) -> None:
-    """End the process as soon as the server is gone: nobody else would, in the middle of work."""
+def _end_with(connection: Connection, given: Sequence[Any]) -> None:
+    """End the process as soon as the server is gone: nobody else would, in the middle of work.
+
+    Nor would anybody remove the folders that it was given, if the server was killed.
+    """
     with contextlib.suppress(EOFError, OSError):
         connection.recv()
+    for folder in given:
+        if isinstance(folder, Path):
+            shutil.rmtree(folder, ignore_errors=True)
     os._exit(0)
