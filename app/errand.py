@@ -2,33 +2,38 @@
 
 from __future__ import annotations
 
+import pickle
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from app.worker.desk import files, told
+from app.worker.desk import files, shown, told
 from app.worker.studies import Work
+from solver.study.page import Section
 
 KEPT = 6
 WAITING, STARTING = "Waiting for what was asked for before", "Starting"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Found:
-    """A report: its title, and the files that the command line would write, by name."""
+    """A report, which grows.
+
+    Attributes
+    ----------
+    sections
+        What there is of it; those that are there stay, but for what their words say.
+    files
+        What the command line would write, by name, once it is whole.
+    """
 
     title: str = ""
+    sections: Sequence[Section] = ()
     files: Mapping[str, bytes] = field(default_factory=dict)
-
-    @property
-    def html(self) -> str:
-        """The page among them, if there is one yet."""
-        pages = [data for name, data in self.files.items() if name.endswith(".html")]
-        return pages[0].decode() if pages else ""
 
 
 class Errand:
@@ -57,7 +62,7 @@ class Errand:
         self._executor = executor
         self._future: Future[Any] | None = None
         self._folder: TemporaryDirectory[str] | None = None
-        self._stamps: dict[Path, int] = {}
+        self._read = b""
         self.title = ""
         self.doing, self.share = "", 0.0
         self.growing = Found()
@@ -84,7 +89,7 @@ class Errand:
         if self._future is not None:
             return
         self.title, self.notice, self.share = title, "", 0.0
-        self.growing, self._stamps = Found(title), {}
+        self.growing, self._read = Found(title), b""
         # What a killed process was writing just then is no reason to complain.
         self._folder = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
         self._future = self._executor.submit(work, Path(self._folder.name))
@@ -102,23 +107,23 @@ class Errand:
         if future is None or self._folder is None:
             return False
         is_done, folder = future.done(), Path(self._folder.name)
-        before = self.doing, self.share, self._stamps
+        before = self.doing, self.share, self._read
         self.doing, self.share = told(folder) or (STARTING if self.is_begun else WAITING, 0.0)
-        self._stamps = {file: file.stat().st_mtime_ns for file in files(folder)}
-        if self._stamps != before[2]:
-            read = {file.name: file.read_bytes() for file in self._stamps}
-            self.growing = Found(self.title, read)
+        self._read = shown(folder)
+        if self._read != before[2]:
+            self.growing.sections = pickle.loads(self._read)
         if is_done:
-            self._take(future)
-        return is_done or before != (self.doing, self.share, self._stamps)
+            self._take(future, folder)
+        return is_done or before != (self.doing, self.share, self._read)
 
-    def _take(self, future: Future[Any]) -> None:
+    def _take(self, future: Future[Any], folder: Path) -> None:
         """Follow the end of the process."""
         if future.cancelled():
             self._end("Cancelled.")
         elif problem := future.exception():
             self._end(str(problem))
         else:
+            self.growing.files = files(folder)
             self.found.append(self.growing)
             self._end("")
 

@@ -1,19 +1,31 @@
 """What the tabs of long reports share: ask, watch, cancel, read, and take away.
 
-What is read is the page that the command line writes, as it grows.
+What is read is the report of the command line, as it grows; its plots are drawn for the page.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
 from html import escape
 from io import BytesIO
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from bokeh.document import Document
 
 from app.errand import Errand, Found
+from app.views.colors import GREY
+from app.views.legend import Key, card_title
+from solver.study.figure_data import HUES, Panel
+from solver.study.page import Plot, Section
+
+COLORS = (GREY, *HUES)
+"""Of curves, by their hue."""
+MARKS = {"solid": "line", "points": "dot"}
 
 
 class Report:
@@ -40,10 +52,12 @@ class Report:
         self._errand = errand
         self._style = style
         self._words = f"<h2>{escape(title)}</h2><p>{escape(words)}</p>"
-        self._shown: tuple[Found | None, bool] = None, False
         self._newest: Found | None = None
+        self._shown: tuple[Any, ...] = (None,)
+        self._role = "report"
+        self._owed: deque[tuple[pn.Column, Panel]] = deque()
         self._progress = self._text("", role="progress")
-        self._heading, self._sheet = self._text(""), self._text("")
+        self._heading, self._sheet = self._text(""), self._column()
         self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
         self._past.param.watch(lambda event: self._put(event.new), "value")
         self._files = self._row(margin=(0, 6, 8, 6))
@@ -113,20 +127,51 @@ class Report:
         if found and options != self._past.options:
             self._past.param.update(options=options, value=found[-1], visible=len(found) > 1)
         newest = errand.growing if errand.is_busy or not found else found[-1]
-        if newest is not self._newest and newest.html:
+        if newest.sections and (newest is self._shown[0] or newest is not self._newest):
             self._newest = newest
             self._put(newest)
 
     def _put(self, found: Found) -> None:
-        """Show one report, with its files if it is whole."""
-        is_whole = found in self._found()
-        if (found, is_whole) == self._shown:
+        """Show what there is of a report; of the same one, what is drawn already stays."""
+        before, self._shown = self._shown, (found, found.sections, found.files)
+        if self._shown == before:
             return
-        self._shown = found, is_whole
+        if found is not before[0]:
+            self._owed.clear()
+            self._sheet[:] = []
+        for pane, section in zip(self._sheet, found.sections, strict=False):
+            if isinstance(section, str):
+                pane.object = section
+        self._sheet.extend(map(self._pane, found.sections[len(self._sheet) :]))
+        is_whole = found in self._found()
         self._heading.object = self._title(found) if is_whole else ""
-        self._sheet.object = found.html
         self._files[:] = downloads(found.files) if is_whole else []
         self._card.visible = True
+
+    def _pane(self, section: Section) -> Any:
+        """Give what shows a section; a plot is drawn in it later."""
+        if isinstance(section, str):
+            return self._text(section, self._role)
+        keys = self._text(legend(section), role="title")
+        # A `FlexBox` would not do: what is put into it later misses the theme.
+        box = self._column(keys, role="panels")
+        if not self._owed:
+            threading.Thread(target=self._prepare, args=(pn.state.curdoc,), daemon=True).start()
+        self._owed += [(box, panel) for panel in section.panels]
+        return box
+
+    def _prepare(self, document: Document) -> None:
+        """Import what draws, and begin: on a thread, as pages would stand still for 0.6 s."""
+        from app.report_plots import plot
+
+        document.add_next_tick_callback(partial(self._draw, document, plot))
+
+    def _draw(self, document: Document, plot: Callable[[Panel], Any]) -> None:
+        """Draw one panel, and the others later: one takes 0.2 s, in which all pages stand still."""
+        if self._owed:
+            box, panel = self._owed.popleft()
+            box.append(plot(panel))
+            document.add_next_tick_callback(partial(self._draw, document, plot))
 
     def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:
         """Put parts one below the other, as high as they are."""
@@ -145,11 +190,18 @@ class Report:
     def _text(self, html: str, role: str = "report") -> pn.pane.HTML:
         return pn.pane.HTML(
             html,
-            css_classes=[role],
+            css_classes=role.split(),
             stylesheets=[self._style],
             sizing_mode="stretch_width",
             margin=(6, 14),
         )
+
+
+def legend(plot: Plot) -> str:
+    """Write one legend for panels side by side (HTML)."""
+    curves = {curve.label: curve for panel in plot.panels for curve in panel.curves}.values()
+    keys = [Key(COLORS[one.hue], MARKS.get(one.line, one.line), one.label) for one in curves]
+    return card_title("", keys)
 
 
 def downloads(files: Mapping[str, bytes]) -> list[Any]:

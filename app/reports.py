@@ -161,7 +161,9 @@ class StabilityReport(Report):
 
     def _filter(self, wanted: str) -> None:
         """Leave the rows to the style sheet, which need not be sent again."""
-        self._sheet.css_classes = ["report", "wrong"] if wanted == WRONG else ["report"]
+        self._role = "report wrong" if wanted == WRONG else "report"
+        for pane in self._sheet:
+            pane.css_classes = self._role.split()
 
 
 def title_of(settings: Settings) -> str:

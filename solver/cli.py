@@ -231,16 +231,18 @@ def _benchmark(chosen: argparse.Namespace) -> int:
 
 def _figures(chosen: argparse.Namespace) -> int:
     try:
-        from solver.study.drawing import drawn, write_figures
+        from solver.study.drawing import write_figures
     except ModuleNotFoundError as missing:
         if (missing.name or "").split(".")[0] != "matplotlib":
             raise
-        print("slipfront: figures need matplotlib: pip install matplotlib pillow", file=sys.stderr)
+        print(
+            "slipfront: figures need matplotlib: pip install 'slipfront[figures]'", file=sys.stderr
+        )
         return REFUSED
     try:
         chosen.out.mkdir(parents=True, exist_ok=True)
         figures = paper_figures()
-        files = write_figures([drawn(figure) for figure in figures], chosen.out)
+        files = write_figures(figures, chosen.out)
     except OSError as problem:
         allowed_folder = "a folder that can be made and written to"
         raise SettingError("--out", str(chosen.out), allowed_folder, str(problem)) from None

@@ -15,7 +15,8 @@ def count_to(number: int, folder: Path) -> None:
     desk = Desk(folder)
     for done in range(number):
         desk.tell(f"{done} done", done / number)
-        desk.publish(lambda place, done=done: (place / "counted.html").write_text(f"<p>{done}</p>"))
+        desk.show([f"<p>{done}</p>"])
+        desk.publish(lambda place, done=done: (place / "counted.csv").write_text(f"{done}\n"))
 
 
 def sleep(folder: Path) -> None:

@@ -169,7 +169,7 @@ def test_without_matplotlib_the_command_says_what_to_install_and_makes_nothing(t
     )
     assert (done.returncode, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1
-    assert "pip install matplotlib" in done.stderr
+    assert "pip install 'slipfront[figures]'" in done.stderr
     assert not (tmp_path / "figures").exists()
 
 

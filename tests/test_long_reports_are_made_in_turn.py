@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -19,20 +20,21 @@ from jobs import count_to, refuse, sleep, vanish
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
 
-from app.errand import KEPT, STARTING, WAITING, Errand
+from app.errand import KEPT, STARTING, WAITING, Errand, Found
 from app.pages import Pages
 from app.report import progress
 from app.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
 from app.session import Session
 from app.worker.bench import Bench, BrokenCallError
-from app.worker.desk import Desk, files, told
+from app.worker.desk import Desk, files, shown, told
 from app.worker.orders import Pace
 from app.worker.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
+from solver.study.page import Plot
 from solver.study.stability import Row, Verdict, judge, run_case
 from solver.study.stability_cases import Case
-from solver.study.stability_report import html
+from solver.study.stability_report import stability_sections
 
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
@@ -72,21 +74,24 @@ def test_a_report_says_how_far_it_is_and_then_what_came_of_it(errand: Errand) ->
     assert said[-1] == every[-1]
     assert list(dict.fromkeys(said)) == [one for one in every if one in said]
     assert errand.last is not None
-    assert errand.last.files == {"counted.html": b"<p>1</p>"}
-    assert errand.last.html == "<p>1</p>"
+    assert errand.last.files == {"counted.csv": b"1\n"}
+    assert errand.last.sections == ["<p>1</p>"]
 
 
 def test_what_grows_is_never_read_half_written(tmp_path: Path) -> None:
     def write(folder: Path) -> None:
         (folder / "one.html").write_text("half")
-        assert files(tmp_path) == []
+        assert files(tmp_path) == {}
         (folder / "one.html").write_text("whole")
 
     assert told(tmp_path) is None
+    assert shown(tmp_path) == b""
     Desk(tmp_path).publish(write)
-    assert [file.read_text() for file in files(tmp_path)] == ["whole"]
+    assert files(tmp_path) == {"one.html": b"whole"}
     Desk(tmp_path).tell("writing", 0.5)
+    Desk(tmp_path).show(["so far"])
     assert told(tmp_path) == ("writing", 0.5)
+    assert pickle.loads(shown(tmp_path)) == ["so far"]
     assert len(files(tmp_path)) == 1
 
 
@@ -96,14 +101,14 @@ def test_what_a_report_had_written_when_it_was_cancelled_stays_and_its_folder_go
     errand.ask("any", write_and_sleep)
     assert errand._folder is not None
     folder = Path(errand._folder.name)
-    wait_for(lambda: errand.collect() and errand.growing.html)
+    wait_for(lambda: errand.collect() and errand.growing.sections)
     errand.cancel()
-    assert errand.growing.html == "so far"
+    assert errand.growing.sections == ["so far"]
     assert not folder.exists()
 
 
 def write_and_sleep(folder: Path) -> None:
-    Desk(folder).publish(lambda place: (place / "any.html").write_text("so far"))
+    Desk(folder).show(["so far"])
     sleep(folder)
 
 
@@ -130,7 +135,7 @@ def test_a_job_that_breaks_says_so_and_the_next_one_is_done(
     until_idle(errand)
     assert errand.notice == ""
     assert errand.last is not None
-    assert (errand.last.title, errand.last.html) == ("second", "<p>0</p>")
+    assert (errand.last.title, errand.last.sections) == ("second", ["<p>0</p>"])
 
 
 def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
@@ -144,7 +149,7 @@ def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
     assert WAITING in progress(second)
     first.cancel()
     until_idle(second)
-    assert second.growing.html == "<p>2</p>"
+    assert second.growing.sections == ["<p>2</p>"]
 
 
 def test_a_job_that_nobody_is_before_does_not_say_that_it_waits(errand: Errand) -> None:
@@ -199,7 +204,7 @@ bench, errand = shared_bench(), Errand(shared_bench())
 errand.ask("any", sleep)
 while not (errand.collect() and errand.doing == "asleep"):
     pass
-print(bench.pid, flush=True)
+print(bench.pid, errand._folder.name, flush=True)
 sys.stdin.readline()
 """
 
@@ -217,12 +222,15 @@ def test_a_report_ends_with_its_server_which_does_not_wait_for_it(killed: bool) 
     )
     with server:
         assert server.stdout is not None
-        pid = int(server.stdout.readline())
+        number, folder = server.stdout.readline().split()
+        pid = int(number)
         assert is_alive(pid)
+        assert Path(folder).exists()
         if killed:
             server.kill()
         server.communicate(timeout=PATIENCE)
     wait_for(lambda: not is_alive(pid))
+    assert not Path(folder).exists()
 
 
 def test_a_page_that_closes_ends_its_jobs(bench: Bench) -> None:
@@ -273,32 +281,33 @@ def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
     assert set(found) == {"curves.csv", "levels.csv", "study.html"}
     rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
     assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
-    page = errand.last.html
+    assert sum(isinstance(section, Plot) for section in errand.last.sections) == 1
+    page = found["study.html"].decode()
+    for section in errand.last.sections:
+        assert isinstance(section, Plot) or section in page
     assert "Scene: bar (" in page
     assert all(f"{name} = {value}" in page for name, value in TINY.items())
     assert page.count("BLAS threads: 1;") == 1
 
 
-def test_stability_is_written_as_it_grows_and_then_whole(
+def test_stability_is_shown_as_it_grows_and_then_whole(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     few = [Case("size", "tiny", TINY), Case("size", "small", {**TINY, "elements": 10})]
     monkeypatch.setattr("app.worker.studies.cases_of", lambda quick: few)
-    monkeypatch.setattr("app.worker.studies.WRITTEN_EVERY", 0.0)
-    rows, shares = [], []
-    publish, tell = Desk.publish, Desk.tell
-
-    def spy(desk: Desk, write: Any) -> None:
-        publish(desk, write)
-        rows.append(sum(file.read_text().count('"verdict') for file in files(tmp_path)[1:]))
-
-    monkeypatch.setattr(Desk, "publish", spy)
+    monkeypatch.setattr("app.worker.studies.SHOWN_EVERY", 0.0)
+    rows: list[int] = []
+    shares: list[float] = []
+    tell = Desk.tell
+    monkeypatch.setattr(
+        Desk, "show", lambda desk, sections: rows.append("".join(sections).count('"verdict'))
+    )
     monkeypatch.setattr(
         Desk, "tell", lambda desk, doing, share: shares.append(share) or tell(desk, doing, share)
     )
     stability_of(False, tmp_path)
-    assert sorted(set(rows)) == [0, 1, 2, 3, 4]
-    assert [file.name for file in files(tmp_path)] == ["stability.csv", "stability.html"]
+    assert rows == [1, 2, 3, 4, 4]
+    assert list(files(tmp_path)) == ["stability.csv", "stability.html"]
     assert shares == sorted(shares)
     assert "Invariance holds" in (tmp_path / "stability.html").read_text()
 
@@ -312,7 +321,8 @@ def row(**changes: Any) -> Row:
 def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand: Errand) -> None:
     rows = [row(), row(k_scale=1e-6, max_iterations=20)]
     assert [one.verdict for one in rows] == [Verdict.RIGHT, Verdict.TOLD]
-    page = html(rows, {})
+    sections = stability_sections(rows, {})
+    page = "".join(sections)
     assert re.findall(r'<td class="verdict (\w+)"[^>]*>(\w+)</td>', page) == [
         ("right", "right"),
         ("told", "told"),
@@ -320,10 +330,14 @@ def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand:
     assert "1 of 2 runs pass" in page
     assert rows[1].outcome.advice.split(".")[0] in page
     report = StabilityReport(errand, "")
+    report._put(Found("any", sections))
+    assert [pane.object for pane in report._sheet] == sections
     report._filter(WRONG)
-    assert report._sheet.css_classes == ["report", "wrong"]
+    assert all(pane.css_classes == ["report", "wrong"] for pane in report._sheet)
+    report._put(Found("another", sections))
+    assert all(pane.css_classes == ["report", "wrong"] for pane in report._sheet)
     report._filter(EVERY)
-    assert report._sheet.css_classes == ["report"]
+    assert all(pane.css_classes == ["report"] for pane in report._sheet)
 
 
 def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> None:

@@ -2,18 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from html import escape
+from queue import SimpleQueue
+from typing import Any
 
+import holoviews as hv
+import numpy as np
 import pytest
+from bokeh.document import Document
 from jobs import refuse, sleep
-from processes import wait_for
+from panel.io.state import set_curdoc
+from processes import PATIENCE, wait_for
 
 from app import reports
 from app.errand import Errand, Found
+from app.report_plots import overlay
 from app.reports import PaperFigures
 from app.worker.bench import Bench
-from app.worker.desk import Desk, files
+from app.worker.desk import Desk, shown
 from app.worker.studies import figures_of_the_paper
+from solver.study.figure_data import Panel
+from solver.study.page import Plot, Section
+
+
+class Page(Document):
+    """A document without a server, which calls back when it is asked to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._due: SimpleQueue[Callable[[], Any]] = SimpleQueue()
+
+    def add_next_tick_callback(self, callback: Callable[[], Any]) -> Any:
+        self._due.put(callback)
+
+    def draw(self, view: PaperFigures) -> None:
+        """Draw all that is owed."""
+        while view._owed:
+            self._due.get(timeout=PATIENCE)()
 
 
 @pytest.fixture(scope="module")
@@ -23,29 +50,32 @@ def told() -> list[float]:
 
 
 @pytest.fixture(scope="module")
-def seen() -> list[list[str]]:
-    """Give the files that were there after each was written."""
+def seen() -> list[int]:
+    """Give how many sections there were after each figure."""
     return []
 
 
 @pytest.fixture(scope="module")
-def found(
-    tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: list[list[str]]
-) -> Found:
+def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: list[int]) -> Found:
     folder = tmp_path_factory.mktemp("figures")
 
     class Spied(Desk):
         def tell(self, doing: str, share: float) -> None:
             told.append(share)
 
-        def publish(self, write: object) -> None:
-            super().publish(write)
-            seen.append([file.name for file in files(folder)])
+        def show(self, sections: Sequence[Section]) -> None:
+            super().show(sections)
+            seen.append(len(sections))
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.worker.studies.Desk", Spied)
         figures_of_the_paper(folder)
-    return Found("any", {file.name: file.read_bytes() for file in files(folder)})
+    return Found("any", pickle.loads(shown(folder)))
+
+
+@pytest.fixture(scope="module")
+def panels(found: Found) -> list[Panel]:
+    return [panel for plot in found.sections if isinstance(plot, Plot) for panel in plot.panels]
 
 
 @pytest.fixture(autouse=True)
@@ -72,24 +102,70 @@ def view(errand: Errand) -> PaperFigures:
 
 
 def test_they_come_one_by_one_and_say_how_far_they_are(
-    found: Found, told: list[float], seen: list[list[str]]
+    found: Found, told: list[float], seen: list[int]
 ) -> None:
-    names = [f"figure-{number}.png" for number in (3, 4, 5, 6, 7, 8)]
-    assert seen == [[*names[: count + 1], "figures.html"] for count in range(len(names))]
+    each = len(found.sections) // 6
+    assert seen == [each * count for count in range(1, 7)]
     assert told == sorted(told)
     assert told[0] == 0.0
 
 
-def test_the_page_of_the_command_is_shown_where_they_are_found_computed(
-    view: PaperFigures, errand: Errand, computed: list[Found], found: Found
+def test_every_curve_is_drawn_with_its_values(panels: list[Panel]) -> None:
+    for panel in panels:
+        drawn = {part.label: part for part in overlay(panel) if type(part).__name__ == "Curve"}
+        assert list(drawn) == [curve.label for curve in panel.curves]
+        for curve in panel.curves:
+            part = drawn[curve.label]
+            assert np.array_equal(part.dimension_values(0), curve.x)
+            values = part.dimension_values(1)
+            fits = (curve.y > 0.0) if panel.y.logarithmic else np.ones(len(curve.y), bool)
+            assert np.array_equal(values[fits], curve.y[fits])
+            assert np.isnan(values[~fits]).all()
+
+
+def test_a_plot_can_be_read_and_enlarged_but_does_not_hold_a_page_that_is_scrolled(
+    panels: list[Panel],
+) -> None:
+    drawn = hv.renderer("bokeh").get_plot(overlay(panels[0])).state
+    kinds = {type(tool).__name__ for tool in drawn.tools}
+    assert {"HoverTool", "BoxZoomTool", "PanTool", "WheelZoomTool", "ResetTool"} <= kinds
+    assert drawn.toolbar.active_drag is None
+    assert drawn.toolbar.active_scroll in (None, "auto")
+
+
+def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
+    view: PaperFigures, errand: Errand, computed: list[Found], found: Found, panels: list[Panel]
 ) -> None:
     computed.append(found)
-    view.open()
+    page = Page()
+    with set_curdoc(page):
+        view.open()
+        page.draw(view)
     assert not errand.is_busy
     assert not view._start.visible
     assert view._card.visible
-    assert view._sheet.object.encode() == found.files["figures.html"]
-    assert [button.label for button in view._files] == list(found.files)
+    drawn = 0
+    for pane, section in zip(view._sheet, found.sections, strict=True):
+        if isinstance(section, Plot):
+            assert all(escape(c.label) in pane[0].object for p in section.panels for c in p.curves)
+            drawn += len(pane) - 1
+        else:
+            assert pane.object == section
+    assert drawn == len(panels)
+
+
+def test_what_is_drawn_stays_while_a_report_grows(view: PaperFigures, found: Found) -> None:
+    grows = Found("any", found.sections[:3])
+    with set_curdoc(Page()):
+        view._put(grows)
+        first = list(view._sheet)
+        grows.sections = ["<p>other words</p>", *found.sections[1:6]]
+        view._put(grows)
+        assert view._sheet[:3] == first
+        assert first[0].object == "<p>other words</p>"
+        assert len(view._sheet) == 6
+        view._put(found)
+        assert first[1] not in view._sheet.objects
 
 
 def test_a_failure_is_told_and_can_be_tried_again(
@@ -125,6 +201,7 @@ def test_it_can_be_cancelled_and_another_page_has_them_later(
     assert "Cancelled." in view._progress.object
     assert view._start.visible
     computed.append(found)
-    view.open()
-    assert view._sheet.object == found.html
+    with set_curdoc(Page()):
+        view.open()
+    assert len(view._sheet) == len(found.sections)
     assert not view._start.visible

@@ -1,4 +1,4 @@
-"""The folder in which a report grows: how far it is, and its files as the command line writes them.
+"""The folder in which a report grows: how far it is, its sections, and the files of the command.
 
 Files, so that any executor will do that shares a disk with the server.
 """
@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+import pickle
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-PROGRESS = ".progress"
+from solver.study.page import Section
+
+PROGRESS, SECTIONS = ".progress", ".sections"
 
 
 class Desk:
@@ -24,6 +27,11 @@ class Desk:
         """Say what is being done, and the share of the whole that is done, from 0 to 1."""
         text = json.dumps([doing, share])
         self.publish(lambda folder: (folder / PROGRESS).write_text(text, encoding="utf-8"))
+
+    def show(self, sections: Sequence[Section]) -> None:
+        """Show what there is of the report."""
+        data = pickle.dumps(sections)
+        self.publish(lambda folder: (folder / SECTIONS).write_bytes(data))
 
     def publish(self, write: Callable[[Path], object]) -> None:
         """Put files where they are read, in place of those of the same names."""
@@ -42,6 +50,13 @@ def told(folder: Path) -> tuple[str, float] | None:
     return doing, share
 
 
-def files(folder: Path) -> list[Path]:
-    """Give the files of a report that are there."""
-    return sorted(file for file in folder.iterdir() if not file.name.startswith("."))
+def shown(folder: Path) -> bytes:
+    """Read what there is of a report, pickled; nothing before that."""
+    file = folder / SECTIONS
+    return file.read_bytes() if file.exists() else b""
+
+
+def files(folder: Path) -> Mapping[str, bytes]:
+    """Read the files of a report that are there, by name."""
+    own = sorted(file for file in folder.iterdir() if not file.name.startswith("."))
+    return {file.name: file.read_bytes() for file in own}

@@ -1,4 +1,4 @@
-"""The long commands of the command line as a page has them made: the same files, as they grow."""
+"""The long commands of the command line as a page has them made: the same reports, as they grow."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from typing import Any
 from app.worker.desk import Desk
 from solver.scenes import CATALOGUE
 from solver.study.error_against_time import error_against_time
+from solver.study.figure_page import figure_sections
 from solver.study.growth import growth
+from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
 from solver.study.stability import METHODS, Row, cases_of, invariance, stability
-from solver.study.stability_report import write_report
+from solver.study.stability_report import stability_sections, write_report
 from solver.study.study_files import write_study
+from solver.study.study_page import study_sections
 
 SHARE_OF_GROWTH = 0.8
 """Of the whole time, roughly, where growth is measured too."""
-WRITTEN_EVERY = 0.5
+SHOWN_EVERY = 0.5
 """Seconds: a table that grows is sent to the browser as a whole."""
 Work = Callable[[Path], None]
 """Picklable; it is given the folder of its report."""
@@ -39,36 +42,35 @@ def study_of(scene: str, values: dict[str, Any], repeats: int, sizes: bool, fold
     )
     desk.tell("Writing the report", 1.0)
     desk.publish(lambda place: write_study(study, found, place))
+    desk.show(study_sections(study, found))
 
 
 def stability_of(quick: bool, folder: Path) -> None:
-    """Run the stability matrix, or a quarter of it, and write it again and again as it grows."""
+    """Run the stability matrix, or a quarter of it, and show it again and again as it grows."""
     desk, matrix, rows = Desk(folder), cases_of(quick=quick), list[Row]()
     total = len(METHODS) * len(matrix)
-    written = 0.0
+    shown = 0.0
 
     def report(row: Row) -> None:
-        nonlocal written
+        nonlocal shown
         rows.append(row)
         desk.tell(f"{len(rows)} of {total} runs", len(rows) / total)
-        if time.monotonic() - written > WRITTEN_EVERY:
-            desk.publish(lambda place: write_report(rows, {}, place))
-            written = time.monotonic()
+        if time.monotonic() - shown > SHOWN_EVERY:
+            desk.show(stability_sections(rows, {}))
+            shown = time.monotonic()
 
     desk.tell(f"0 of {total} runs", 0.0)
     stability(matrix, report)
     desk.tell("The same bar in other units", 1.0)
     apart = invariance()
     desk.publish(lambda place: write_report(rows, apart, place))
+    desk.show(stability_sections(rows, apart))
 
 
 def figures_of_the_paper(folder: Path) -> None:
-    """Compute and draw the paper's figures, and write each as it comes."""
-    # Here and not above: no other report needs matplotlib, which takes half a second.
-    from solver.study.drawing import Drawn, drawn, write_figures
-
-    desk, runs, done = Desk(folder), PaperRuns(), list[Drawn]()
-    for make in MAKERS:
-        desk.tell(f"{len(done)} of {len(MAKERS)} figures", len(done) / len(MAKERS))
-        done.append(drawn(make(runs)))
-        desk.publish(lambda place: write_figures(done, place))
+    """Compute the paper's figures, and show each as it comes."""
+    desk, runs, shown = Desk(folder), PaperRuns(), list[Section]()
+    for number, make in enumerate(MAKERS):
+        desk.tell(f"{number} of {len(MAKERS)} figures", number / len(MAKERS))
+        shown += figure_sections(make(runs))
+        desk.show(shown)
