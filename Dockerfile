@@ -4,9 +4,7 @@ FROM python:3.12-slim
 ENV OPENBLAS_NUM_THREADS=1 \
     OMP_NUM_THREADS=1 \
     MKL_NUM_THREADS=1 \
-    PYTHONUNBUFFERED=1 \
-    # Comma-separated origins whose pages may connect; "*" lets plain `docker run -p` work.
-    BOKEH_ALLOW_WS_ORIGIN=*
+    PYTHONUNBUFFERED=1
 
 RUN useradd --create-home slipfront
 WORKDIR /srv/slipfront
@@ -17,6 +15,7 @@ COPY static static
 RUN pip install --no-cache-dir .
 
 USER slipfront
+# Websockets are accepted from pages of localhost:5006 alone; BOKEH_ALLOW_WS_ORIGIN names others.
 EXPOSE 5006
 HEALTHCHECK --interval=30s --timeout=5s --start-period=20s \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]

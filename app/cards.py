@@ -29,6 +29,10 @@ class Cards:
         self._choices = choices
         self._cards: dict[str, Any] = {}
 
+    def has(self, view: View) -> bool:
+        """Tell whether a view's card is made."""
+        return view.name in self._cards
+
     def of(self, view: View) -> Any:
         """Give a view's card."""
         if view.name not in self._cards:

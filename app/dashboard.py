@@ -18,7 +18,7 @@ from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
-from app.views.catalogue import fitting
+from app.views.catalogue import VIEWS, fitting
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -54,6 +54,8 @@ class Dashboard:
         self._asked_for = session.wanted
         self._alone = True
         self._loaded = False
+        self._room = FIRST_ROW
+        self._logged = (0, "")
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
@@ -90,13 +92,12 @@ class Dashboard:
         self._alone = False
         self.session.start()
         send_without_delay()
-        # The first row comes first: two thirds of what the page is made of are not in it.
-        self._sidebar.fill()
-        self._arrange()
         self._on_narrow()
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
+        if self._loaded and self._room < len(VIEWS):
+            self._fill()
         alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
         if alone != self._alone:
             self._alone = alone
@@ -106,6 +107,7 @@ class Dashboard:
             self._tabs.refresh()
         self._sidebar.obey()
         self._pass_on(self.session.collect())
+        self._log()
         is_lost = self._pulse.painted < self._pulse.frame
         if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
@@ -173,19 +175,32 @@ class Dashboard:
         fit = fitting(session.wanted)
         wanted = self._sidebar.offer([view.name for view in fit])
         self._shown = [view for view in fit if view.name in wanted]
+        there = self._shown[: self._room]
         self.transport.arrange(session.wanted)
-        cards = [self._cards.of(view) for view in self._shown]
-        cards = cards[: None if self._loaded else FIRST_ROW]
+        cards = [self._cards.of(view) for view in there]
         if list(self._plots) != cards:
             self._plots[:] = cards
         holds = session.wanted is self._asked_for
         complaint = session.look.complaint if holds else ""
-        session.watch(views=tuple(view.name for view in self._shown), complaint=complaint)
+        # The worker sends what a view had already only when the choice of views changes.
+        session.watch(views=tuple(view.name for view in there), complaint=complaint)
         self._pulse.query = query_of(session.wanted)
         self._dim()
         self._offer_looks()
         self.transport.show()
         self._tabs.refresh()
+
+    def _fill(self) -> None:
+        """Make one of the cards below the first row, or show them all.
+
+        In slices, between which other pages are served; shown at once, as every time costs 12 ms.
+        """
+        made = next((view for view in self._shown if not self._cards.has(view)), None)
+        if made is not None:
+            self._cards.of(made)
+        else:
+            self._room = len(VIEWS)
+            self._arrange()
 
     def _dim(self) -> None:
         """Tell plots that do not show the run's scene from those that do."""
@@ -211,6 +226,16 @@ class Dashboard:
                 self._offer_looks()
                 self.transport.show()
 
+    def _log(self) -> None:
+        """Tell whoever serves the page what its run has come to; a drag is no news till its end."""
+        session = self.session
+        if session.facts is None or session.follows_hand:
+            return
+        came_to = "broke" if session.facts.is_broken else "ended" if session.is_over else "started"
+        if (session.ticket, came_to) != self._logged:
+            self._logged = session.ticket, came_to
+            pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
+
     def _connections(self) -> int:
         context = pn.state.curdoc.session_context if pn.state.curdoc else None
         return int(context.session.connection_count) if context is not None else 0
@@ -218,8 +243,6 @@ class Dashboard:
     def _on_painted(self, event: Any) -> None:
         if event.new != self._pulse.frame:
             return
-        if self.session.facts is not None:
-            self._sidebar.catch_up()
         if self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
 

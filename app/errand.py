@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from app.worker.desk import files, shown, told
+from app.worker.desk import PROGRESS, SECTIONS, files, said
 from app.worker.studies import Work
 from solver.study.page import Section
 
@@ -62,7 +62,7 @@ class Errand:
         self._executor = executor
         self._future: Future[Any] | None = None
         self._folder: TemporaryDirectory[str] | None = None
-        self._read = b""
+        self._read = b"", b""
         self.title = ""
         self.doing, self.share = "", 0.0
         self.growing = Found()
@@ -89,7 +89,7 @@ class Errand:
         if self._future is not None:
             return
         self.title, self.notice, self.share = title, "", 0.0
-        self.growing, self._read = Found(title), b""
+        self.growing, self._read = Found(title), (b"", b"")
         # What a killed process was writing just then is no reason to complain.
         self._folder = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
         self._future = self._executor.submit(work, Path(self._folder.name))
@@ -107,14 +107,16 @@ class Errand:
         if future is None or self._folder is None:
             return False
         is_done, folder = future.done(), Path(self._folder.name)
-        before = self.doing, self.share, self._read
-        self.doing, self.share = told(folder) or (STARTING if self.is_begun else WAITING, 0.0)
-        self._read = shown(folder)
-        if self._read != before[2]:
-            self.growing.sections = pickle.loads(self._read)
+        before = self.doing, self._read
+        self._read = progress, sections = said(folder, PROGRESS), said(folder, SECTIONS)
+        self.doing = STARTING if self.is_begun else WAITING
+        if progress:
+            self.doing, self.share = pickle.loads(progress)
+        if sections != before[1][1]:
+            self.growing.sections = pickle.loads(sections)
         if is_done:
             self._take(future, folder)
-        return is_done or before != (self.doing, self.share, self._read)
+        return is_done or before != (self.doing, self._read)
 
     def _take(self, future: Future[Any], folder: Path) -> None:
         """Follow the end of the process."""

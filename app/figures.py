@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from bokeh.events import Pan, Tap
 from bokeh.models import (
+    Axis,
     BasicTicker,
     ColorBar,
     ColumnDataSource,
     CustomJS,
     FixedTicker,
+    Grid,
+    HoverTool,
+    Image,
+    LinearAxis,
     LinearColorMapper,
+    LinearScale,
+    LogAxis,
+    LogScale,
+    MultiLine,
+    Patches,
+    Plot,
     Range1d,
+    Scatter,
 )
-from bokeh.plotting import figure
 
 from app.views.colors import shaded
 from app.views.drawing import View
@@ -33,7 +43,7 @@ figure.y_range.setv({start: y - 0.5 * scale * tall, end: y + 0.5 * scale * tall}
 SHADES = 180
 
 
-def make_figure(view: View, choose: Callable[[float], None]) -> Any:
+def make_figure(view: View, choose: Callable[[float], None]) -> Plot:
     """Make the figure of a view; a tap or a drag chooses a height, where the view says so."""
     plot, slug = view.plot, view.slug
     made = _axes(view)
@@ -48,76 +58,74 @@ def make_figure(view: View, choose: Callable[[float], None]) -> Any:
     else:
         _add_curves(made, view)
     if plot.chooses:
-        made.grid.visible = False
         made.on_event(Tap, lambda event: choose(event.y))
         made.on_event(Pan, lambda event: choose(event.y))
     return made
 
 
-def _axes(view: View) -> Any:
-    plot, slug = view.plot, view.slug
-    made = figure(
+def _axes(view: View) -> Plot:
+    """Make empty axes; `bokeh.plotting.figure` makes twice as many models, none of them needed."""
+    look, slug = view.plot, view.slug
+    made = Plot(
         height=230,
         min_height=150,
         sizing_mode="stretch_both",
+        title=None,
         toolbar_location=None,
-        tools="hover" if plot.names else "",
-        tooltips=[(plot.names, "@name")] if plot.names else None,
-        x_axis_label=plot.x_label,
-        y_axis_label=plot.y_label,
-        x_axis_type="log" if "x" in plot.logarithmic else "linear",
-        y_axis_type="log" if "y" in plot.logarithmic else "linear",
+        x_scale=LogScale() if "x" in look.logarithmic else LinearScale(),
+        y_scale=LogScale() if "y" in look.logarithmic else LinearScale(),
         x_range=Range1d(1, 2, name=f"{slug}.x"),
         y_range=Range1d(1, 2, name=f"{slug}.y"),
         min_border_right=12,
         min_border_top=6,
+        outline_line_color=None,
     )
-    for name, axis in (("x", made.xaxis[0]), ("y", made.yaxis[0])):
-        axis.name = f"{slug}.{name}-axis"
-        if name in plot.logarithmic:
-            axis.ticker = FixedTicker(ticks=[], name=f"{slug}.{name}-ticks")
-        elif isinstance(axis.ticker, BasicTicker):
-            # Labels are half of what a browser paints.
-            axis.ticker.desired_num_ticks = 4
-            if name in plot.whole:
-                axis.ticker.min_interval = 1
-    made.axis.axis_label_text_font_size = "14px"
-    made.axis.major_label_text_font_size = "13px"
-    made.axis.axis_label_standoff = 4
-    made.axis.minor_tick_line_color = None
-    made.xgrid.visible = False
-    made.outline_line_color = None
+    if look.names:
+        made.add_tools(HoverTool(tooltips=[(look.names, "@name")]))
+    made.add_layout(_axis("x", look.x_label, view), "below")
+    axis = _axis("y", look.y_label, view)
+    made.add_layout(axis, "left")
+    if not look.chooses:
+        made.add_layout(Grid(dimension=1, axis=axis))
     return made
 
 
-def _add_curves(made: Any, view: View) -> None:
+def _axis(name: str, label: str, view: View) -> Axis:
+    look, named = view.plot, f"{view.slug}.{name}-axis"
+    style = {
+        "name": named,
+        "axis_label": label,
+        "axis_label_text_font_size": "14px",
+        "major_label_text_font_size": "13px",
+        "axis_label_standoff": 4,
+        "minor_tick_line_color": None,
+    }
+    if name in look.logarithmic:
+        return LogAxis(ticker=FixedTicker(ticks=[], name=f"{view.slug}.{name}-ticks"), **style)
+    # Labels are half of what a browser paints.
+    least = 1 if name in look.whole else 0
+    return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
+
+
+def _add_curves(made: Plot, view: View) -> None:
     """Add one glyph for all curves, and one for each kind of marks."""
     slug = view.slug
     names = ("xs", "ys", "color", "width", "alpha", "dash", "name")
-    made.multi_line(
-        "xs",
-        "ys",
-        source=_empty(f"{slug}.curves", *names),
-        line_color="color",
-        line_width="width",
-        line_alpha="alpha",
-        line_dash="dash",
-    )
+    lines = MultiLine(line_color="color", line_width="width", line_alpha="alpha", line_dash="dash")
+    made.add_glyph(_empty(f"{slug}.curves", *names), lines)
     for marks in view.plot.marks:
         is_ring = marks.kind == "ring"
-        made.scatter(
-            "x",
-            "y",
-            source=_empty(f"{slug}.{marks.kind}", "x", "y"),
+        glyph = Scatter(
             marker="x" if marks.kind == "cross" else "circle",
             size=9 if marks.kind == "cross" else 11,
             fill_color=None if is_ring else marks.color,
             line_color=marks.color,
             line_width=2,
         )
+        made.add_glyph(_empty(f"{slug}.{marks.kind}", "x", "y"), glyph)
 
 
-def _add_colors(made: Any, view: View) -> None:
+def _add_colors(made: Plot, view: View) -> None:
     """Add an image, or bodies, and the scale of their colours."""
     plot, slug = view.plot, view.slug
     palette = list(plot.palette) if not plot.scale else shaded(SHADES, plot.palette)
@@ -126,10 +134,10 @@ def _add_colors(made: Any, view: View) -> None:
     if plot.equal:
         color = {"field": "value", "transform": mapper}
         source = _empty(f"{slug}.bodies", "xs", "ys", "value")
-        made.patches("xs", "ys", source=source, fill_color=color, line_color=color, line_width=0.5)
+        made.add_glyph(source, Patches(fill_color=color, line_color=color, line_width=0.5))
     elif not plot.names:
         source = _empty(f"{slug}.image", "image", "x", "y", "dw", "dh")
-        made.image("image", "x", "y", "dw", "dh", source=source, color_mapper=mapper)
+        made.add_glyph(source, Image(dw="dw", dh="dh", color_mapper=mapper))
     if plot.scale:
         bar = ColorBar(
             ticker=FixedTicker(ticks=[], name=f"{slug}.scale"),

@@ -5,20 +5,25 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import panel as pn
 from bokeh.document import Document
+from panel.custom import JSComponent
+from panel.io.liveness import LivenessHandler
+from panel.io.server import DocHandler
 from panel.util import edit_readonly
 
-GATHER_MS = 1
-"""For how long Panel gathers what a widget sends, instead of 50 ms: only what came while the server
-was busy, and a slider's two messages about one move, each of which costs Panel 4 ms."""
 
+class Prompt(JSComponent):
+    """A component whose changes are heard at once.
 
-def gather_briefly(widget: Any) -> None:
-    """Hear of a widget's changes at once."""
-    widget._debounce = GATHER_MS
+    Panel gathers what a browser changes for 50 ms, which every painted picture would wait for.
+    """
+
+    _debounce = 0
 
 
 def send_without_delay() -> None:
@@ -30,6 +35,36 @@ def send_without_delay() -> None:
     context = pn.state.curdoc.session_context if pn.state.curdoc else None
     for connection in context.session._subscribed_connections if context is not None else ():
         connection._socket.set_nodelay(True)
+
+
+def alive_with(facts: Callable[[], Mapping[str, Any]]) -> None:
+    """Have the liveness endpoint of Panel, which says but `true`, say how the server fares."""
+    get = LivenessHandler.get
+
+    async def tell(handler: LivenessHandler) -> None:
+        await get(handler)
+        if handler.get_argument("endpoint", default=None) is None:
+            # What was written is not sent yet.
+            handler.clear()
+            handler.write({handler.request.path: True, **facts()})
+
+    LivenessHandler.get = tell  # type: ignore[method-assign]
+
+
+def open_in_turn() -> None:
+    """Have pages opened one after the other.
+
+    What has come in meanwhile is all done in one turn of the event loop: of thirty pages that are
+    asked for together, everybody else waits for all.
+    """
+    get, turn = DocHandler.get, asyncio.Lock()
+
+    async def wait(handler: DocHandler, *args: Any, **options: Any) -> None:
+        async with turn:
+            await get(handler, *args, **options)
+            await asyncio.sleep(0)
+
+    DocHandler.get = wait  # type: ignore[method-assign]
 
 
 def ignore_business(page: Any) -> None:

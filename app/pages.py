@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 from typing import Protocol
 
+from app.keeper import Keeper
+
 VARIABLE = "SLIPFRONT_PAGES"
 """Environment variable with the most pages that may be open."""
 OF_A_PAGE = 150_000_000
@@ -16,6 +18,8 @@ SHARE = 0.8
 
 class Working(Protocol):
     """A page that may have a run at work."""
+
+    keeper: Keeper
 
     @property
     def is_at_work(self) -> bool:
@@ -37,6 +41,11 @@ class Pages:
 
     def __len__(self) -> int:
         return len(self._open)
+
+    @property
+    def workers(self) -> int:
+        """Count the worker processes of the pages."""
+        return sum(page.keeper.link is not None for page in self._open)
 
     @property
     def is_full(self) -> bool:

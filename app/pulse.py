@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import param
-from panel.custom import JSComponent
+
+from app.innards import Prompt
 
 
-class Pulse(JSComponent):
+class Pulse(Prompt):
     """An invisible component that paints pictures, says when they are painted, and hears keys."""
-
-    # Panel gathers changes from the browser for 50 ms, which every painted frame would wait for.
-    _debounce = 0
 
     picture = param.Bytes(default=b"", doc="The newest picture, as `app.worker.block` packs it.")
     frame = param.Integer(default=0, doc="Number of the newest picture sent.")
@@ -125,8 +123,8 @@ class Pulse(JSComponent):
         if (writes || event.ctrlKey || event.metaKey || event.altKey) { return }
         if (!model.hears || event.repeat || ![" ", "s", "r"].includes(event.key)) { return }
         // In an open list letters choose; the space bar presses what has the focus.
-        const lists = "[role=option], [role=menuitem], [role=listbox], [role=menu]"
-        const presses = ", button, [role=combobox], [role=switch]"
+        const lists = "[role=option], [role=menuitem], [role=listbox], [role=menu], select"
+        const presses = ", button, summary, [role=combobox], [role=switch]"
         const keeps = event.key === " " ? lists + presses : lists
         if (typed.closest && typed.closest(keeps)) { return }
         event.preventDefault()

@@ -31,7 +31,8 @@ MARKS = {"solid": "line", "points": "dot"}
 class Report:
     """A tab on which a report is asked for, watched while it is made, and read.
 
-    A subclass says what is asked (`_ask`) and what can be chosen (`_choices`).
+    A subclass says what it is, and what asking for it means for the page (`title`, `words`), what
+    is asked (`_ask`) and what can be chosen (`_choices`).
 
     Parameters
     ----------
@@ -39,8 +40,6 @@ class Report:
         The state that it shows.
     style
         Style sheet.
-    title, words
-        What the report is, and what asking for it means for the page.
 
     Attributes
     ----------
@@ -48,10 +47,11 @@ class Report:
         What stands on the page; it is empty until `open`.
     """
 
-    def __init__(self, errand: Errand, style: str, title: str, words: str) -> None:
+    title = words = ""
+
+    def __init__(self, errand: Errand, style: str) -> None:
         self._errand = errand
         self._style = style
-        self._words = f"<h2>{escape(title)}</h2><p>{escape(words)}</p>"
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
@@ -61,16 +61,15 @@ class Report:
         self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
         self._past.param.watch(lambda event: self._put(event.new), "value")
         self._files = self._row(margin=(0, 6, 8, 6))
-        self._card = self._column(
-            self._heading, self._sheet, self._files, role="card paper", visible=False
-        )
+        parts = self._heading, self._sheet, self._files
+        self._card = self._column(*parts, role="card paper", visible=False)
         self.view = self._column(margin=(4, 10), visible=False)
 
     def open(self) -> None:
         """Show the report; nothing is computed before somebody asks."""
         if not self.view.objects:
-            top = self._column(self._text(self._words), *self._bar(), role="card paper")
-            top.margin = (0, 0, 12, 0)
+            words = self._text(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
+            top = self._column(words, *self._bar(), role="card paper", margin=(0, 0, 12, 0))
             self.view[:] = [top, self._card]
         self._refresh()
 
@@ -104,9 +103,8 @@ class Report:
         )
         self._start.on_click(lambda event: self._on_start())
         self._cancel.on_click(lambda event: self._on_cancel())
-        choices = self._choices()
-        row = self._row(self._start, self._cancel, *choices, self._past, align_items="center")
-        return [row, self._progress]
+        parts = self._start, self._cancel, *self._choices(), self._past
+        return [self._row(*parts, align_items="center"), self._progress]
 
     def _on_start(self) -> None:
         self._ask()
@@ -175,26 +173,19 @@ class Report:
 
     def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:
         """Put parts one below the other, as high as they are."""
-        return pn.Column(
-            *parts,
-            css_classes=role.split(),
-            stylesheets=[self._style],
-            sizing_mode="stretch_width",
-            **{"margin": 0, **options},
-        )
+        options = {"margin": 0, **self._looks(role), **options}
+        return pn.Column(*parts, **options)
 
     def _row(self, *parts: Any, **options: Any) -> pn.FlexBox:
-        options = {"margin": (0, 6), **options}
-        return pn.FlexBox(*parts, flex_wrap="wrap", sizing_mode="stretch_width", **options)
+        options = {"margin": (0, 6), "sizing_mode": "stretch_width", **options}
+        return pn.FlexBox(*parts, flex_wrap="wrap", **options)
 
     def _text(self, html: str, role: str = "report") -> pn.pane.HTML:
-        return pn.pane.HTML(
-            html,
-            css_classes=role.split(),
-            stylesheets=[self._style],
-            sizing_mode="stretch_width",
-            margin=(6, 14),
-        )
+        return pn.pane.HTML(html, margin=(6, 14), **self._looks(role))
+
+    def _looks(self, role: str) -> dict[str, Any]:
+        classes, styles = role.split(), [self._style]
+        return {"css_classes": classes, "stylesheets": styles, "sizing_mode": "stretch_width"}
 
 
 def legend(plot: Plot) -> str:
@@ -207,12 +198,7 @@ def legend(plot: Plot) -> str:
 def downloads(files: Mapping[str, bytes]) -> list[Any]:
     """Give a button for each file."""
     return [
-        pmui.FileDownload(
-            label=name,
-            callback=lambda data=data: BytesIO(data),
-            filename=name,
-            size="small",
-        )
+        pmui.FileDownload(label=name, filename=name, size="small", callback=partial(BytesIO, data))
         for name, data in files.items()
     ]
 

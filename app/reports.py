@@ -32,14 +32,11 @@ PLAIN = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding"
 class PaperFigures(Report):
     """The paper's figures with their claims; they are asked for when they are first looked at."""
 
-    def __init__(self, errand: Errand, style: str) -> None:
-        super().__init__(
-            errand,
-            style,
-            "The paper's figures",
-            "Figs. 3 to 8 again, each with the paper's claim and the numbers that bear it out or "
-            "do not. They take a few seconds, once for all pages.",
-        )
+    title = "The paper's figures"
+    words = (
+        "Figs. 3 to 8 again, each with the paper's claim and the numbers that bear it out or do "
+        "not. They take a few seconds, once for all pages."
+    )
 
     def open(self) -> None:
         """Show the figures; have them made if nobody has."""
@@ -82,21 +79,17 @@ class StudyReport(Report):
         Gives the most runs of other pages that were at work during the last study.
     """
 
+    title = "Error against run time"
+    words = (
+        "Every form of LATIN, the incremental solver and the public QP solvers that are installed, "
+        "on the present settings, one after the other in a process of their own. The run of this "
+        "page stands still while they are timed."
+    )
+
     def __init__(
-        self,
-        errand: Errand,
-        style: str,
-        settings: Callable[[], Settings],
-        crowd: Callable[[], int],
+        self, errand: Errand, style: str, settings: Callable[[], Settings], crowd: Callable[[], int]
     ) -> None:
-        super().__init__(
-            errand,
-            style,
-            "Error against run time",
-            "Every form of LATIN, the incremental solver and the public QP solvers that are "
-            "installed, on the present settings, one after the other in a process of their own. "
-            "The run of this page stands still while they are timed.",
-        )
+        super().__init__(errand, style)
         self._settings = settings
         self._crowd = crowd
         self._crowds: WeakKeyDictionary[Found, int] = WeakKeyDictionary()
@@ -135,15 +128,12 @@ class StudyReport(Report):
 class StabilityReport(Report):
     """Stiff and extreme cases, each with a verdict."""
 
-    def __init__(self, errand: Errand, style: str) -> None:
-        super().__init__(
-            errand,
-            style,
-            "Stability on stiff and extreme cases",
-            "Stiff and extreme cases of every scene, whatever the settings of the page: does every "
-            "one of them end with the right answer, or with a status that says that it is not? The "
-            "run of this page goes on beside, so seconds are no measurement.",
-        )
+    title = "Stability on stiff and extreme cases"
+    words = (
+        "Stiff and extreme cases of every scene, whatever the settings of the page: does every one "
+        "of them end with the right answer, or with a status that says that it is not? The run of "
+        "this page goes on beside, so seconds are no measurement."
+    )
 
     def _choices(self) -> list[Any]:
         self._cases = pmui.Select(

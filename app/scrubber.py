@@ -10,7 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 import param
-from panel.custom import JSComponent
+
+from app.innards import Prompt
 
 STYLE = """
 label { display: block; font-size: 15px; line-height: 1.4; white-space: nowrap; }
@@ -19,7 +20,7 @@ input { display: block; width: 100%; margin: 4px 0; accent-color: #1976d2; curso
 """
 
 
-class Scrubber(JSComponent):
+class Scrubber(Prompt):
     """A range from `start` to `end`.
 
     Attributes
@@ -29,9 +30,6 @@ class Scrubber(JSComponent):
     wanted
         Where the user moved it last.
     """
-
-    # Panel gathers changes from the browser for 50 ms; a slider that is dragged should not wait.
-    _debounce = 0
 
     label = param.String(default="")
     help = param.String(default="")

@@ -14,12 +14,14 @@ from panel.io.state import set_curdoc
 from app.address import settings_from_query
 from app.dashboard import TICK_MS, Dashboard
 from app.innards import forget
+from app.lateness import Lateness
 from app.pages import Pages, most_pages
 from app.session import Session
 from app.worker.bench import shared_bench
 from app.worker.link import warm_up
 
 PAGES = Pages(most_pages())
+LATENESS = Lateness()
 FULL = (
     "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
     "This page tries again by itself.</p>"
@@ -41,12 +43,18 @@ def open_page() -> pmui.Page:
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     dashboard.session.keeper.wake = lambda: document.add_next_tick_callback(dashboard.tick)
     pn.state.on_session_destroyed(partial(_end, dashboard, document))
+    pn.state.log(f"page opened, {len(PAGES)} in all")
     return dashboard.page
 
 
 def is_phone(headers: Mapping[str, str]) -> bool:
     """Tell from a request whether a phone asks, which has room for the run alone."""
     return headers.get("Sec-Ch-Ua-Mobile") == "?1" or "Mobi" in headers.get("User-Agent", "")
+
+
+def facts() -> dict[str, Any]:
+    """Say how the server fares: its pages, their workers, how late the event loop was, s."""
+    return {"pages": len(PAGES), "workers": PAGES.workers, "lateness": LATENESS.facts()}
 
 
 def rehearse() -> None:
@@ -66,6 +74,7 @@ def _end(dashboard: Dashboard, document: Document, context: Any) -> None:
     """Leave nothing behind when a page is gone."""
     dashboard.end()
     forget(document)
+    pn.state.log(f"page closed, {len(PAGES)} left")
 
 
 def _full() -> pmui.Page:

@@ -273,6 +273,11 @@ class Session:
         return self.keeper.link is not None and not self.is_over and self._is_free
 
     @property
+    def follows_hand(self) -> bool:
+        """Whether the run is one of many while a slider is dragged."""
+        return self._follows_hand
+
+    @property
     def is_held(self) -> bool:
         """Whether the run stands still for a study that is timed."""
         return self._held

@@ -14,7 +14,6 @@ import numpy as np
 from solver.definitions import Curve, SettingError, parse, resolve
 from solver.discrete.problem import Inside
 from solver.latin import Iterate, Solution
-from solver.laws import Friction
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces
 from solver.scenes import CATALOGUE
@@ -204,7 +203,7 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     found: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
     for name, law in iterate.problem.rubbing.items():
-        if isinstance(law, Friction) and law.below is None:
+        if law.is_plain:
             continue
         fields = iterate.contact(name)
         *_, tangential = iterate.problem.contact_places[name]

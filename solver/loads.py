@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solver.arrays import Array
 from solver.definitions import Pairs
-
-Array = NDArray[np.float64]
 
 RANDOM_POINTS = 12
 ROUNDING = 1e-14

@@ -86,6 +86,25 @@ class Settings(param.Parameterized):
         title="Method",
         essential=True,
     )
+    friction_law = choice(
+        "coulomb",
+        ["coulomb", "compliant"],
+        "Points stick until the friction force reaches its bound (Coulomb), or give way before "
+        "they slip, with a spring in series (Jenkins' element, as in joints and fretting).",
+        group="Contact",
+        title="Friction law",
+    )
+    contact_stiffness = quantity(
+        100.0,
+        (1e-3, 1e9),
+        (1.0, 1e4),
+        "Tangential stiffness of the contact before it slips, over E S / L^2 along a rod, or E / L "
+        "in the plane.",
+        group="Contact",
+        title="Contact stiffness",
+        applies=lambda settings: settings.friction_law == "compliant",
+        logarithmic=True,
+    )
     search_direction = choice(
         "auto",
         ["paper", "auto"],

@@ -40,9 +40,9 @@ def boundary_of(problem, reference):
     friction = reference.friction_force / problem.scales.force
     share = law.bound / np.bincount(law.points, weights=law.bound)[law.points]
     force = np.zeros((problem.n_rows, problem.n_instants))
-    force[law.rows] = share[:, None] * friction[law.points]
+    force[law.tangent.above] = share[:, None] * friction[law.points]
     for part in problem.substructures:
-        own = np.isin(part.rows, law.rows)
+        own = np.isin(part.rows, law.tangent.above)
         rest = part.elasticity.stiffness @ displacement[part.dofs]
         if part.body_force is not None:
             rest -= part.body_force

@@ -77,6 +77,10 @@ class Server:
         raise TimeoutError(self.log)
 
     @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
     def log(self) -> str:
         return self._log.read_text()
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
-from solver.laws import Contact, Dirichlet, Friction
+from solver.laws import Bodies, Component, Dirichlet, Friction
 from solver.scenes.stack import Given, Side, Stack, Support
 
 COURSES = ("random", "reversal", "open and close", "wander")
@@ -52,7 +52,17 @@ def contact(normal, tangent, below, gap, friction):
     """Give a contact of as many points as there are normal rows."""
     count = len(normal)
     points, ones = np.arange(count), np.ones(count)
-    return Contact(normal, tangent, below, points, 1.0 * points, ones, gap, friction * ones)
+    below = below or (None, None)
+    return Friction.of_contact(
+        Component(normal, below[0]),
+        Component(tangent, below[1]),
+        friction * ones,
+        points=points,
+        positions=1.0 * points,
+        weights=ones,
+        gap=gap,
+        around=Bodies(),
+    )
 
 
 def on_a_support(rng, points, friction, *, load="random", instants=6, gap=None):
@@ -91,13 +101,12 @@ def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
     pairs = [(one + 1, one) for one in range(strands - 1)] + [(0, strands - 1)] * ring
     along = np.arange(points)
     laws = {
-        f"strand {above}-{below}": Friction(
-            points * above + along,
-            along,
-            1.0 * along,
-            np.ones(points),
+        f"strand {above}-{below}": Friction.of_known_bound(
+            Component(points * above + along, points * below + along),
             rng.uniform(0.0, 0.5, size=points),
-            points * below + along,
+            points=along,
+            positions=1.0 * along,
+            weights=np.ones(points),
         )
         for above, below in pairs
     }

@@ -12,7 +12,7 @@ from pages import Visit, choose, slider
 from playwright.sync_api import Page, TimeoutError, expect
 from tour import SIZES, Move, described, ends, has_errors, never_apply, small, tour
 
-from app.controls import POINTS
+from app.form import POINTS
 from solver.definitions import Curve, about
 from solver.settings import Settings
 
@@ -102,41 +102,48 @@ class Tour:
         if isinstance(definition, param.Boolean):
             place.get_by_role("switch").press("Space")
         elif isinstance(definition, param.Selector | Curve):
-            self._send(name, value if isinstance(value, str) else POINTS)
+            # Also one that does not apply, and is hidden, as it is brought back last.
+            place.locator("select").evaluate(
+                """(select, value) => {
+                  select.value = value
+                  select.dispatchEvent(new Event("change"))
+                }""",
+                value if isinstance(value, str) else POINTS,
+            )
         elif value in definition.softbounds:
             key = "Home" if value == definition.softbounds[0] else "End"
             place.get_by_role("slider").press(key)
         else:
-            self._send(name, self._shown(definition, value))
-
-    def _shown(self, definition: Any, value: Any) -> Any:
-        return math.log10(value) if about(definition).logarithmic else value
-
-    def _send(self, name: str, value: Any) -> None:
-        self.page.evaluate(
-            f"([name, value]) => {{{MODEL} model(name).data.value = value}}",
-            [f"setting-{name}", value],
-        )
+            at = math.log10(value) if about(definition).logarithmic else value
+            # What `fill` refuses as no step: the number nearest to it that the slider takes.
+            place.locator("input[type=range]").evaluate(
+                """(range, at) => {
+                  range.value = at
+                  range.dispatchEvent(new Event("input"))
+                  range.dispatchEvent(new Event("change"))
+                }""",
+                at,
+            )
 
     def _evaluate(self, expression: str) -> Any:
         return self.page.evaluate(f"() => {{{MODEL} return {expression}}}")
 
     def _await_value(self, name: str, settings: Settings) -> None:
         """Wait until a control has gone back to what holds."""
-        definition, value = settings.definitions()[name], getattr(settings, name)
-        shown = value
-        if isinstance(definition, param.Number):
-            shown = self._shown(definition, value)
-        elif isinstance(definition, Curve) and not isinstance(value, str):
-            shown = POINTS
-        self.page.wait_for_function(
-            f"""([name, value]) => {{{MODEL}
-              const now = model(name).data.value
-              return now === value || Math.abs(now - value) <= 1e-3 * Math.abs(value)
-            }}""",
-            arg=[f"setting-{name}", shown],
-            polling=POLL_MS,
-        )
+        value = getattr(settings, name)
+        place = self.page.locator(f".setting-{name}")
+        if isinstance(settings.definitions()[name], param.Selector | Curve):
+            shown = value if isinstance(value, str) else POINTS
+            expect(place.locator("select")).to_have_value(shown)
+        elif isinstance(value, bool):
+            expect(place.get_by_role("switch")).to_be_checked(checked=value)
+        else:
+            self.page.wait_for_function(
+                """([range, value]) =>
+                  Math.abs(range.ariaValueNow - value) <= 1e-3 * Math.abs(value)""",
+                arg=[place.get_by_role("slider").element_handle(), value],
+                polling=POLL_MS,
+            )
 
     def _await_end(self, former: str, settings: Settings) -> str:
         """Wait until another run has ended, and its errors are told where it has any."""

@@ -70,6 +70,12 @@ def card(page: Page, name: str) -> Locator:
 
 
 def choose(box: Locator, option: str) -> None:
+    """Choose in a list of the browser's own, by the beginning of a title, or in one of Material."""
+    options = box.locator("option")
+    if options.count():
+        titles = options.all_text_contents()
+        box.select_option(label=next(title for title in titles if title.startswith(option)))
+        return
     box.click()
     box.page.get_by_role("menuitem", name=option).click()
 

@@ -10,8 +10,9 @@ import pytest
 from solver.discrete import discretise
 from solver.latin import Ending, iterations, solve
 from solver.latin.acceleration import Anderson
-from solver.latin.direction import FRICTION_FACTOR, search_direction, sliding_share
+from solver.latin.direction import search_direction, sliding_share
 from solver.latin.nested import prolong
+from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -111,7 +112,9 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit():
 def by_point(**changes: object):
     chosen = options(**changes)
     problem = discretise(chosen)
-    return problem.friction.by_point(search_direction(problem, chosen)[problem.friction.rows])
+    return problem.friction.by_point(
+        search_direction(problem, chosen)[problem.friction.tangent.above]
+    )
 
 
 def test_the_automatic_direction_does_not_know_the_cuts():
@@ -184,7 +187,7 @@ def test_what_is_linear_is_carried_over_exactly():
         own = fine.positions[part.dofs][:, None] * stretch
         needed = part.elasticity.stiffness @ own
         trace = part.elasticity.trace
-        rubs = np.isin(part.rows, fine.friction.rows)
+        rubs = np.isin(part.rows, fine.friction.tangent.above)
         assert np.allclose(found[part.rows[rubs]], own[trace[rubs]])
         ends = part.rows[~rubs]
         assert np.allclose(

@@ -200,7 +200,7 @@ def test_the_work_of_a_cycle_is_stored_or_dissipated(change):
     assert dissipated > 0.01
     assert left_over == pytest.approx(stored[second] - stored[first], abs=1e-6 * dissipated)
     if scene.wires == 2:
-        # Each side of the break is a friction bar, whose cycles are closed (theory.md, 6).
+        # Each side of the break is a friction bar, whose cycles are closed (solver/README.md, 6).
         assert stored[second] == pytest.approx(stored[first], abs=1e-6 * dissipated)
 
 

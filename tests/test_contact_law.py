@@ -1,4 +1,4 @@
-"""Unilateral contact with Coulomb friction holds pointwise on any input (theory.md, 2)."""
+"""Unilateral contact with Coulomb friction holds pointwise on any input (solver/README.md, 2)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.laws import Contact, Friction
-from solver.laws.contact import ContactLaw
-from solver.laws.friction import FrictionLaw, play
+from solver.laws import Component, Friction
+from solver.laws.interface import Region
+from solver.laws.play import play
 
 ANY = settings(derandomize=True, deadline=None, max_examples=100)
 ROUNDING = 1e-12
@@ -23,16 +23,14 @@ def contacts(draw):
     random = np.random.default_rng(seed)
     pairs, times = draw(st.integers(1, 6)), draw(st.integers(1, 12))
     rows = random.permutation(4 * pairs if two_bodies else 2 * pairs).reshape(-1, pairs)
-    law = Contact(
-        normal=rows[0],
-        tangent=rows[1],
-        below=(rows[2], rows[3]) if two_bodies else None,
+    law = Friction.of_contact(
+        normal=Component(rows[0], rows[2] if two_bodies else None),
+        tangent=Component(rows[1], rows[3] if two_bodies else None),
         points=np.arange(pairs),
         positions=np.arange(pairs, dtype=float),
         weights=np.ones(pairs),
         gap=random.normal(size=pairs) * draw(st.sampled_from([0.0, 0.5])),
         friction=random.uniform(0.0, draw(st.sampled_from([0.0, 0.3, 10.0])) + 1e-300, pairs),
-        moduli=(1.0, 1.0),
     )
     k = 10.0 ** random.uniform(-2.0, 2.0, rows.size)
     return law, k, random.normal(size=(rows.size, times))
@@ -41,13 +39,9 @@ def contacts(draw):
 def local_stage(law, k, incoming):
     """Give displacements and forces of the local stage."""
     found = np.zeros_like(incoming)
-    kind = ContactLaw if isinstance(law, Contact) else FrictionLaw
-    kind(law, k, incoming.shape[1])(incoming, found)
+    every = np.arange(incoming.shape[1])
+    law.rule(Region(np.arange(len(k)), k, every))(incoming, found, slice(None))
     return found, k[:, None] * (found - incoming)
-
-
-def jump(field, above, below):
-    return field[above] if below is None else field[above] - field[below]
 
 
 @ANY
@@ -55,8 +49,8 @@ def jump(field, above, below):
 def test_nothing_overlaps_nothing_pulls_and_what_is_open_carries_nothing(case):
     law, k, incoming = case
     moved, force = local_stage(law, k, incoming)
-    opening = jump(moved, law.normal, law.below and law.below[0]) + law.gap[:, None]
-    pressing = force[law.normal]
+    opening = law.normal.jump(moved) + law.gap[:, None]
+    pressing = force[law.normal.above]
     size = np.abs(incoming).max() * k.max()
     assert np.all(pressing >= 0.0)
     assert np.all(opening >= -ROUNDING * np.abs(incoming).max())
@@ -68,10 +62,10 @@ def test_nothing_overlaps_nothing_pulls_and_what_is_open_carries_nothing(case):
 def test_friction_stays_in_the_cone_and_opposes_slip(case):
     law, k, incoming = case
     moved, force = local_stage(law, k, incoming)
-    position = jump(moved, law.tangent, law.below and law.below[1])
+    position = law.tangent.jump(moved)
     slip = np.diff(position, axis=1, prepend=0.0)
-    bound = law.friction[:, None] * force[law.normal]
-    held = force[law.tangent]
+    bound = law.friction[:, None] * force[law.normal.above]
+    held = force[law.tangent.above]
     size = np.abs(incoming).max()
     tight = ROUNDING * size * k.max()
     assert np.all(np.abs(held) <= bound + tight)
@@ -84,32 +78,23 @@ def test_friction_stays_in_the_cone_and_opposes_slip(case):
 def test_forces_between_two_bodies_are_opposite(case):
     law, k, incoming = case
     _, force = local_stage(law, k, incoming)
-    if law.below is not None:
-        for above, below in zip((law.normal, law.tangent), law.below, strict=True):
+    if not law.is_on_support:
+        for above, below in law.components:
             size = np.abs(k[:, None] * incoming).max()
             np.testing.assert_allclose(force[above], -force[below], atol=ROUNDING * size, rtol=1e-9)
 
 
-@pytest.mark.parametrize("kind", [Contact, Friction])
-def test_a_very_stiff_body_below_is_a_rigid_support(kind):
+@pytest.mark.parametrize("opens", [True, False])
+def test_a_very_stiff_body_below_is_a_rigid_support(opens):
     random = np.random.default_rng(5)
     rows = np.arange(12).reshape(4, 3)
     common = {"points": np.arange(3), "positions": np.arange(3.0), "weights": np.ones(3)}
 
     def law(below):
-        if kind is Friction:
-            return Friction(
-                rows=rows[1], bound=np.full(3, 0.4), below=rows[3] if below else None, **common
-            )
-        return Contact(
-            normal=rows[0],
-            tangent=rows[1],
-            below=(rows[2], rows[3]) if below else None,
-            gap=np.full(3, 0.1),
-            friction=np.full(3, 0.3),
-            moduli=(1.0, 1.0),
-            **common,
-        )
+        normal, tangent = (Component(rows[n], rows[n + 2] if below else None) for n in (0, 1))
+        if not opens:
+            return Friction.of_known_bound(tangent, np.full(3, 0.4), **common)
+        return Friction.of_contact(normal, tangent, np.full(3, 0.3), gap=np.full(3, 0.1), **common)
 
     incoming = random.normal(size=(12, 20))
     incoming[6:] = 0.0
@@ -125,8 +110,12 @@ def test_a_very_stiff_body_below_is_a_rigid_support(kind):
 
 def test_the_only_pair_of_friction_between_two_bodies_follows_the_play_operator():
     random = np.random.default_rng(3)
-    law = Friction(
-        np.array([1]), np.array([0]), np.zeros(1), np.ones(1), np.array([0.7]), np.array([0])
+    law = Friction.of_known_bound(
+        Component(np.array([1]), np.array([0])),
+        np.array([0.7]),
+        points=np.array([0]),
+        positions=np.zeros(1),
+        weights=np.ones(1),
     )
     k, incoming = np.array([2.0, 5.0]), random.normal(size=(2, 30))
     moved, force = local_stage(law, k, incoming)

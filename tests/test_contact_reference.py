@@ -19,7 +19,7 @@ from contact_problems import (
 from solver.discrete import discretise
 from solver.discrete.bar import discretise_bar
 from solver.discrete.stack import discretise_stack
-from solver.laws import Contact, Dirichlet, Friction
+from solver.laws import Component, Dirichlet
 from solver.reference import contact as module
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.choice import reference_of
@@ -38,7 +38,7 @@ def components(of, found):
     for name, law in of.rubbing.items():
         fields = found.contact(name)
         slip = np.diff(fields.slip, axis=1, prepend=0.0)
-        if isinstance(law, Contact):
+        if law.opens:
             bound = law.friction[:, None] * fields.normal_force
             yield fields.opening, slip, fields.normal_force, bound, fields.tangential_force
         else:
@@ -60,16 +60,10 @@ def assert_laws(of, found, slack=SMALL):
     total = external_force(of) - assembled_stiffness(of) @ found.displacement
     for name, law in of.rubbing.items():
         fields = found.contact(name)
-        force = [fields.tangential_force]
-        if isinstance(law, Friction):
-            above, below = [law.rows], [law.below]
-        else:
-            force = [fields.normal_force, fields.tangential_force]
-            above, below = [law.normal, law.tangent], law.below or (None, None)
-        for one, up, down in zip(force, above, below, strict=True):
-            total[of.row_dofs[up]] += one
-            if down is not None:
-                total[of.row_dofs[down]] -= one
+        force = [fields.normal_force, fields.tangential_force][-len(law.components) :]
+        for one, component in zip(force, law.components, strict=True):
+            for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):
+                total[of.row_dofs[rows]] += sign * one
     np.testing.assert_allclose(total[free], 0.0, atol=slack)
 
 
@@ -212,13 +206,11 @@ def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_suppor
     of = discretise_bar(
         bar(BarSettings.checked({"method": "paper", "instants": 41, "peak": 1200.0}))
     )
-    law, size = of.friction, len(of.friction.rows)
+    law, size = of.friction, len(of.friction.points)
     below = substructure(np.eye(size), (of.n_dofs, of.n_rows), None, extra_rows=size)
     interfaces = {
         **of.interfaces,
-        "friction": Friction(
-            law.rows, law.points, law.positions, law.weights, law.bound, below.rows[:size]
-        ),
+        "friction": replace(law, tangent=Component(law.tangent.above, below.rows[:size])),
         "held": Dirichlet(below.rows[size:], np.zeros((size, of.n_instants))),
     }
     positions = np.zeros(of.n_dofs + size)

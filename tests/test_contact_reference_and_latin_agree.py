@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from contact_problems import block
 
-from solver.discrete.contact_fields import OPEN
 from solver.discrete.stack import discretise_stack
 from solver.latin import Ending, iterations, solve
+from solver.laws import OPEN
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
 from solver.scenes.bar import BarSettings

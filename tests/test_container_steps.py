@@ -4,6 +4,7 @@ The clean environment is lent what the project declares that it needs, and nothi
 the versions, but unpacks no packages that these tests run on already.
 """
 
+import http.client
 import json
 import os
 import re
@@ -13,11 +14,15 @@ import subprocess
 import sys
 import time
 import tomllib
+from contextlib import closing
 from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
+
+from app.pages import VARIABLE
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -96,7 +101,44 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
     assert user != "root"
     variables = " ".join(instructions("ENV"))
     assert "OPENBLAS_NUM_THREADS=1" in variables
-    assert "BOKEH_ALLOW_WS_ORIGIN=*" in variables
+    assert "BOKEH_ALLOW_WS_ORIGIN" not in variables
+
+
+def test_a_proxy_sends_every_browser_to_one_of_several_servers():
+    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "app" / "README.md").read_text(), re.DOTALL)
+    services = yaml.safe_load(text)["services"]
+    (rules,) = [config["content"] for config in yaml.safe_load(text)["configs"].values()]
+    (port,) = instructions("EXPOSE")
+    servers = {name: one for name, one in services.items() if "build" in one}
+    assert len(servers) > 1
+    assert set(re.findall(r"(\w+):" + port, rules)) == set(servers)
+    assert "lb_policy cookie" in rules
+    for server in servers.values():
+        assert (ROOT / server["build"] / "Dockerfile").exists()
+        assert set(server["environment"]) == {"BOKEH_ALLOW_WS_ORIGIN", VARIABLE}
+    (proxy,) = [one for name, one in services.items() if name not in servers]
+    assert proxy["ports"] == ["80:80"]
+    assert rules.startswith(":80 ")
+    assert "health_uri /liveness" in rules
+    assert "--liveness" in instructions("CMD")[0]
+
+
+def handshake(port, origin):
+    """Give the answer to a page of some origin that asks for a websocket."""
+    asked = http.client.HTTPConnection("127.0.0.1", int(port), timeout=20)
+    with closing(asked):
+        asked.request(
+            "GET",
+            "/app/ws",
+            headers={
+                "Connection": "Upgrade",
+                "Upgrade": "websocket",
+                "Sec-WebSocket-Key": "c2xpcGZyb250IHNsaXBmcg==",
+                "Sec-WebSocket-Version": "13",
+                "Origin": origin,
+            },
+        )
+        return asked.getresponse().status
 
 
 def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
@@ -121,6 +163,8 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
             assert time.monotonic() < end, (tmp_path / "log").read_text()
             assert server.poll() is None, (tmp_path / "log").read_text()
             time.sleep(0.5)
+        assert handshake(other, f"http://localhost:{other}") == 101
+        assert handshake(other, "http://elsewhere.example") == 403
     finally:
         server.terminate()
         server.wait(20)

@@ -4,47 +4,70 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.controls import CurveControl, make_control
-from solver.definitions import Curve, SettingError
+import pytest
+from lone_link import LoneLink
+
+from app.form import POINTS, item_of
+from app.pages import Pages
+from app.session import Session
+from app.sidebar import Sidebar
+from app.worker.bench import Bench
+from solver.definitions import Curve
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
-POINTS = [[0.0, 0.0], [1.0, 500.0]]
+TABLE = [(0.0, 0.0), (1.0, 500.0)]
 
 
-def edited(rows: list[list[float]]) -> CurveControl:
-    """Edit the table of a load path that is `POINTS`."""
-    settings = BarSettings.checked({"method": "paper", "load": POINTS})
-
-    def change(name: str, value: Any) -> None:
-        try:
-            control.show(settings.with_change(name, value))
-        except SettingError:
-            control.show(settings)
-
-    made = make_control("load", BarSettings.definitions()["load"], change, lambda name: [])
-    assert isinstance(made, CurveControl)
-    control = made
-    control.show(settings)
-    control._table.wanted = rows
-    return control
+@pytest.fixture
+def sidebar() -> Sidebar:
+    settings = BarSettings.checked({"method": "paper", "load": TABLE})
+    session = Session(Pages(1), Bench(), settings, LoneLink().hire)
+    made = Sidebar(session, lambda: None, lambda text: None, lambda query: None)
+    made.show(settings)
+    return made
 
 
-def test_a_refused_edit_leaves_the_table_and_can_be_made_again() -> None:
-    control = edited([[0.0, 0.0], [0.0, 500.0]])
-    assert control._table.shown == POINTS
-    # What the browser hears, and what makes the same edit another one.
-    assert control._table.wanted == []
+def edited(sidebar: Sidebar, value: Any) -> Any:
+    """Edit the load path, and give what is shown of it."""
+    sidebar.hear("load", value, False, 7)
+    sidebar.obey()
+    # What tells the browser that this edit was heard, and is to show what came of it.
+    assert sidebar.view.shown[""] == 7
+    return sidebar.view.shown["load"]
 
 
-def test_an_edit_that_is_taken_stays() -> None:
-    rows = [[0.0, 0.0], [2.0, 500.0]]
-    table = edited(rows)._table
-    assert table.shown == table.wanted == rows
+def test_a_refused_edit_is_answered_with_what_holds(sidebar: Sidebar) -> None:
+    assert edited(sidebar, [[0, 0], [0, 500]]) == tuple(TABLE)
+
+
+def test_a_slider_that_was_refused_is_answered_when_it_is_let_go(sidebar: Sidebar) -> None:
+    sidebar.hear("substructures", 51, True, 1)
+    sidebar.hear("substructures", None, False, 2)
+    assert (sidebar.view.shown["substructures"], sidebar.view.shown[""]) == (10, 2)
+
+
+def test_an_edit_that_is_taken_stays(sidebar: Sidebar) -> None:
+    assert edited(sidebar, [[0, 0], [2, 500]]) == ((0.0, 0.0), (2.0, 500.0))
+
+
+def test_a_table_begins_as_the_preset_that_it_replaces(sidebar: Sidebar) -> None:
+    assert edited(sidebar, "triangle") == "triangle"
+    rows = edited(sidebar, POINTS)
+    assert max(force for _, force in rows) == 900.0
+
+
+def test_only_controls_that_apply_have_a_value(sidebar: Sidebar) -> None:
+    assert "substructures" in sidebar.view.shown
+    assert "seed" not in sidebar.view.shown
+    edited(sidebar, "random")
+    assert "seed" in sidebar.view.shown
 
 
 def test_columns_of_a_table_have_units() -> None:
-    assert edited(POINTS)._table.columns == ["time (s)", "force (N)"]
+    made = item_of("load", BarSettings.definitions()["load"])
+    assert made is not None
+    assert made["columns"] == ["time (s)", "force (N)"]
     for entry in CATALOGUE.values():
         for definition in entry.settings.definitions().values():
             if isinstance(definition, Curve):

@@ -94,6 +94,18 @@ def test_a_step_that_needs_more_systems_gets_them_in_time(command):
     assert outcome.error_force < 1e-9
 
 
+def test_a_few_small_changes_after_a_nested_start_are_no_convergence():
+    settings = from_words(
+        "strand substructures=10 search_direction=paper nested_iterations=83 "
+        "tolerance=0.06794181529902267 "
+        "instants=4 wires=8 break_position=0.18720674155082684 elements=332 max_iterations=12 "
+        "load=[[0.10762277265272469,5.829812280248028],[0.37488092644833393,19.189573831159976],"
+        "[0.4486866180571424,17.723566491492832],[0.5548699839101033,-29.058957256688412],"
+        "[0.6153722110545268,40.20174213814282],[0.9464636201884059,42.465815872553954]]"
+    )
+    assert judge(run(settings), settings.accuracy) is not Verdict.WRONG
+
+
 def test_a_slender_stack_is_certified_up_to_the_rounding_of_its_own_forces():
     settings = from_words(
         "layers substructures=40 instants=9 plane=stress elements=93 pressure=6338757 "

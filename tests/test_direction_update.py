@@ -70,10 +70,10 @@ def test_points_that_slip_more_have_a_smaller_k_and_cuts_do_not_see_it():
     chosen = options(**FAST)
     first, last = (sample(chosen, 40)[place] for place in (0, -1))
     law = last.problem.friction
-    others = np.setdiff1d(np.arange(last.problem.n_rows), law.rows)
+    others = np.setdiff1d(np.arange(last.problem.n_rows), law.tangent.above)
     assert np.array_equal(first.k[others], last.k[others])
     share = np.mean(last.status != 0, axis=1)
-    factor = (last.k / first.k)[law.rows]
+    factor = (last.k / first.k)[law.tangent.above]
     stuck, sliding = share[law.points] == 0.0, share[law.points] > 0.9
     assert stuck.any()
     assert sliding.any()

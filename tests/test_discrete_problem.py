@@ -77,13 +77,7 @@ def test_identical_substructures_share_one_elasticity(chosen):
 def test_every_row_belongs_to_one_interface_and_one_substructure(chosen):
     problem = discretise(chosen)
     of_parts = np.concatenate([part.rows for part in problem.substructures])
-    of_laws = np.concatenate(
-        [
-            rows
-            for law in problem.interfaces.values()
-            for rows in ([law.first, law.second] if hasattr(law, "first") else [law.rows])
-        ]
-    )
+    of_laws = np.concatenate([law.rows for law in problem.interfaces.values()])
     assert np.array_equal(np.sort(of_parts), np.arange(problem.n_rows))
     assert np.array_equal(np.sort(of_laws), np.arange(problem.n_rows))
 

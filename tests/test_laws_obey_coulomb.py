@@ -11,9 +11,10 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from solver.discrete import discretise
 from solver.latin.direction import search_direction
 from solver.latin.local import LocalStage
-from solver.laws.boundary import neumann
-from solver.laws.friction import WALK_FROM_POINTS, _Scan, _Walk, play
+from solver.laws import Neumann
+from solver.laws.interface import Region
 from solver.laws.perfect import perfect
+from solver.laws.play import WALK_FROM_POINTS, _Scan, _Walk, play
 from solver.scenes.bar import BarSettings
 
 ANY = settings(derandomize=True, deadline=None, max_examples=100)
@@ -213,7 +214,11 @@ def test_a_perfect_interface_has_one_displacement_and_opposite_forces(data, shap
 def test_a_prescribed_force_is_what_the_search_direction_finds(data, shape):
     target, force = (data.draw(arrays(float, shape, elements=REAL)) for _ in range(2))
     k = data.draw(arrays(float, (shape[0], 1), elements=st.floats(1e-6, 1e6)))
-    found = k * (neumann(target, force / k) - target)
+    every = np.arange(shape[0])
+    law = Neumann(every, force, np.ones((shape[0], 1)))
+    moved = np.empty_like(target)
+    law.rule(Region(every, k[:, 0], np.arange(shape[1])))(target, moved, slice(None))
+    found = k * (moved - target)
     rounding = 4.0 * EPS * (np.abs(force) + k * np.abs(target))
     assert np.all(np.abs(found - force) <= rounding + 1e-300)
 
@@ -250,8 +255,8 @@ def test_the_local_stage_obeys_every_law_along_its_search_direction(seed, substr
             assert np.array_equal(displacement[cut.first], displacement[cut.second])
             assert np.all(np.abs(force[cut.first] + force[cut.second]) <= rounding)
     bound = law.bound[:, None]
-    slip = np.diff(displacement[law.rows], axis=1, prepend=0.0)
-    friction = force[law.rows]
+    slip = np.diff(displacement[law.tangent.above], axis=1, prepend=0.0)
+    friction = force[law.tangent.above]
     assert np.all(np.abs(friction) <= bound + rounding)
     assert np.all(np.abs(friction + bound * np.sign(slip))[slip != 0.0] <= rounding)
     assert (slip != 0.0).any()

@@ -15,6 +15,7 @@ TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile",
 LAYERS = [
     ["definitions"],
     ["settings"],
+    ["arrays"],
     ["loads"],
     ["laws"],
     ["scenes"],

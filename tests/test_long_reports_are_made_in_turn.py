@@ -26,7 +26,7 @@ from app.report import progress
 from app.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
 from app.session import Session
 from app.worker.bench import Bench, BrokenCallError
-from app.worker.desk import Desk, files, shown, told
+from app.worker.desk import PROGRESS, SECTIONS, Desk, files, said
 from app.worker.orders import Pace
 from app.worker.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
@@ -84,14 +84,14 @@ def test_what_grows_is_never_read_half_written(tmp_path: Path) -> None:
         assert files(tmp_path) == {}
         (folder / "one.html").write_text("whole")
 
-    assert told(tmp_path) is None
-    assert shown(tmp_path) == b""
+    assert said(tmp_path, PROGRESS) == b""
+    assert said(tmp_path, SECTIONS) == b""
     Desk(tmp_path).publish(write)
     assert files(tmp_path) == {"one.html": b"whole"}
     Desk(tmp_path).tell("writing", 0.5)
     Desk(tmp_path).show(["so far"])
-    assert told(tmp_path) == ("writing", 0.5)
-    assert pickle.loads(shown(tmp_path)) == ["so far"]
+    assert pickle.loads(said(tmp_path, PROGRESS)) == ("writing", 0.5)
+    assert pickle.loads(said(tmp_path, SECTIONS)) == ["so far"]
     assert len(files(tmp_path)) == 1
 
 

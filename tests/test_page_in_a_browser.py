@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from pages import ENDLESS, Visit, bodies_drawn, iteration, open_report, slider, status
 from playwright.sync_api import expect
@@ -87,3 +88,21 @@ def test_pages_run_side_by_side(open_page: Visit) -> None:
     pages = [open_page("?method=paper&max_iterations=40") for _ in range(3)]
     for page in pages:
         expect(status(page)).to_contain_text("after 40 iterations")
+
+
+def test_settings_are_saved_opened_and_brought_back(open_page: Visit, tmp_path: Path) -> None:
+    page = open_page(f"?substructures=5&{ENDLESS}")
+    expect(status(page)).to_contain_text("5 substructures")
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save", exact=True).click()
+    text = saved.value.path().read_text()
+    assert "substructures = 5\n" in text
+    file = tmp_path / "other.toml"
+    file.write_text(text.replace("substructures = 5\n", "substructures = 7\n"))
+    page.locator("input[type=file]").set_input_files(file)
+    expect(status(page)).to_contain_text("7 substructures")
+    page.get_by_role("button", name="Defaults", exact=True).click()
+    expect(status(page)).to_contain_text("10 substructures")
+    file.write_bytes(b"\xff\xfe")
+    page.locator("input[type=file]").set_input_files(file)
+    expect(page.get_by_text("The file is not text")).to_be_visible()

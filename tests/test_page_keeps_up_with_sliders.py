@@ -47,7 +47,7 @@ def sidebar(session: Session, complaints: list[str]) -> Sidebar:
 
 
 def move(sidebar: Sidebar, name: str, value: Any) -> None:
-    sidebar._controls[name].widget.value = value
+    sidebar.hear(name, value, True, 1)
 
 
 def test_the_first_move_is_obeyed_at_once(sidebar: Sidebar, changed: list[Any]) -> None:
@@ -65,7 +65,7 @@ def test_of_the_moves_between_two_ticks_the_newest_of_each_setting_counts(
     sidebar.obey()
     assert changed == [("peak", 910.0), ("peak", 930.0), ("substructures", 8)]
     assert (session.wanted.peak, session.wanted.substructures) == (930.0, 8)
-    assert sidebar._controls["peak"].widget.value == 930.0
+    assert sidebar.view.shown["peak"] == 930.0
 
 
 def test_after_a_tick_without_a_move_the_next_is_obeyed_at_once_again(
@@ -84,10 +84,10 @@ def test_a_move_that_waits_is_made_before_the_scene_is_left(
 ) -> None:
     move(sidebar, "peak", 910.0)
     move(sidebar, "peak", 920.0)
-    sidebar._scene.value = "strand"
+    move(sidebar, "the-scene", "strand")
     sidebar.obey()
     assert session.wanted.scene == "strand"
-    sidebar._scene.value = "bar"
+    move(sidebar, "the-scene", "bar")
     assert session.wanted.peak == 920.0
 
 
@@ -139,7 +139,7 @@ def test_a_dragged_slider_hurries_and_let_go_it_replays() -> None:
     assert link.orders[-1].values["peak"] == 910.0
     shown(session, link)
     assert (link.orders[-1].values["peak"], link.orders[-1].follows_hand) == (920.0, True)
-    sidebar._controls["peak"].widget.param.trigger("value_throttled")
+    move(sidebar, "peak", None)
     shown(session, link)
     last = link.orders[-1]
     assert (last.values["peak"], last.follows_hand, last.pace) == (920.0, False, session.pace)

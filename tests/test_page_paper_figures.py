@@ -21,7 +21,7 @@ from app.errand import Errand, Found
 from app.report_plots import overlay
 from app.reports import PaperFigures
 from app.worker.bench import Bench
-from app.worker.desk import Desk, shown
+from app.worker.desk import SECTIONS, Desk, said
 from app.worker.studies import figures_of_the_paper
 from solver.study.figure_data import Panel
 from solver.study.page import Plot, Section
@@ -70,7 +70,7 @@ def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: lis
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.worker.studies.Desk", Spied)
         figures_of_the_paper(folder)
-    return Found("any", pickle.loads(shown(folder)))
+    return Found("any", pickle.loads(said(folder, SECTIONS)))
 
 
 @pytest.fixture(scope="module")

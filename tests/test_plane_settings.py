@@ -13,7 +13,7 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.discrete import discretise
 from solver.latin import iterations
-from solver.latin.direction import pressing_rows, search_direction, sliding_rows
+from solver.latin.direction import search_direction
 from solver.loads import PRESETS, PULLS, load_path
 from solver.scenes import CATALOGUE
 from solver.scenes.block import BlockSettings, block
@@ -184,8 +184,8 @@ def test_normal_and_tangential_search_directions_are_scaled_apart():
     )
     factor = np.ones(problem.n_rows)
     for law in problem.rubbing.values():
-        factor[np.concatenate(pressing_rows(law))] = 3.0
-        factor[np.concatenate(sliding_rows(law))] = 5.0
+        factor[np.concatenate(law.normal.sides)] = 3.0
+        factor[np.concatenate(law.tangent.sides)] = 5.0
     np.testing.assert_allclose(scaled, factor * plain)
 
 

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import asyncio
 import inspect
 
 import panel as pn
 import panel_material_ui as pmui
+import pytest
 from bokeh.server.session import ServerSession
+from panel.custom import JSComponent
+from panel.io.server import DocHandler
+from panel.reactive import Syncable
 from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
 
 from app.figures import make_figure
-from app.innards import GATHER_MS, gather_briefly, ignore_business
+from app.innards import Prompt, ignore_business, open_in_turn
 from app.pulse import Pulse
 from app.views.catalogue import VIEWS
 
 
-def test_a_widget_gathers_as_long_as_it_is_told() -> None:
-    slider = pmui.FloatSlider()
-    assert slider._debounce > GATHER_MS
-    gather_briefly(slider)
-    assert slider._debounce == GATHER_MS
+def test_components_would_gather_changes_if_they_were_not_told() -> None:
+    assert JSComponent._debounce > Prompt._debounce == 0
+    assert "self._debounce" in inspect.getsource(Syncable)
 
 
 def test_sockets_can_be_told_to_send_at_once() -> None:
@@ -37,6 +40,24 @@ def test_a_busy_server_changes_nothing_on_the_page() -> None:
         pn.state.busy = True
         pn.state.busy = False
     assert not changes
+
+
+def test_pages_are_opened_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert inspect.iscoroutinefunction(inspect.unwrap(DocHandler.get))
+    said: list[str] = []
+
+    async def get(name: str) -> None:
+        said.append(f"{name} begins")
+        await asyncio.sleep(0)
+        said.append(f"{name} ends")
+
+    async def both() -> None:
+        monkeypatch.setattr(DocHandler, "get", get)
+        open_in_turn()
+        await asyncio.gather(DocHandler.get("one"), DocHandler.get("two"))
+
+    asyncio.run(both())
+    assert said == ["one begins", "one ends", "two begins", "two ends"]
 
 
 def test_tags_of_a_pane_are_those_of_its_model() -> None:

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from solver.arrays import space_time
 from solver.discrete import discretise
-from solver.discrete.problem import space_time
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage

@@ -1,4 +1,4 @@
-"""The references against the formulas of theory.md, section 6, and against each other."""
+"""The references against the formulas of solver/README.md, 6, and against each other."""
 
 from __future__ import annotations
 

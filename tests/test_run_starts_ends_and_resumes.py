@@ -71,6 +71,19 @@ def test_started_where_it_ended_the_run_stops_at_once():
     assert again.iterate.seconds > ended.seconds
 
 
+def test_a_run_that_nobody_resumes_keeps_nothing_for_it_and_says_so():
+    chosen = options(**SMALL, acceleration="anderson")
+    problem = discretise(chosen)
+    kept, light = (
+        list(islice(iterations(problem, chosen, resumable=resumable), 6))[-1]
+        for resumable in (True, False)
+    )
+    assert np.array_equal(kept.outgoing, light.outgoing)
+    assert kept.checkpoint.history
+    with pytest.raises(ValueError, match="resumable"):
+        _ = light.checkpoint
+
+
 @pytest.mark.parametrize("change", [{}, {"multiscale": False}, {"body_force": 500.0}], ids=str)
 @pytest.mark.parametrize("elements", [30, 32])
 def test_resuming_from_a_checkpoint_continues_bit_by_bit(change, elements):
@@ -92,7 +105,7 @@ def test_the_clock_stands_still_while_the_consumer_looks(monkeypatch):
         now += 1.0
         return now
 
-    module = importlib.import_module("solver.latin.iterations")
+    module = importlib.import_module("solver.latin.clock")
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=clock))
     chosen = options(**SMALL)
     seconds = []

@@ -75,7 +75,7 @@ def test_the_k_free_indicator_agrees_that_it_is_the_solution(known):
 
 def test_the_k_free_indicator_sees_forces_that_do_not_cancel_between_two_wires(known):
     changed = known.outgoing.copy()
-    rows = known.problem.rubbing["contact 2-3"].below
+    rows = known.problem.rubbing["contact 2-3"].tangent.below
     changed[rows] += 1e-3 * np.abs(known.outgoing).max()
     broken = type(known)(**{**vars_of(known), "outgoing": changed})
     assert behaviour_indicator(broken).total > 1e-4
@@ -110,7 +110,7 @@ def test_reference_points_come_in_pairs():
         kept[rows[places]] = True
     assert not kept.all()
     for law in problem.rubbing.values():
-        np.testing.assert_array_equal(kept[law.rows], kept[law.below])
+        np.testing.assert_array_equal(kept[law.tangent.above], kept[law.tangent.below])
 
 
 def test_wires_with_the_same_pieces_share_their_operators():
@@ -127,8 +127,8 @@ def test_rows_of_a_contact_lie_opposite_each_other_and_cover_it_once():
     positions = problem.positions[problem.row_dofs]
     for law in problem.rubbing.values():
         assert isinstance(law, Friction)
-        np.testing.assert_array_equal(positions[law.rows], positions[law.below])
-        np.testing.assert_array_equal(positions[law.rows], law.positions[law.points])
+        np.testing.assert_array_equal(positions[law.tangent.above], positions[law.tangent.below])
+        np.testing.assert_array_equal(positions[law.tangent.above], law.positions[law.points])
         half = 0.5 * scene.length / scene.elements  # of the held end
         assert law.weights.sum() == pytest.approx(scene.length - half)
     owned = np.concatenate([part.rows for part in problem.substructures])
@@ -146,8 +146,8 @@ def test_laws_of_all_contacts_are_one_law_at_work():
     stage(incoming)
     force = problem.direction[:, None] * (stage.displacement - incoming)
     for law in problem.rubbing.values():
-        np.testing.assert_allclose(force[law.rows], -force[law.below], atol=1e-12)
-        assert np.all(np.abs(force[law.rows]) <= law.bound[:, None] * (1.0 + 1e-9))
+        np.testing.assert_allclose(force[law.tangent.above], -force[law.tangent.below], atol=1e-12)
+        assert np.all(np.abs(force[law.tangent.above]) <= law.bound[:, None] * (1.0 + 1e-9))
 
 
 def test_singular_values_are_those_of_the_friction_on_every_piece(known):

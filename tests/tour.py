@@ -8,6 +8,7 @@ from typing import Any
 
 import param
 
+from app.form import item_of
 from app.samples import points_of
 from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError
@@ -109,9 +110,17 @@ def ends(settings: Settings, name: str) -> list[Any]:
 def farthest(settings: Settings, name: str, end: Any) -> Any:
     """Give the value nearest to an end that is refused, as a slider has it, that is taken."""
     near, far = getattr(settings, name), end
-    whole = isinstance(near, int)
+    item = item_of(name, settings.definitions()[name])
+    assert item is not None
+    step = item["step"]
+
+    def shown(value: float) -> float:
+        if item["whole"]:
+            return round(value)
+        return float(f"{value:.4g}" if item["log"] else f"{round(value / step) * step:.12g}")
+
     for _ in range(HALVINGS):
-        middle = round(0.5 * (near + far)) if whole else float(f"{0.5 * (near + far):.4g}")
+        middle = shown(0.5 * (near + far))
         try:
             settings.with_change(name, middle)
             near = middle

@@ -41,8 +41,9 @@ class WebPage:
     async def open(self) -> None:
         """Ask for the page, connect, and say that it is built."""
         self.began = time.monotonic()
-        client = AsyncHTTPClient()
-        answer = await client.fetch(self._address, request_timeout=120)
+        # One of its own: of a shared one only ten requests are sent at a time.
+        client = AsyncHTTPClient(force_instance=True)
+        answer = await client.fetch(self._address, connect_timeout=120, request_timeout=120)
         found = re.search(r'"token":\s*"([^"]+)"', answer.body.decode())
         assert found, "no page"
         socket = re.sub("^http", "ws", self._address.partition("?")[0]) + "/ws"

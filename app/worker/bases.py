@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.worker.shown import (
     MOST_MODES,
@@ -17,6 +16,7 @@ from app.worker.shown import (
     ShownModes,
     thinned,
 )
+from solver.arrays import Array
 from solver.latin import Checkpoint, Iterate, Record
 from solver.reduction.basis import Modes, Reduction
 
@@ -24,8 +24,6 @@ BORN = 0.5
 """Share of a mode's energy outside the modes before, from which it counts as born."""
 LOBE = 0.5
 """Share of a mode's largest entry, from which an entry may fix the sign."""
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -153,11 +153,13 @@ def main(connection: Connection, work: partial[Any]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    threading.Thread(target=_end_with, args=(connection, work.args), daemon=True).start()
+    folders = [given for given in work.args if isinstance(given, Path)]
+    threading.Thread(target=_end_with, args=(connection, folders), daemon=True).start()
     try:
         said = work()
     except Exception as problem:
         said = _broken(problem)
+    folders.clear()
     with contextlib.suppress(OSError):
         connection.send(said)
 
@@ -168,14 +170,10 @@ def _broken(problem: Exception) -> BrokenCallError:
     return BrokenCallError(f"It broke ({type(problem).__name__}: {problem}).")
 
 
-def _end_with(connection: Connection, given: Sequence[Any]) -> None:
-    """End the process as soon as the server is gone: nobody else would, in the middle of work.
-
-    Nor would anybody remove the folders that it was given, if the server was killed.
-    """
+def _end_with(connection: Connection, folders: Sequence[Path]) -> None:
+    """End the process as soon as the server is gone, with its folders: nobody else would."""
     with contextlib.suppress(EOFError, OSError):
         connection.recv()
-    for folder in given:
-        if isinstance(folder, Path):
-            shutil.rmtree(folder, ignore_errors=True)
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
     os._exit(0)

@@ -5,7 +5,6 @@ Files, so that any executor will do that shares a disk with the server.
 
 from __future__ import annotations
 
-import json
 import os
 import pickle
 from collections.abc import Callable, Mapping, Sequence
@@ -25,13 +24,11 @@ class Desk:
 
     def tell(self, doing: str, share: float) -> None:
         """Say what is being done, and the share of the whole that is done, from 0 to 1."""
-        text = json.dumps([doing, share])
-        self.publish(lambda folder: (folder / PROGRESS).write_text(text, encoding="utf-8"))
+        self._say(PROGRESS, (doing, share))
 
     def show(self, sections: Sequence[Section]) -> None:
         """Show what there is of the report."""
-        data = pickle.dumps(sections)
-        self.publish(lambda folder: (folder / SECTIONS).write_bytes(data))
+        self._say(SECTIONS, sections)
 
     def publish(self, write: Callable[[Path], object]) -> None:
         """Put files where they are read, in place of those of the same names."""
@@ -40,19 +37,14 @@ class Desk:
             for file in Path(name).iterdir():
                 os.replace(file, self._folder / file.name)
 
-
-def told(folder: Path) -> tuple[str, float] | None:
-    """Read how far a report is; None before its process has said anything."""
-    try:
-        doing, share = json.loads((folder / PROGRESS).read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return None
-    return doing, share
+    def _say(self, name: str, what: object) -> None:
+        data = pickle.dumps(what)
+        self.publish(lambda folder: (folder / name).write_bytes(data))
 
 
-def shown(folder: Path) -> bytes:
-    """Read what there is of a report, pickled; nothing before that."""
-    file = folder / SECTIONS
+def said(folder: Path, name: str) -> bytes:
+    """Read the progress or the sections, pickled; nothing before there are any."""
+    file = folder / name
     return file.read_bytes() if file.exists() else b""
 
 

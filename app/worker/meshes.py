@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.worker.shown import STRESSES, Mesh
+from solver.arrays import Array
 from solver.discrete.elements import von_mises
 from solver.discrete.problem import Inside
 from solver.scenes.plane import PlaneSettings
 
 MOST_QUADS = 1500
 """Quadrilaterals that are sent at most, or one for each body."""
-
-Array = NDArray[np.float64]
 
 
 class Thinned:

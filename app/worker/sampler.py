@@ -27,11 +27,9 @@ from app.worker.shown import (
 )
 from app.worker.wires import ShownWires
 from solver.discrete import Problem
-from solver.discrete.contact_fields import mean_by_point
 from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import Fields, loop_of
 from solver.latin import Checkpoint, Iterate
-from solver.laws import Contact
 from solver.reduction.svd import friction_spectra
 from solver.reference import incremental
 from solver.reference.broken_wire import broken_wire
@@ -83,8 +81,8 @@ class Sampler:
         """Describe what the fields stand on, without the closed form."""
         problem, law, loop = self._problem, self._law, self._loop
         bound = coefficient = None
-        if isinstance(law, Contact):
-            coefficient = _floats(mean_by_point(law, law.friction)[self._rows])
+        if law.opens:
+            coefficient = _floats(law.mean_by_point(law.friction)[self._rows])
         else:
             whole = law.by_point(law.bound)[self._rows]
             bound = _floats(whole * problem.scales.force / self._lengths)
@@ -110,7 +108,7 @@ class Sampler:
     def completed(self, stand: Stand) -> Stand:
         """Add the closed form, where there is one."""
         settings = self._settings
-        if isinstance(settings, BarSettings):
+        if isinstance(settings, BarSettings) and self._law.is_plain:
             closed = closed_form(bar(settings))
             if closed is not None:
                 return replace(

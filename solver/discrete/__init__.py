@@ -1,9 +1,13 @@
 """From a scene to a discrete problem."""
 
+from dataclasses import replace
+
 from solver.discrete.bar import discretise_bar
 from solver.discrete.problem import Problem
 from solver.discrete.stack import discretise_stack
 from solver.discrete.strand import discretise_strand
+from solver.laws import Friction
+from solver.laws.compliant import CompliantFriction
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.block import BlockSettings, block
 from solver.scenes.layers import LayersSettings, layers
@@ -13,6 +17,24 @@ from solver.settings import Settings
 
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem that checked settings describe."""
+    return _with_law(settings, _discretise(settings))
+
+
+def _with_law(settings: Settings, problem: Problem) -> Problem:
+    """Give all friction the law of the settings."""
+    if settings.friction_law == "coulomb":
+        return problem
+    length = problem.scales.displacement
+    laws = {
+        name: CompliantFriction.of(law, settings.contact_stiffness, length)
+        if isinstance(law, Friction)
+        else law
+        for name, law in problem.interfaces.items()
+    }
+    return replace(problem, interfaces=laws)
+
+
+def _discretise(settings: Settings) -> Problem:
     match settings:
         case BarSettings():
             return discretise_bar(bar(settings))
@@ -37,12 +59,12 @@ def coarser_problems(settings: Settings) -> list[Problem]:
     if isinstance(settings, BarSettings):
         scene = bar(settings).coarser()
         while scene is not None:
-            found.append(discretise_bar(scene))
+            found.append(_with_law(settings, discretise_bar(scene)))
             scene = scene.coarser()
     elif isinstance(settings, StrandSettings):
         coarse = settings.coarser()
         while coarse is not None:
-            found.append(discretise_strand(strand(coarse)))
+            found.append(_with_law(settings, discretise_strand(strand(coarse))))
             coarse = coarse.coarser()
     return found
 

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.rod import rod_stiffness, tributary
-from solver.laws import Dirichlet, Friction, Interface, Neumann, Perfect
+from solver.laws import Component, Dirichlet, Friction, Interface, Neumann, Perfect, Rod
 from solver.scenes.bar import Bar
 
 
 def discretise_bar(scene: Bar) -> Problem:
     """Cut the bar into substructures and write the laws of its interfaces.
 
-    Lengths are scaled by L, forces by ES (theory.md, 1). Rows are ordered by law: the friction
-    rows of all substructures, then their left ends, then their right ends.
+    Lengths are scaled by L, forces by ES (solver/README.md, 1). Rows are ordered by law: the
+    friction rows of all substructures, then their left ends, then their right ends.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
     substructure. On the friction points it is that of a
@@ -83,8 +84,13 @@ def _interfaces(
     bound = scene.bound[node] * lengths / scene.stiffness
     support = np.zeros_like(scene.load) if scene.support is None else scene.support
     interfaces: dict[str, Interface] = {
-        "friction": Friction(
-            np.arange(len(node)), node, scene.nodes, lengths, bound, modulus=_modulus(scene, node)
+        "friction": Friction.of_known_bound(
+            Component(np.arange(len(node))),
+            bound,
+            points=node,
+            positions=scene.nodes,
+            weights=lengths,
+            around=Rod(_modulus(scene, node)),
         ),
         "support": Dirichlet(left[:1], support[None] / scene.length),
     }

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from solver.arrays import Array
 
 
 def elastic_matrix(young: float, poisson: float, state: str) -> Array:

@@ -8,9 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
+from solver.arrays import Array, Indices
 from solver.discrete.contact_fields import ContactFields
 from solver.discrete.probes import Probe, end_rotation, reaction, side_mean
-from solver.discrete.problem import Array, Indices, Problem
+from solver.discrete.problem import Problem
 from solver.laws import Dirichlet, Interface, Neumann
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
+from solver.arrays import Array
 from solver.discrete.plane import Rectangle
-from solver.discrete.problem import Array
 
 LONG_SIDES = 0.6
 """Factor on the macro degree of a side, times the root of its length over the depth behind it.

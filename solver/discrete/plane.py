@@ -10,13 +10,13 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
+from solver.arrays import Array, Indices
 from solver.discrete.elements import (
     element_stiffness,
     projected_strain_matrix,
     shares,
     strain_matrix,
 )
-from solver.discrete.problem import Array, Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from solver.discrete.problem import Array, Indices, Inside, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Inside, Problem
 from solver.laws import Dirichlet
 
 AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}

@@ -8,25 +8,18 @@ memory (Fortran order), because the friction law walks through time.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.laws import Contact, Dirichlet, Friction, Interface, Neumann, Perfect
-from solver.laws.friction import as_slice
+from solver.arrays import Array, Indices, as_slice
+from solver.laws import Dirichlet, Friction, Interface, Perfect
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
-
-
-def space_time(n_rows: int, n_instants: int) -> Array:
-    """Allocate a zero field of shape (n_rows, n_instants), contiguous in space."""
-    return np.zeros((n_rows, n_instants), order="F")
+Law = TypeVar("Law", bound=Interface)
 
 
 @dataclass(frozen=True)
@@ -214,38 +207,39 @@ class Problem:
         weights[1:] += 0.5 * steps
         return weights
 
-    def of_law(self, law: type) -> list[Interface]:
+    def of_law(self, law: type[Law]) -> list[Law]:
         """Give the interfaces that obey one law."""
-        return [interface for interface in self.interfaces.values() if type(interface) is law]
+        return [one for one in self.interfaces.values() if isinstance(one, law)]
 
     @cached_property
     def sliding(self) -> tuple[Indices, Array]:
         """Rows of all tangential components, of both sides, and their weights (m, or m^2)."""
-        pairs = [(rows, law.weights) for law in self.rubbing.values() for rows in sliding_rows(law)]
+        laws = self.rubbing.values()
+        pairs = [(rows, law.weights) for law in laws for rows in law.tangent.sides]
         rows, weights = zip(*pairs, strict=True)
         return np.concatenate(rows), np.concatenate(weights)
 
     @cached_property
     def rubbing_rows(self) -> slice | Indices:
         """Rows of all components of the bodies above at interfaces with friction."""
-        parts = [rows for law in self.rubbing.values() for rows in components(law)]
+        parts = [one.above for law in self.rubbing.values() for one in law.components]
         return as_slice(np.unique(np.concatenate(parts)))
 
     @cached_property
     def friction(self) -> Friction:
-        """The frictional interface of known bound, where it is the only one."""
-        (found,) = self.of_law(Friction)
-        assert isinstance(found, Friction)
+        """The interface with friction, where it is the only one."""
+        (found,) = self.rubbing.values()
         return found
 
     @cached_property
-    def rubbing(self) -> dict[str, Friction | Contact]:
+    def rubbing(self) -> dict[str, Friction]:
         """The interfaces with friction, by name."""
-        return {
-            name: law
-            for name, law in self.interfaces.items()
-            if isinstance(law, Friction | Contact)
-        }
+        return {name: law for name, law in self.interfaces.items() if isinstance(law, Friction)}
+
+    @cached_property
+    def opens(self) -> bool:
+        """Whether any interface may open."""
+        return any(law.opens for law in self.rubbing.values())
 
     @cached_property
     def has_cuts(self) -> bool:
@@ -261,12 +255,12 @@ class Problem:
         Returns
         -------
         P, shape (n_rows, n_macro), and P^T F_d, shape (n_macro, n_instants) (paper, eq. 1;
-        theory.md, 2).
+        solver/README.md, 2).
         """
         entries, places, numbers, loads = [], [], [], []
         n_macro = 0
         for interface in self.interfaces.values():
-            for own, basis, load in _macro(interface):
+            for own, basis, load in interface.macro_parts():
                 row, column = np.nonzero(basis) if isinstance(basis, np.ndarray) else basis.coords
                 entries.append(basis[row, column] if isinstance(basis, np.ndarray) else basis.data)
                 places.append(own[row])
@@ -294,15 +288,15 @@ class Problem:
         Returns
         -------
         Shape (n_forces, n_rows). The forces on the body above are stacked interface by interface:
-        of `Friction` the friction forces, of `Contact` all normal forces and then all tangential
-        ones.
+        all normal forces, where it may open, and then all friction forces.
         """
         blocks = [
             sparse.csr_array(
-                (np.ones(len(rows)), (law.points, rows)), shape=(len(law.positions), self.n_rows)
+                (np.ones(len(law.points)), (law.points, component.above)),
+                shape=(len(law.positions), self.n_rows),
             )
             for law in self.rubbing.values()
-            for rows in components(law)
+            for component in law.components
         ]
         return sparse.csr_array(sparse.vstack(blocks))
 
@@ -312,7 +306,7 @@ class Problem:
         found, first = {}, 0
         for name, law in self.rubbing.items():
             size = len(law.positions)
-            starts = [first + size * number for number in range(len(components(law)))]
+            starts = [first + size * number for number in range(len(law.components))]
             found[name] = tuple(slice(start, start + size) for start in starts)
             first = starts[-1] + size
         return found
@@ -323,43 +317,8 @@ class Problem:
 
         Shapes (n,) and (n, n_instants).
         """
-        parts = [law for law in self.of_law(Dirichlet) if isinstance(law, Dirichlet)]
+        parts = self.of_law(Dirichlet)
         none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
         rows = np.concatenate([none[0], *(law.rows for law in parts)])
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
         return dofs, np.concatenate([none[1], *(law.displacement for law in parts)])[first]
-
-
-def _macro(
-    interface: Interface,
-) -> Iterator[tuple[Indices, Array | sparse.coo_array, Array | None]]:
-    """Give the rows of both sides, their macro basis, and their load, for each component."""
-    match interface:
-        case Perfect():
-            rows, macro = np.concatenate([interface.first, interface.second]), interface.macro
-            yield rows, np.concatenate([macro, macro]), None
-        case Neumann():
-            load = interface.macro.T @ interface.force
-            yield interface.rows, interface.macro, load
-        case Friction(macro=macro) | Contact(macro=macro) if macro is not None:
-            both_sides = sparse.coo_array(sparse.vstack([macro, macro]))
-            sides = zip(components(interface), components_below(interface), strict=True)
-            for above, below in sides:
-                yield np.concatenate([above, below]), both_sides, None
-
-
-def components(law: Friction | Contact) -> tuple[Indices, ...]:
-    """Give the rows of the body above, one array for each component of force."""
-    return (law.rows,) if isinstance(law, Friction) else (law.normal, law.tangent)
-
-
-def components_below(law: Friction | Contact) -> tuple[Indices, ...]:
-    """Give the rows of the body below in the same order; nothing on a rigid support."""
-    if law.below is None:
-        return ()
-    return (law.below,) if isinstance(law, Friction) else law.below
-
-
-def sliding_rows(law: Friction | Contact) -> tuple[Indices, ...]:
-    """Give the rows of the tangential components, of both sides."""
-    return (components(law)[-1], *components_below(law)[-1:])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 
 
 def rod_stiffness(elements: int, element_stiffness: float | Array) -> sparse.csr_array:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.discrete.elements import edge_mass
 from solver.discrete.plane import Rectangle
-from solver.discrete.problem import Array
 from solver.scenes.stack import Given, Stack
 
 Place = tuple[int, int, int]

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from solver.arrays import Array, Indices
 from solver.discrete.bar import substructure_sizes
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.macro import side_basis
 from solver.discrete.plane import Condensed, Kept, Rectangle, both
-from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
+from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.sides import Corner, Place, along, neighbour, nodal_force
-from solver.laws import Contact, Dirichlet, Interface, Perfect
+from solver.laws import Bodies, Component, Dirichlet, Friction, Interface, Perfect
 from solver.scenes.rest import rigid_rest
 from solver.scenes.stack import Side, Stack
 
@@ -279,7 +280,7 @@ def _macro_basis(scene: Stack, part: _Part, side: str) -> Array:
     return side_basis(part.rectangle, side, len(part.rows[side]), scene.macro_degree)
 
 
-def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Contact]]:
+def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Friction]]:
     columns, rows = scene.substructures
     x = np.linspace(0.0, scene.length, scene.order * scene.elements[0] + 1)
     for body in range(scene.bodies):
@@ -302,21 +303,22 @@ def _contacts(scene: Stack, parts: dict[Place, _Part]) -> Iterable[tuple[str, Co
         bases = [sparse.coo_array(_macro_basis(scene, part, "bottom")) for part in above]
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
-            Contact(
-                normal=upper[:, 1],
-                tangent=upper[:, 0],
-                below=None if lower is None else (lower[:, 1], lower[:, 0]),
+            Friction.of_contact(
+                normal=Component(upper[:, 1], None if lower is None else lower[:, 1]),
+                tangent=Component(upper[:, 0], None if lower is None else lower[:, 0]),
                 points=points,
                 positions=x[found],
                 weights=scene.length
                 * np.concatenate([own[span] for own, span in zip(weights, spans, strict=True)]),
                 gap=gap,
                 friction=np.full(len(node), friction),
-                moduli=(
-                    float(scene.stiffness[body]),
-                    np.inf if lower is None else float(scene.stiffness[body - 1]),
+                around=Bodies(
+                    moduli=(
+                        float(scene.stiffness[body]),
+                        np.inf if lower is None else float(scene.stiffness[body - 1]),
+                    ),
+                    depth=scene.height,
                 ),
-                depth=scene.height,
                 macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
             ),
         )

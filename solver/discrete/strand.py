@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
+from solver.arrays import Array, Indices
 from solver.discrete.bar import substructure_sizes
-from solver.discrete.problem import Array, Elasticity, Indices, Problem, Scales, Substructure
+from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.rod import rod_stiffness, tributary
-from solver.laws import Dirichlet, Friction, Interface, Neumann, Perfect
+from solver.laws import Component, Dirichlet, Friction, Interface, Neumann, Perfect
 from solver.scenes.strand import Strand
 
 NO_ROW = -1
@@ -189,13 +190,12 @@ def _contact(scene: Strand, pieces: _Pieces, number: int) -> Friction:
     points = place - place[0]
     positions = np.zeros(points[-1] + 1)
     positions[points] = scene.nodes[node]
-    return Friction(
-        rows=pieces.contact_rows(number, 1),
+    return Friction.of_known_bound(
+        Component(pieces.contact_rows(number, 1), pieces.contact_rows(number, 0)),
+        scene.bound * weights / scene.stiffness,
         points=points,
         positions=positions,
         weights=weights,
-        bound=scene.bound * weights / scene.stiffness,
-        below=pieces.contact_rows(number, 0),
         # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
         macro=sparse.csr_array(
             sparse.block_diag([sparse.coo_array(_polynomials(len(own))) for own in rubbing])

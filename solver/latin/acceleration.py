@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg.lapack import dposv
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
 from solver.latin.linear import FullLinearStage
-from solver.laws import Contact
 
 MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
@@ -38,10 +38,9 @@ def anderson(
         np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
         for group in stage.groups
     ]
-    contacts = [law for law in problem.of_law(Contact) if isinstance(law, Contact)]
     growth = 1.0
-    if contacts:
-        is_held = any(law.below is None for law in contacts)
+    if problem.opens:
+        is_held = any(law.is_on_support for law in problem.rubbing.values())
         growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
     return Anderson(weights, memory, growth, blocks)
 
@@ -97,7 +96,16 @@ class Anderson:
         self._products = np.zeros((self._memory, self._memory))
         self._wanted = np.zeros(self._memory)
         self._start, self._residual, self._residual_before = np.zeros((3, len(self._root)))
-        self.seen, self.count, self.smallest = 0, 0, np.inf
+        self.restore((0, 0, np.inf))
+
+    @property
+    def memory(self) -> tuple[int, int, float]:
+        """What it counts: `seen`, `count` and `smallest`."""
+        return self.seen, self.count, self.smallest
+
+    def restore(self, memory: tuple[int, int, float]) -> None:
+        """Count on from there."""
+        self.seen, self.count, self.smallest = memory
 
     @property
     def remembered(self) -> int:
@@ -131,7 +139,7 @@ class Anderson:
         if not size > 0.0 or not np.isfinite(size):
             return False
         if size > self._growth * self.smallest:
-            self.seen, self.count, self.smallest = 0, 0, np.inf
+            self.restore((0, 0, np.inf))
         self.smallest = min(self.smallest, size)
         if self.seen:
             self._remember()

@@ -9,7 +9,8 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
 
 DENSE_UP_TO = 50
@@ -40,8 +41,8 @@ class CoarseProblem:
     """The multiplier W~ = P w~ that brings the macro forces into equilibrium.
 
     F = (k - k H k)(y + W~) - k W_f for a target y, and P^T F = P^T F_d fixes w~: one small system
-    on the whole structure, factored once, solved for all instants (theory.md, 2). It reads and
-    changes the targets of its groups, at the rows that carry macro quantities; the members of a
+    on the whole structure, factored once, solved for all instants (solver/README.md, 2). It reads
+    and changes the targets of its groups, at the rows that carry macro quantities; the members of a
     group share the part of P that they see, so their macro forces are one product.
     """
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem, sliding_rows
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.direction import automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Course, contact_status
@@ -22,6 +23,29 @@ instants, this to the power of the other share. Measured with Anderson accelerat
 update at all, and so does a k that is larger where points slip."""
 TRIAL = 20
 """Iterations after which the new k must have made the k-free indicator smaller, again and again."""
+
+
+class ConstantDirection:
+    """A search direction that stays what it is.
+
+    Parameters
+    ----------
+    k
+        Shape (n_rows,), scaled, read-only.
+    """
+
+    is_due = False
+    course: Course | None = None
+
+    def __init__(self, k: Array) -> None:
+        self.k = k
+
+    def see(self, position: Array) -> None:
+        """Nothing depends on W^."""
+
+    def turn(self, displacement: Array, force: Array) -> tuple[Array, Array] | None:
+        """Nothing changes."""
+        return None
 
 
 class DirectionUpdate:
@@ -48,6 +72,11 @@ class DirectionUpdate:
         self._problem = problem
         self._first = k
         self.course = course or Course("first", k)
+
+    @property
+    def k(self) -> Array:
+        """Search direction of the rows by now, shape (n_rows,), scaled, read-only."""
+        return self.course.k
 
     @property
     def is_due(self) -> bool:
@@ -96,7 +125,7 @@ class DirectionUpdate:
         share = np.count_nonzero(course.status, axis=1) / course.status.shape[1]
         k, first = automatic(self._problem), 0
         for law in self._problem.rubbing.values():
-            for rows in sliding_rows(law):
+            for rows in law.tangent.sides:
                 k[rows] *= SLIDING ** share[first + law.points]
             first += len(law.positions)
         k.flags.writeable = False

@@ -1,4 +1,4 @@
-"""How wrong the contact force of an iterate is, estimated without any reference (theory.md, 7)."""
+"""How wrong the contact force of an iterate is, without any reference (solver/README.md, 7)."""
 
 from __future__ import annotations
 

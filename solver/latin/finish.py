@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.discrete.problem import Array, Problem, components, components_below
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate
-from solver.laws import Contact, Friction, Neumann, Perfect
+from solver.laws import Neumann, Perfect
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""
@@ -76,7 +77,7 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     """
     known, is_known = _known_forces(problem, contact_force)
     balance, needed = _balance(problem, displacement)
-    cuts = [law for law in problem.of_law(Perfect) if isinstance(law, Perfect)]
+    cuts = problem.of_law(Perfect)
     n_cuts = sum(len(law.first) for law in cuts)
     first = np.concatenate([np.zeros(0, dtype=np.intp), *(law.first for law in cuts)])
     second = np.concatenate([np.zeros(0, dtype=np.intp), *(law.second for law in cuts)])
@@ -96,26 +97,14 @@ def _known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArra
     """Give the forces of rows that rub or are loaded, and which rows these are."""
     found = np.zeros((problem.n_rows, problem.n_instants))
     is_known = np.zeros(problem.n_rows, dtype=bool)
-    for law in problem.of_law(Neumann):
-        assert isinstance(law, Neumann)
-        found[law.rows], is_known[law.rows] = law.force, True
+    for loaded in problem.of_law(Neumann):
+        found[loaded.rows], is_known[loaded.rows] = loaded.force, True
     for name, law in problem.rubbing.items():
-        share = _shares(law)[:, None]
-        for place, above in zip(problem.contact_places[name], components(law), strict=True):
-            found[above] = share * contact_force[place][law.points]
-            is_known[above] = True
-        for above, below in zip(components(law), components_below(law), strict=False):
-            found[below], is_known[below] = -found[above], True
+        for place, component in zip(problem.contact_places[name], law.components, strict=True):
+            carried = law.shares[:, None] * contact_force[place][law.points]
+            for rows, sign in zip(component.sides, (1.0, -1.0), strict=False):
+                found[rows], is_known[rows] = sign * carried, True
     return found, is_known
-
-
-def _shares(law: Friction | Contact) -> Array:
-    """Give the share of each pair in the force of its point: of its bound, or of its area."""
-    for weights in ((law.bound,) if isinstance(law, Friction) else ()) + (law.weights,):
-        whole = law.by_point(weights)[law.points]
-        if np.all(whole > 0.0):
-            return np.asarray(weights / whole)
-    return 1.0 / np.bincount(law.points)[law.points]
 
 
 def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, Array]:

@@ -1,4 +1,4 @@
-"""Indicators that the iteration computes of itself; none is an error (theory.md, 4)."""
+"""Indicators that the iteration computes of itself; none is an error (solver/README.md, 4)."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.discrete.contact_fields import jumps_of, sums_of
-from solver.discrete.problem import Array, Problem, components
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
-from solver.laws import Contact, Dirichlet, Friction, Neumann, Perfect
+from solver.laws.interface import beyond, squared
 
 
 def latin_indicator(iterate: Iterate) -> float:
@@ -19,15 +19,15 @@ def latin_indicator(iterate: Iterate) -> float:
     Zero when both stages are zero.
     """
 
-    def squared(field: Array) -> float:
+    def weighted(field: Array) -> float:
         return float(iterate.k @ (field * field @ weights))
 
     weights = iterate.problem.time_weights
     local_outgoing = 2.0 * iterate.local_displacement - iterate.local_incoming
-    distance = squared(iterate.outgoing - local_outgoing)
-    distance += squared(iterate.incoming - iterate.local_incoming)
-    size = squared(iterate.outgoing) + squared(iterate.incoming)
-    size += squared(local_outgoing) + squared(iterate.local_incoming)
+    distance = weighted(iterate.outgoing - local_outgoing)
+    distance += weighted(iterate.incoming - iterate.local_incoming)
+    size = weighted(iterate.outgoing) + weighted(iterate.incoming)
+    size += weighted(local_outgoing) + weighted(iterate.local_incoming)
     return ratio(2.0 * distance, size)
 
 
@@ -67,7 +67,7 @@ class BehaviourIndicator:
 
 
 def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
-    """Check the linear stage's fields against the interface laws alone (theory.md, 4).
+    """Check the linear stage's fields against the interface laws alone (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
     nowhere negative and zero exactly where Coulomb's law holds, and the excess of |F| over q
@@ -82,13 +82,14 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
 def behaviour_of(problem: Problem, displacement: Array, force: Array) -> BehaviourIndicator:
     """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     noise = _rounding(displacement, force)
-    found = [_Behaviour(law, displacement, force, noise) for law in problem.rubbing.values()]
-    energy = _elastic_energy(problem, displacement, _beyond(force, noise)) + sum(
+    laws = list(problem.rubbing.values())
+    found = [law.behaviour(displacement, force, noise) for law in laws]
+    energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
         float(one.dissipated.sum()) for one in found
     )
     allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
-    maps = [one.violation(mean_slip) for one in found]
+    maps = [law.by_point(one.violation(mean_slip)) for law, one in zip(laws, found, strict=True)]
     map_ = np.concatenate(maps)
     # Against the mean energy per interface, so that many that hold do not hide one that does not.
     total = ratio(len(maps) * max(float(one.sum()) for one in maps), energy)
@@ -112,45 +113,6 @@ def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> floa
     return 0.5 * max(float(work.max(initial=0.0)), 0.0)
 
 
-class _Behaviour:
-    """What one interface's fields say of its laws, by pair and instant.
-
-    Attributes
-    ----------
-    bound
-        Largest friction force, (n_pairs, n_instants).
-    dissipated
-        What full sliding along the way would dissipate.
-    """
-
-    def __init__(
-        self, law: Friction | Contact, displacement: Array, force: Array, noise: float
-    ) -> None:
-        self._law = law
-        *normal, tangential = jumps_of(law, displacement)
-        self._slip = _beyond(np.diff(tangential, axis=1, prepend=0.0), 2.0 * noise)
-        self._friction = force[components(law)[-1]]
-        self._pressing: Array | None = None
-        if isinstance(law, Contact):
-            self._pressing = _beyond(force[law.normal], noise)
-            self._opening = _beyond(normal[0] + law.gap[:, None], 2.0 * noise)
-            self.bound = law.friction[:, None] * np.maximum(self._pressing, 0.0)
-        else:
-            self.bound = np.broadcast_to(law.bound[:, None], self._slip.shape)
-        self.dissipated = self.bound * np.abs(self._slip)
-
-    def violation(self, mean_slip: float) -> Array:
-        """Give the violation of every point, shape (n_points, n_instants)."""
-        held = np.clip(self._friction, -self.bound, self.bound)
-        found = self.dissipated + held * self._slip
-        found += np.abs(self._friction - held) * mean_slip
-        if self._pressing is not None:
-            pressed, opened = np.maximum(self._pressing, 0.0), np.maximum(self._opening, 0.0)
-            found += pressed * opened + (pressed - self._pressing) * mean_slip
-            found += pressed.mean() * (opened - self._opening)
-        return self._law.by_point(np.maximum(found, 0.0))
-
-
 def _rounding(displacement: Array, force: Array) -> float:
     """Give what rounding makes of W and F alike: a scaled structure has a compliance near 1.
 
@@ -163,49 +125,27 @@ def _rounding(displacement: Array, force: Array) -> float:
     return ROUNDING * (moved + pulled)
 
 
-def _beyond(field: Array, noise: float) -> Array:
-    """Give a field with what may be rounding taken as zero."""
-    return np.where(np.abs(field) > noise, field, 0.0)
-
-
 def _share_of_friction(problem: Problem, force: Array) -> float:
     """Give the share of the largest force that friction can carry beside the supports, at most 1.
 
     It is 1 where there is no friction. Where friction grows with the load it is the share of what
     contact carries, unless that is a thousandth or more.
     """
-    capacity, largest = 0.0, float(np.abs(force).max())
-    for law in problem.rubbing.values():
-        if isinstance(law, Contact):
-            carried = max(float(np.abs(force[rows]).max()) for rows in components(law))
-            capacity = max(capacity, SMALL_CONTACT * carried)
-            continue
-        held = np.isin(problem.row_dofs[law.rows], problem.prescribed[0])
-        capacity += float(law.bound[~held].sum())
+    largest = float(np.abs(force).max())
+    held = np.isin(problem.row_dofs, problem.prescribed[0])
+    laws = problem.rubbing.values()
+    carried = max(law.carried(force) for law in laws)
+    capacity = max(sum(law.capacity(held) for law in laws), SMALL_CONTACT * carried)
     return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0
 
 
 def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: float) -> float:
-    gap_w, gap_f = 0.0, 0.0
-    for law in problem.interfaces.values():
-        if isinstance(law, Friction | Contact):
-            gap_f += sum(_squared(_beyond(one, noise)) for one in sums_of(law, force))
-        elif isinstance(law, Perfect):
-            gap_w += _squared(
-                _beyond(displacement[law.first] - displacement[law.second], 2.0 * noise)
-            )
-            gap_f += _squared(_beyond(force[law.first] + force[law.second], noise))
-        elif isinstance(law, Dirichlet):
-            gap_w += _squared(_beyond(displacement[law.rows] - law.displacement, noise))
-        elif isinstance(law, Neumann):
-            gap_f += _squared(_beyond(force[law.rows] - law.force, noise))
+    found = [law.gaps(displacement, force, noise) for law in problem.interfaces.values()]
+    apart = sum(gaps.displacement for gaps in found)
+    unbalanced = sum(gaps.force for gaps in found)
     return float(
-        np.sqrt(ratio(gap_w, _squared(displacement))) + np.sqrt(ratio(gap_f, _squared(force)))
+        np.sqrt(ratio(apart, squared(displacement))) + np.sqrt(ratio(unbalanced, squared(force)))
     )
-
-
-def _squared(field: Array) -> float:
-    return float(np.vdot(field, field))
 
 
 def ratio(part: float, whole: float) -> float:

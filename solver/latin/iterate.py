@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.discrete.contact_fields import ContactFields, contact_fields, status_of
-from solver.discrete.problem import Array, Problem
-from solver.laws import Contact, Friction
+from solver.arrays import Array
+from solver.discrete.contact_fields import ContactFields, contact_fields
+from solver.discrete.problem import Problem
 from solver.reduction.basis import Modes, Reduction, References
 
 
@@ -136,7 +136,15 @@ class Iterate:
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """What is needed to go on from here."""
+        """What is needed to go on from here.
+
+        Raises
+        ------
+        ValueError
+            If the run was told that nobody would.
+        """
+        if self.memory is not None and self.memory[0] and not self.history:
+            raise ValueError("an accelerated run has checkpoints if it is made resumable")
         return Checkpoint(
             self.number,
             self.seconds,
@@ -190,7 +198,7 @@ class Iterate:
         Points of all interfaces with friction, one interface after the other.
         """
         places = self.problem.contact_places.values()
-        if len(self.problem.of_law(Friction)) == len(places):
+        if not self.problem.opens:
             return self.contact_force
         return np.concatenate([self.contact_force[own[-1]] for own in places])
 
@@ -202,16 +210,17 @@ class Iterate:
             name,
             self.contact_force,
             self.boundary_displacement,
-            status_of(law, self.local_displacement, self.boundary_local_force),
+            law.status(self.local_displacement, self.boundary_local_force),
         )
 
     @cached_property
     def status(self) -> NDArray[np.int8]:
-        """Contact status of the local stage, shape (n_points, n_instants), as in `status_of`.
+        """Contact status of the local stage, shape (n_points, n_instants), as in `Friction.status`.
 
         Points of all interfaces with friction, one interface after the other.
         """
-        force = self.boundary_local_force if self.problem.of_law(Contact) else None
+        reads = any(law.reads_force for law in self.problem.rubbing.values())
+        force = self.boundary_local_force if reads else None
         return contact_status(self.problem, self.local_displacement, force)
 
 
@@ -220,4 +229,4 @@ def contact_status(
 ) -> NDArray[np.int8]:
     """Give the contact status, as `Iterate.status`, of W^ and F^ of all rows."""
     laws = problem.rubbing.values()
-    return np.concatenate([status_of(law, displacement, force) for law in laws])
+    return np.concatenate([law.status(displacement, force) for law in laws])

@@ -1,33 +1,25 @@
-"""The LATIN iteration as a generator (paper, Fig. 1; theory.md, 2)."""
+"""The LATIN iteration as a generator (paper, Fig. 1; solver/README.md, 2)."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
-from typing import Any
+from itertools import count
+from math import inf
 
-import numpy as np
-from numpy.linalg import LinAlgError
-
-from solver.definitions import SettingError
-from solver.discrete import coarser_problems
-from solver.discrete.problem import Array, Problem
-from solver.latin.acceleration import Anderson, anderson
-from solver.latin.blocks import Blocks
-from solver.latin.direction import search_direction
-from solver.latin.direction_update import DirectionUpdate
-from solver.latin.iterate import Checkpoint, Course, Iterate
-from solver.latin.linear import FullLinearStage, LinearStage
-from solver.latin.local import LocalStage
-from solver.latin.nested import nested_start
-from solver.latin.reduced_linear import ReducedLinearStage
-from solver.latin.reduced_local import ReducedLocalStage
-from solver.reduction.basis import Reduction, References
+from solver.discrete.problem import Problem
+from solver.latin.clock import Clock
+from solver.latin.cycle import Cycle, read_only
+from solver.latin.iterate import Checkpoint, Iterate
+from solver.latin.parts import direction_of, plugged, start_of
 from solver.settings import Settings
 
 
 def iterations(
-    problem: Problem, settings: Settings, start: Checkpoint | None = None
+    problem: Problem,
+    settings: Settings,
+    start: Checkpoint | None = None,
+    *,
+    resumable: bool = True,
 ) -> Iterator[Iterate]:
     """Iterate between the local and the linear stage, without end.
 
@@ -38,6 +30,9 @@ def iterations(
     start
         Where to go on from; without one the settings say where to start, and a body that contact
         alone holds where it comes to rest.
+    resumable
+        Whether iterates shall have checkpoints: what an acceleration remembers is kept for them,
+        as much again as it holds itself.
 
     Yields
     ------
@@ -45,229 +40,112 @@ def iterations(
     one.
     """
     clock = Clock(start.seconds if start else 0.0)
-    engine = Engine(problem, settings, start)
-    number = start.number if start else 0
-    read, outgoing = engine.incoming, engine.outgoing
-    history = list(start.history) if start else []
-    while True:
-        number += 1
-        if engine.turn():
-            read, outgoing, history = engine.incoming, engine.outgoing, []
-        local_error = engine.step(number, clock)
-        history = [*history, outgoing][-engine.remembered :] if engine.remembered else []
-        outgoing = engine.outgoing
+    method = Method(problem, settings, start, clock)
+    for number in count(start.number + 1 if start else 1):
+        method.choose_direction()
+        method.local_stage(number)
+        method.linear_stage(number)
         clock.stop()
-        yield Iterate(
-            number=number,
-            seconds=clock.seconds,
-            problem=problem,
-            k=engine.k,
-            outgoing=outgoing,
-            incoming=engine.incoming,
-            local_displacement=engine.local_displacement,
-            local_incoming=read,
-            reduction=engine.reduction,
-            references=engine.references,
-            local_error=local_error,
-            history=tuple(history),
-            memory=engine.memory,
-            course=engine.course,
-        )
+        yield method.snapshot(number, resumable=resumable)
         clock.go_on()
-        read = engine.incoming
 
 
-def _start(problem: Problem, settings: Settings, k: Array) -> Checkpoint | None:
-    """Give the start of the settings' own choice; None is zero fields."""
-    if problem.rest is not None:
-        return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
-    if settings.start == "nested":
-        return nested_start(coarser_problems(settings), settings, problem, k)
-    return None
+class Method:
+    """The method of some settings at work on a problem.
 
-
-class Engine:
-    """Both stages at work, with what the options add to them.
+    Parameters
+    ----------
+    problem, settings, start
+        As for `iterations`.
+    clock
+        What it bills.
 
     Attributes
     ----------
-    k
-        Search direction of the rows, shape (n_rows,), scaled.
-    incoming
-        W - F/k of the linear stage, shape (n_rows, n_instants); read-only, and new at every step.
+    cycle
+        Both stages at work.
     """
 
-    def __init__(self, problem: Problem, settings: Settings, start: Checkpoint | None) -> None:
-        self._problem, self._settings = problem, settings
-        # A setting takes longer to read than the law of friction to obey.
-        self._relaxation: float = settings.relaxation
-        k = search_direction(problem, settings)
-        k.flags.writeable = False
-        self._update: DirectionUpdate | None = None
-        if settings.k_update == "status" and settings.linear_stage == "full":
-            self._update = DirectionUpdate(problem, k, start.course if start else None)
-            k = self._update.course.k
-        self._make_stages(k)
+    def __init__(
+        self, problem: Problem, settings: Settings, start: Checkpoint | None, clock: Clock
+    ) -> None:
+        self._problem, self._settings, self._clock = problem, settings, clock
+        self._direction = direction_of(problem, settings, start)
+        parts = plugged(problem, settings, self._direction.k, clock)
         if start is None:
-            start = _start(problem, settings, self.k)
-        stage: LinearStage[Any] = self._linear_stage
-        self._state = stage.start(start)
-        self.incoming = self._reflected()
+            start = start_of(problem, settings, parts.k)
+        self.cycle = Cycle(problem, parts, start)
         if start is not None:
             self._recall(start)
-
-    def _make_stages(self, k: Array) -> None:
-        try:
-            self._factored(k)
-        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
-            raise SettingError(
-                "k_scale",
-                self._settings.k_scale,
-                "a k that holds every substructure in the digits of a number",
-                "bring the factors on k nearer to 1, or the sides of the elements to each other",
-            ) from None
-
-    def _factored(self, k: Array) -> None:
-        """Make both stages for a k; the linear one is factored."""
-        problem, settings = self._problem, self._settings
-        self.k = k
-        blocks = Blocks(problem.n_rows, problem.n_instants, settings.threads)
-        self._local_stage = LocalStage(problem, self.k, blocks=blocks)
-        self._sampled: ReducedLocalStage | None = None
-        self._anderson: Anderson | None = None
-        self._linear_stage: LinearStage[Any]
-        if settings.is_reduced:
-            reduced = ReducedLinearStage(problem, self.k, settings)
-            if settings.local_stage == "reduced":
-                self._sampled = ReducedLocalStage(problem, self.k, settings, reduced)
-            self._linear_stage = reduced
-        else:
-            full = FullLinearStage(problem, self.k, multiscale=settings.multiscale, blocks=blocks)
-            if settings.acceleration == "anderson":
-                self._anderson = anderson(problem, full, settings.anderson_memory, blocks)
-            self._linear_stage = full
-
-    def turn(self) -> bool:
-        """Change k if it is time to, and say so; W and F stay, or go back to earlier ones."""
-        if self._update is None or not self._update.is_due:
-            return False
-        outgoing = self.outgoing
-        displacement = 0.5 * (outgoing + self.incoming)
-        found = self._update.turn(displacement, self.k[:, None] * (outgoing - displacement))
-        if found is None:
-            return False
-        displacement, force = found
-        self._make_stages(self._update.course.k)
-        outgoing = displacement + force / self.k[:, None]
-        self._state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
-        self.incoming = self._reflected()
-        return True
-
-    def step(self, number: int, clock: Clock) -> float:
-        """Do one iteration; give the error of a reduced local stage, or 0."""
-        local_error = 0.0
-        if self._sampled is not None and self._sampled.is_reduced(number):
-            self._sampled(self._state)
-            clock.stop()
-            # What the laws say everywhere is for those who look, and for the error of the few.
-            everywhere = self._local_stage(self.incoming)
-            local_error = self._linear_stage.distance_of_target(everywhere)
-            clock.go_on()
-        else:
-            self._linear_stage.read(self._local_stage(self.incoming))
-        if self._update is not None:
-            self._update.see(self.local_displacement)
-        self._advance()
-        if self._sampled is not None:
-            self._sampled.keep_up(number, self._state)
-        self.incoming = self._reflected()
-        return local_error
-
-    def _reflected(self) -> Array:
-        field = np.empty((self._problem.n_rows, self._problem.n_instants), order="F")
-        return _read_only(self._linear_stage.incoming(self._state, field))
-
-    @property
-    def outgoing(self) -> Array:
-        """W + F/k of the linear stage, shape (n_rows, n_instants); new at every call."""
-        return _read_only(self._linear_stage.to_boundary(self._state))
-
-    @property
-    def local_displacement(self) -> Array:
-        """W^ of the local stage, shape (n_rows, n_instants); new at every step."""
-        return _read_only(self._local_stage.displacement)
-
-    @property
-    def reduction(self) -> Reduction | None:
-        """The separated bases, if any."""
-        return self._linear_stage.reduction(self._state)
-
-    @property
-    def references(self) -> References | None:
-        """Reference points and instants, if any."""
-        return self._sampled.references if self._sampled else None
-
-    @property
-    def remembered(self) -> int:
-        """States before the present one that shape the next."""
-        return self._anderson.remembered if self._anderson else 0
-
-    @property
-    def memory(self) -> tuple[int, int, float] | None:
-        """What the acceleration counts."""
-        found = self._anderson
-        return (found.seen, found.count, found.smallest) if found else None
-
-    @property
-    def course(self) -> Course | None:
-        """How far the update of k has come."""
-        return self._update.course if self._update else None
-
-    def _advance(self) -> None:
-        if self._anderson is None:
-            self._linear_stage.advance(self._state, self._relaxation)
-            return
-        self._anderson.start(self._state)
-        self._linear_stage.advance(self._state, self._relaxation)
-        self._anderson(self._state)
+        self._history = list(start.history) if start else []
+        self._outgoing = self._before = self.cycle.outgoing
+        self._read = self.cycle.incoming
+        self._local_error = 0.0
 
     def _recall(self, start: Checkpoint) -> None:
-        """Bring back what the options remember, from a checkpoint of the same run."""
-        if self._sampled is not None and start.references is not None:
-            self._sampled.adopt(start.references, self._state)
-        if self._anderson is None or start.memory is None:
+        """Bring back what the parts remember, from a checkpoint of the same run."""
+        cycle = self.cycle
+        cycle.parts.local.recall(start, cycle.state)
+        acceleration = cycle.parts.acceleration
+        if start.memory is None or acceleration.memory is None:
             return
-        seen, count, smallest = start.memory
-        self._anderson.count = max(count - len(start.history) + 1, 0)
+        _, differences, _ = start.memory
+        acceleration.restore((0, max(differences - len(start.history) + 1, 0), inf))
         for outgoing in start.history:
-            state = self._linear_stage.start(Checkpoint(0, 0.0, outgoing))
-            self._anderson.start(state)
-            incoming = self._linear_stage.incoming(state, np.empty_like(self.incoming))
-            self._linear_stage.read(self._local_stage(incoming))
-            self._linear_stage.advance(state, self._relaxation)
-            self._anderson.observe(state)
-        self._anderson.seen, self._anderson.count = seen, count
-        self._anderson.smallest = smallest
+            cycle.put(Checkpoint(0, 0.0, outgoing))
+            cycle.local_stage()
+            cycle.linear_stage(mixes=False)
+        acceleration.restore(start.memory)
+        cycle.put(start)
 
+    def choose_direction(self) -> None:
+        """Change k if it is time to; W and F stay, or go back to earlier ones."""
+        if not self._direction.is_due:
+            return
+        cycle = self.cycle
+        displacement = 0.5 * (self._outgoing + cycle.incoming)
+        force = cycle.parts.k[:, None] * (self._outgoing - displacement)
+        found = self._direction.turn(displacement, force)
+        if found is None:
+            return
+        displacement, force = found
+        parts = plugged(self._problem, self._settings, self._direction.k, self._clock)
+        outgoing = displacement + force / parts.k[:, None]
+        self.cycle = Cycle(self._problem, parts, Checkpoint(0, 0.0, outgoing))
+        self._outgoing, self._history = self.cycle.outgoing, []
 
-class Clock:
-    """Time that the method takes; it runs from birth until stopped."""
+    def local_stage(self, number: int) -> None:
+        """Obey the interface laws."""
+        self._read = self.cycle.incoming
+        self._local_error = self.cycle.local_stage(number)
+        self._direction.see(self.cycle.parts.local.stage.displacement)
 
-    def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
-        self.go_on()
+    def linear_stage(self, number: int) -> None:
+        """Solve the elasticity of all substructures."""
+        self._before = self._outgoing
+        self.cycle.linear_stage(number)
+        self._outgoing = self.cycle.outgoing
 
-    def go_on(self) -> None:
-        """Run again."""
-        self._since: float | None = time.perf_counter()
-
-    def stop(self) -> None:
-        """Stand still."""
-        if self._since is not None:
-            self.seconds += time.perf_counter() - self._since
-        self._since = None
-
-
-def _read_only(field: Array) -> Array:
-    field.flags.writeable = False
-    return field
+    def snapshot(self, number: int, *, resumable: bool = True) -> Iterate:
+        """Show where the method stands."""
+        cycle = self.cycle
+        parts = cycle.parts
+        remembered = parts.acceleration.remembered
+        if resumable and remembered:
+            self._history = [*self._history, self._before][-remembered:]
+        return Iterate(
+            number=number,
+            seconds=self._clock.seconds,
+            problem=self._problem,
+            k=parts.k,
+            outgoing=self._outgoing,
+            incoming=cycle.incoming,
+            local_displacement=read_only(parts.local.stage.displacement),
+            local_incoming=self._read,
+            reduction=parts.linear.reduction(cycle.state),
+            references=parts.local.references,
+            local_error=self._local_error,
+            history=tuple(self._history) if resumable and remembered else (),
+            memory=parts.acceleration.memory,
+            course=self._direction.course,
+        )

@@ -8,7 +8,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from solver.discrete.problem import Array, Indices, Problem, Substructure, space_time
+from solver.arrays import Array, Indices, space_time
+from solver.discrete.problem import Problem, Substructure
 from solver.latin.blocks import ALL, Blocks, at_once
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint
@@ -22,7 +23,7 @@ class LinearStage(Generic[State]):
     """Elasticity along the search direction E-, factored for one problem and one k.
 
     With y = W + F/k of a substructure, W = H k y + W_f, where H = B (K + B^T k B)^-1 B^T and W_f
-    comes from body forces; then W - F/k = 2 W - y (theory.md, 2). Its state is y: it is what
+    comes from body forces; then W - F/k = 2 W - y (solver/README.md, 2). Its state is y: it is what
     relaxation mixes, and everything else follows from it. How y is held is the groups' business:
     in full, or on separated bases.
 

@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from solver.discrete.problem import Array, Indices, Problem, Substructure, sliding_rows, space_time
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem, Substructure
 from solver.latin.acceleration import anderson
+from solver.latin.cycle import Cycle, Everywhere, Parts
 from solver.latin.direction import automatic
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage
@@ -52,22 +54,18 @@ def nested_start(
     start: Checkpoint | None = None
     for coarse, finer in reversed(list(zip(coarser, [problem, *coarser], strict=False))):
         own = _direction(coarse)
-        local = LocalStage(coarse, own)
         linear = FullLinearStage(coarse, own, multiscale=True)
-        state = linear.start(start)
-        incoming = linear.incoming(state, space_time(coarse.n_rows, coarse.n_instants))
         mix = anderson(coarse, linear, settings.anderson_memory)
+        local = Everywhere(LocalStage(coarse, own), linear)
+        cycle = Cycle(coarse, Parts(own, local, linear, mix, RELAXATION), start)
         points = max(len(law.positions) for law in coarse.rubbing.values())
         enough = RESIDUAL / (points - 1) ** 2
         for _ in range(settings.nested_iterations):
-            linear.read(local(incoming))
-            mix.start(state)
-            linear.advance(state, RELAXATION)
-            mix(state)
-            linear.incoming(state, incoming)
+            cycle.local_stage()
+            cycle.linear_stage()
             if mix.relative_residual <= enough:
                 break
-        outgoing = linear.to_boundary(state)
+        outgoing, incoming = cycle.outgoing, cycle.incoming
         displacement = 0.5 * (outgoing + incoming)
         force = 0.5 * own[:, None] * (outgoing - incoming)
         wanted = k if finer is problem else _direction(finer)
@@ -78,7 +76,7 @@ def nested_start(
 def _direction(coarse: Problem) -> Array:
     k = automatic(coarse)
     for law in coarse.rubbing.values():
-        for rows in sliding_rows(law):
+        for rows in law.tangent.sides:
             k[rows] *= FACTOR
     return k
 
@@ -112,15 +110,13 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
     carried = np.zeros_like(found)
     for name, target in fine.rubbing.items():
         law = coarse.rubbing[name]
-        assert isinstance(law, Friction)
-        assert isinstance(target, Friction)
-        density = law.by_point(force[law.rows]) / law.by_point(law.weights)[:, None]
+        density = law.by_point(force[law.tangent.above]) / law.by_point(law.weights)[:, None]
         spread = _interpolated(
             _points_apart(fine, target, fine_bodies), _points_apart(coarse, law, bodies), density
         )
-        carried[target.rows] = spread[target.points] * target.weights[:, None]
-        if target.below is not None:
-            carried[target.below] = -carried[target.rows]
+        shared = spread[target.points] * target.weights[:, None]
+        for rows, sign in zip(target.tangent.sides, (1.0, -1.0), strict=False):
+            carried[rows] = sign * shared
     rubs = np.zeros(fine.n_rows, dtype=bool)
     rubs[fine.sliding[0]] = True
     alike: dict[int, list[Substructure]] = {}
@@ -133,7 +129,7 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
 
 def _bodies(problem: Problem) -> Indices:
     """Give the number of the body that every degree of freedom belongs to, from 0 on."""
-    if all(law.below is None for law in problem.rubbing.values()):
+    if all(law.is_on_support for law in problem.rubbing.values()):
         return np.zeros(problem.n_dofs, dtype=np.intp)
     links = sparse.csr_array(abs(assembled_stiffness(problem)) > 0.0)
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
@@ -146,10 +142,8 @@ def _apart(problem: Problem, bodies: Indices) -> Array:
 
 def _points_apart(problem: Problem, law: Friction, bodies: Indices) -> Array:
     """Give the positions of an interface's points, those of other bodies apart."""
-    above = bodies[problem.row_dofs[law.rows]]
-    below = 0 if law.below is None else bodies[problem.row_dofs[law.below]]
     numbers = np.zeros(len(law.positions), dtype=np.intp)
-    numbers[law.points] = above + below
+    numbers[law.points] = sum(bodies[problem.row_dofs[rows]] for rows in law.tangent.sides)
     return law.positions + 2.0 * problem.scales.displacement * numbers
 
 

@@ -1,4 +1,4 @@
-"""The linear stage on separated bases (paper, section 2.2; theory.md, 3).
+"""The linear stage on separated bases (paper, section 2.2; solver/README.md, 3).
 
 With y = W + F/k, every space mode u of y stands for the admissible pair Z = H k u, G = k (u - Z)
 (paper, eq. 3), whose G + k Z is k u. So the search direction is met as well as modes can: the
@@ -12,7 +12,8 @@ from functools import partial
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem, Substructure
+from solver.arrays import Array
+from solver.discrete.problem import Problem, Substructure
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis

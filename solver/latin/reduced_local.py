@@ -1,4 +1,4 @@
-"""The local stage at reference points and instants (paper, end of section 3.2; theory.md, 3)."""
+"""The local stage at reference points and instants (paper, section 3.2; solver/README.md, 3)."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.linalg import qr
 
-from solver.discrete.problem import Array, Indices, Problem, sliding_rows
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
+from solver.latin.clock import Clock
+from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group
 from solver.latin.local import LocalStage
 from solver.latin.reduced_linear import Family, ReducedLinearStage
-from solver.laws import Friction
 from solver.reduction.basis import References
 from solver.settings import Settings
 
@@ -41,11 +43,13 @@ class ReducedLocalStage:
         self._refresh = settings.local_refresh
         self._rubs = np.zeros(problem.n_rows, dtype=bool)
         self._partner = np.arange(problem.n_rows)
-        for law in problem.of_law(Friction):
-            assert isinstance(law, Friction)
-            self._rubs[np.concatenate(sliding_rows(law))] = True
-            if law.below is not None:
-                self._partner[law.rows], self._partner[law.below] = law.below, law.rows
+        for law in problem.rubbing.values():
+            if law.opens:
+                continue
+            above, below = law.tangent
+            self._rubs[np.concatenate(law.tangent.sides)] = True
+            if below is not None:
+                self._partner[above], self._partner[below] = below, above
         self._laws: LocalStage | None = None
         self.references: References | None = None
 
@@ -184,6 +188,41 @@ class ReducedLocalStage:
         root = np.sqrt(basis.k)[:, None]
         chosen = _pivots((root * basis.modes).T[:, friction], friction, wanted)
         return np.union1d(np.flatnonzero(~rubs), chosen)
+
+
+class AtReferences:
+    """The laws at reference points and instants, and now and then everywhere."""
+
+    def __init__(
+        self, stage: LocalStage, linear: ReducedLinearStage, few: ReducedLocalStage, clock: Clock
+    ) -> None:
+        self.stage, self._linear, self.few, self._clock = stage, linear, few, clock
+
+    @property
+    def references(self) -> References | None:
+        """Those at use, or None before they are chosen."""
+        return self.few.references
+
+    def obey(self, number: int, incoming: Array, state: list[list[Family]]) -> float:
+        """Obey the laws, as `LocalPart` says."""
+        if not self.few.is_reduced(number):
+            self._linear.read(self.stage(incoming))
+            return 0.0
+        self.few(state)
+        self._clock.stop()
+        # What the laws say everywhere is for those who look, and for the error of the few.
+        error = self._linear.distance_of_target(self.stage(incoming))
+        self._clock.go_on()
+        return error
+
+    def keep_up(self, number: int, state: list[list[Family]]) -> None:
+        """Choose references anew when it is time to."""
+        self.few.keep_up(number, state)
+
+    def recall(self, start: Checkpoint, state: list[list[Family]]) -> None:
+        """Use the references of a checkpoint."""
+        if start.references is not None:
+            self.few.adopt(start.references, state)
 
 
 def _pivots(functions: Array, places: Indices, wanted: int) -> Indices:

@@ -7,7 +7,8 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
-from solver.discrete.problem import Array, Elasticity, Indices
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Elasticity
 
 DENSE_UP_TO = 150
 """Boundary rows up to which a dense product is no slower than a sparse solution.

@@ -101,19 +101,24 @@ def record(
 
 
 def judged(
-    problem: Problem, settings: Settings, start: Checkpoint | None = None, spent: float = 0.0
+    problem: Problem,
+    settings: Settings,
+    start: Checkpoint | None = None,
+    spent: float = 0.0,
+    *,
+    resumable: bool = True,
 ) -> Iterator[tuple[Iterate, Verdict]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
     Parameters
     ----------
-    problem, settings, start
+    problem, settings, start, resumable
         As for `iterations`, which goes on though a verdict says that the run ends.
     spent
         Seconds that the run took before, to make the problem.
     """
     rules = StopRules(settings, spent=spent)
-    for iterate in iterations(problem, settings, start):
+    for iterate in iterations(problem, settings, start, resumable=resumable):
         verdict = rules.judge(iterate)
         yield iterate, verdict
         if verdict.finished is not None:
@@ -127,6 +132,7 @@ def solve(
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,
+    resumable: bool = False,
     watch: bool = True,
     spent: float = 0.0,
     cancelled: Callable[[], bool] = lambda: False,
@@ -135,7 +141,7 @@ def solve(
 
     Parameters
     ----------
-    problem, settings, start
+    problem, settings, start, resumable
         As for `iterations`.
     distance
         To a reference, for the errors in the records.
@@ -148,7 +154,7 @@ def solve(
     """
     records: list[Record] = []
     last = None
-    for iterate, verdict in judged(problem, settings, start, spent):
+    for iterate, verdict in judged(problem, settings, start, spent, resumable=resumable):
         status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)

@@ -4,7 +4,7 @@ Statuses that an iterate shows make the problem linear, instant after instant. T
 solution itself shows to be wrong are mended where they stand, a Newton method that begins where
 LATIN ends. If statuses and solution agree at every instant, all laws and equilibrium hold: then it
 is the solution of the discrete problem up to rounding, whatever k and the method were, and it is
-called certified (theory.md, 7). LATIN finds the fronts, the step finishes.
+called certified (solver/README.md, 7). LATIN finds the fronts, the step finishes.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.discrete.contact_fields import OPEN, jumps_of
-from solver.discrete.problem import Array, Problem
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
-from solver.laws import Contact
+from solver.laws import OPEN
 from solver.reference.choice import Incremental, incremental_solver
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import States
@@ -108,12 +108,11 @@ def states_of(iterate: Iterate) -> States:
     force = iterate.boundary_local_force
     found: list[States] = []
     for law in iterate.problem.rubbing.values():
-        position = law.by_point(jumps_of(law, iterate.local_displacement)[-1])
-        slip = np.diff(position, axis=1, prepend=0.0)
+        slip = law.slip(iterate.local_displacement, force)
         still = min(STILL, FRONT / len(slip) ** 2) * np.abs(slip).max(initial=0.0)
         way = np.sign(slip) * (np.abs(slip) > still)
-        if isinstance(law, Contact):
-            is_open = law.by_point(force[law.normal]) <= 0.0
+        if law.normal is not None:
+            is_open = law.by_point(force[law.normal.above]) <= 0.0
             found.append(np.where(is_open, OPEN, 0).astype(np.int8))
             way[is_open] = OPEN
         found.append(way.astype(np.int8))

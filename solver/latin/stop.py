@@ -9,7 +9,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 from solver.latin.estimate import LAST, WAIT, ErrorEstimate
 from solver.latin.finish import finished
 from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
@@ -90,7 +90,7 @@ def agreement(tolerance: float) -> float:
     """Give the k-free indicator up to which it agrees that the run has converged.
 
     The LATIN indicator alone can be fooled: a search direction that is far from the stiffness in
-    play makes it as small as one likes (theory.md, 4).
+    play makes it as small as one likes (solver/README.md, 4).
     """
     return min(max(VIOLATION * math.sqrt(tolerance), SMALLEST_VIOLATION), LARGEST_VIOLATION)
 

@@ -10,7 +10,8 @@ from itertools import chain
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations

@@ -1,10 +1,19 @@
-"""Interface laws: what an interface is, and the pure function that obeys it, all points at once."""
+"""Interface laws: objects that own all that is said about them, all points at once."""
 
+from solver.laws.around import Bodies, Rod
 from solver.laws.boundary import Dirichlet, Neumann
-from solver.laws.contact import Contact
-from solver.laws.friction import Friction
+from solver.laws.friction import OPEN, Friction
+from solver.laws.interface import Component, Interface
 from solver.laws.perfect import Perfect
 
-Interface = Perfect | Dirichlet | Neumann | Friction | Contact
-
-__all__ = ["Contact", "Dirichlet", "Friction", "Interface", "Neumann", "Perfect"]
+__all__ = [
+    "OPEN",
+    "Bodies",
+    "Component",
+    "Dirichlet",
+    "Friction",
+    "Interface",
+    "Neumann",
+    "Perfect",
+    "Rod",
+]

@@ -1,18 +1,18 @@
-"""Interfaces with the outside: prescribed displacement, prescribed force."""
+"""Interfaces with the outside: prescribed displacement, prescribed force (solver/README.md, 2)."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from solver.arrays import Array, Indices
+from solver.laws.interface import Gaps, Interface, MacroPart, Region, Rule, beyond, squared
 
 
 @dataclass(frozen=True)
-class Dirichlet:
+class Dirichlet(Interface):
     """Prescribed displacement.
 
     Attributes
@@ -26,9 +26,28 @@ class Dirichlet:
     rows: Indices
     displacement: Array
 
+    def rule(self, region: Region) -> Rule:
+        """Take the displacement as it is."""
+        rows, given = region.of(self.rows), self.displacement[:, region.instants]
+
+        def prescribe(incoming: Array, displacement: Array, some: slice) -> None:
+            displacement[rows] = given[:, some]
+
+        return prescribe
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the displacement with that prescribed."""
+        missed = beyond(displacement[self.rows] - self.displacement, noise)
+        return Gaps(displacement=squared(missed))
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything moves."""
+        return bool(self.displacement.any())
+
 
 @dataclass(frozen=True)
-class Neumann:
+class Neumann(Interface):
     """Prescribed force.
 
     Attributes
@@ -45,15 +64,25 @@ class Neumann:
     force: Array
     macro: Array
 
+    def rule(self, region: Region) -> Rule:
+        """Move by F_d / k."""
+        rows = region.of(self.rows)
+        moved = self.force[:, region.instants] / region.k[self.rows, None]
 
-def neumann(target: Array, force_over_k: Array) -> Array:
-    """Find the displacement under a prescribed force (theory.md, 2).
+        def push(incoming: Array, displacement: Array, some: slice) -> None:
+            displacement[rows] = incoming[rows] + moved[:, some]
 
-    Parameters
-    ----------
-    target
-        z = W - F/k, shape (n_rows, n_times), m.
-    force_over_k
-        F_d / k, same shape, m.
-    """
-    return target + force_over_k
+        return push
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the force with that prescribed."""
+        return Gaps(force=squared(beyond(force[self.rows] - self.force, noise)))
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Give the macro forces, which the load balances."""
+        yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything pulls."""
+        return bool(self.force.any())

@@ -1,190 +1,321 @@
-"""Coulomb friction with a known bound, on a support or between two bodies (theory.md, 2).
+"""Interfaces with friction: two sides that stick and slip, and where contact may be lost, open.
 
-Pointwise it is the play operator. A clip of a clip is a clip, so the recursion in time is an
-associative scan: for few points, blocks of instants are composed side by side; for many points,
-walking in time already keeps the processor busy and moves less memory.
+One law serves them all: the friction force is at most r + mu N. Where the pressure is known N is
+part of r, and there is no normal component; unilateral contact has one, with Coulomb's mu or with
+Tresca's r. Below is a rigid support or another body. Forces act from what is below on the body
+above, and the jump is that of the body above over what is below.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.laws.points import AtPoints
+from solver.arrays import Array, Indices
+from solver.laws.around import Around, Rod
+from solver.laws.behaviour import Behaviour
+from solver.laws.interface import (
+    Component,
+    Gaps,
+    Interface,
+    MacroPart,
+    Region,
+    Rule,
+    beyond,
+    squared,
+)
+from solver.laws.obeying import ContactRule, FrictionRule
+from solver.laws.rules import Rules
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
-
-WALK_FROM_POINTS = 150
-"""From this many points on, the walk beats the scan (measured: between 60 and 211)."""
+NO_SLIP = 1e-9
+"""Slip, as a share of the largest displacement, up to which a point counts as stuck."""
+OPEN = 2
+"""Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
 
 
 @dataclass(frozen=True)
-class Friction(AtPoints):
-    """A frictional interface with a known normal force, on a rigid support or between two bodies.
+class Friction(Interface):
+    """An interface that sticks and slips, and may open.
+
+    A pair is a point of the body above and what lies below it; the pairs of one point (two, where a
+    cut crosses the interface, or ends at it) share its force.
 
     Attributes
     ----------
-    rows
-        Boundary rows that rub, shape (n_rows,); of the body above, if there are two.
+    tangent
+        Component along the interface.
     points
-        Point of the interface that each row belongs to, shape (n_rows,). The rows of a point
-        (two, where a cut crosses the interface) share its force.
+        Point of the interface that each pair belongs to, shape (n_pairs,).
     positions
         Place of the points along the interface, shape (n_points,), m.
     weights
-        Tributary length of each row, shape (n_rows,), m.
+        Tributary length or area of each pair, shape (n_pairs,), m or m^2.
     bound
-        Largest friction force of each row, shape (n_rows,), non-negative.
-    below
-        Rows of the body below, each opposite its partner in `rows`; None on a rigid support.
+        r, the friction force of each pair that needs no pressing one, (n_pairs,), non-negative.
+    friction
+        Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
+    normal
+        Component across the interface; None where the pressure is known.
+    gap
+        Opening between the undeformed bodies, shape (n_pairs,), scaled; negative where they
+        overlap.
     macro
-        Macro basis between two bodies, shape (n_rows, n_macro): the macro forces of both sides
-        cancel each other. None on a rigid support.
-    modulus
-        Stiffness of what rubs around each row, shape (n_rows,), scaled; None where it is 1.
+        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
+        from the other is in equilibrium in the coarse problem. None on a rigid support.
+    around
+        What the search direction has to know of the bodies.
     """
 
-    rows: Indices
+    tangent: Component
     points: Indices
     positions: Array
     weights: Array
     bound: Array
-    below: Indices | None = None
+    friction: Array
+    normal: Component | None = None
+    gap: Array = field(default_factory=lambda: np.zeros(0))
     macro: sparse.csr_array | None = None
-    modulus: Array | None = None
+    around: Around = field(default_factory=Rod)
 
+    remembers = True
+    of_pairs: ClassVar[tuple[str, ...]] = ("weights", "bound", "friction")
+    """Attributes of shape (n_pairs,) that tell pairs of one kind of interface apart."""
 
-class FrictionLaw:
-    """The law of one interface for given search directions; its memory is allocated once.
+    @classmethod
+    def of_known_bound(cls, tangent: Component, bound: Array, **others: Any) -> Self:
+        """Make one whose friction force is at most r, whatever presses.
 
-    Parameters
-    ----------
-    law
-        The interface.
-    k
-        Search direction of all rows, shape (n_rows,).
-    n_times
-        Number of instants.
-    """
+        Parameters
+        ----------
+        tangent, bound, others
+            As the attributes.
+        """
+        return cls(tangent=tangent, bound=bound, friction=np.zeros(len(bound)), **others)
 
-    def __init__(self, law: Friction, k: Array, n_times: int) -> None:
-        self._rows = as_slice(law.rows)
-        self._below = None if law.below is None else as_slice(law.below)
-        soft = 1.0 / k[law.rows]
-        if law.below is not None:
-            soft_below = 1.0 / k[law.below]
-            soft = soft + soft_below
-            self._share_below = (soft_below / soft)[:, None]
-        self._reach = (law.bound * soft)[:, None]
-        self._play = Play(len(law.rows), n_times)
+    @classmethod
+    def of_contact(
+        cls, normal: Component, tangent: Component, friction: Array, **others: Any
+    ) -> Self:
+        """Make unilateral contact with Coulomb's friction.
 
-    def __call__(self, incoming: Array, displacement: Array) -> None:
-        """Write W^ of the interface's rows, for z = W - F/k of all rows, (n_rows, n_times)."""
-        above = incoming[self._rows]
-        if self._below is None:
-            displacement[self._rows] = self._play(above, self._reach)
+        Parameters
+        ----------
+        normal, tangent, friction, others
+            As the attributes.
+        """
+        none = np.zeros(len(friction))
+        return cls(tangent=tangent, normal=normal, bound=none, friction=friction, **others)
+
+    @property
+    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
+        """Rows of all components, of both sides."""
+        return np.concatenate([rows for component in self.components for rows in component.sides])
+
+    @property
+    def is_on_support(self) -> bool:
+        """Whether what lies below is rigid."""
+        return self.tangent.below is None
+
+    @property
+    def opens(self) -> bool:
+        """Whether it is unilateral contact, with a normal component."""
+        return self.normal is not None
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is the play operator: of known bound, and nothing but slip below it moves."""
+        return self.is_on_support and not self.opens and not self.compliance.any()
+
+    @cached_property
+    def components(self) -> tuple[Component, ...]:
+        """All components, the tangential one last."""
+        return (self.tangent,) if self.normal is None else (self.normal, self.tangent)
+
+    def by_point(self, values: Array) -> Array:
+        """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
+        found = np.zeros((len(self.positions), *values.shape[1:]))
+        np.add.at(found, self.points, values)
+        return found
+
+    def mean_by_point(self, values: Array) -> Array:
+        """Give the mean of the pairs of every point, shape (n_points, ...)."""
+        counts = np.bincount(self.points, minlength=len(self.positions))
+        return np.asarray(self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1)))
+
+    @cached_property
+    def shares(self) -> Array:
+        """Share of each pair in the force of its point: of its bound, or of its area."""
+        for weights in (self.bound, self.weights):
+            whole = self.by_point(weights)[self.points]
+            if np.all(whole > 0.0):
+                return np.asarray(weights / whole)
+        return 1.0 / np.bincount(self.points)[self.points]
+
+    @classmethod
+    def together(cls, laws: Sequence[Self]) -> list[Self]:
+        """Join all of known bound between two bodies; the macro bases stay behind."""
+        pairs = [law for law in laws if not law.opens and not law.is_on_support]
+        if not pairs:
+            return list(laws)
+        values: dict[str, Any] = {
+            name: np.concatenate([getattr(law, name) for law in pairs]) for name in cls.of_pairs
+        }
+        joined = replace(
+            pairs[0],
+            tangent=Component(
+                np.concatenate([law.tangent.above for law in pairs]),
+                np.concatenate([law.tangent.sides[1] for law in pairs]),
+            ),
+            points=np.arange(sum(len(law.points) for law in pairs)),
+            positions=np.concatenate([law.positions[law.points] for law in pairs]),
+            macro=None,
+            **values,
+        )
+        return [joined, *(law for law in laws if law.opens or law.is_on_support)]
+
+    def rule(self, region: Region) -> Rule:
+        """Prepare the law; contact comes first, because only it says what friction can carry."""
+        own = self._kept(region.place[self.tangent.above] >= 0)
+        friction = own.friction_rule(region)
+        if own.normal is None:
+            return friction
+        return ContactRule(own.normal, own.gap, friction, region)
+
+    def friction_rule(self, region: Region) -> FrictionRule:
+        """Prepare the tangential part of the law for a region."""
+        return FrictionRule(self.tangent, self.bound, self.friction, region)
+
+    def _kept(self, chosen: NDArray[np.bool_]) -> Self:
+        """Keep some pairs of a law that does not open."""
+        if chosen.all() or self.opens:
+            return self
+        below = self.tangent.below
+        kept = Component(self.tangent.above[chosen], None if below is None else below[chosen])
+        values: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self.of_pairs}
+        return replace(self, tangent=kept, points=self.points[chosen], **values)
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Give the macro forces of both sides, which cancel, component by component."""
+        if self.macro is None:
             return
-        below = incoming[self._below]
-        jump = above - below
-        moved = self._play(jump, self._reach) - jump
-        under = self._share_below * moved
-        displacement[self._below] = below - under
-        displacement[self._rows] = above + (moved - under)
+        basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
+        for component in self.components:
+            yield MacroPart(np.concatenate(component.sides), basis)
 
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the forces of both sides; where they move is what the law is about."""
+        if self.is_on_support:
+            return Gaps()
+        sums = (sum(force[rows] for rows in component.sides) for component in self.components)
+        return Gaps(force=sum(squared(beyond(np.asarray(one), noise)) for one in sums))
 
-def as_slice(rows: Indices) -> slice | Indices:
-    """Give rows as a slice when they follow each other, so that reading them copies nothing."""
-    first = int(rows[0]) if len(rows) else 0
-    return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
+    @property
+    def compliance(self) -> Array:
+        """Tangential displacement before slip, per friction force, of every point, scaled."""
+        return np.zeros(len(self.positions))
 
+    @property
+    def reads_force(self) -> bool:
+        """Whether the status of a point shows in forces too, and not in displacements alone."""
+        return self.opens
 
-def play(target: Array, reach: Array) -> Array:
-    """Follow a target with Coulomb play, from rest at zero.
+    def slider(self, displacement: Array, force: Array | None) -> Array:
+        """Give the slip of every pair up to every instant, shape (n_pairs, n_instants), scaled.
 
-    Parameters
-    ----------
-    target
-        Position that the point would take without friction, shape (n_points, n_times), m.
-    reach
-        Distance at which it starts to slip, same shape or (n_points,), m; non-negative.
+        Parameters
+        ----------
+        displacement, force
+            W and F of all rows, shape (n_rows, n_instants); F may be None where nobody reads it.
+        """
+        return self.tangent.jump(displacement)
 
-    Returns
-    -------
-    Position with friction, shape (n_points, n_times), m (theory.md, 2).
-    """
-    reach = reach if reach.ndim == target.ndim else reach[:, None]
-    result: Array = Play(*target.shape)(target, reach).copy()
-    return result
+    def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
+        """Prepare the check of W and F against the law; parameters as of `gaps`."""
+        opening = pressing = None
+        if self.normal is not None:
+            pressing = beyond(force[self.normal.above], noise)
+            opening = beyond(self.normal.jump(displacement) + self.gap[:, None], 2.0 * noise)
+        slip = np.diff(self.slider(displacement, force), axis=1, prepend=0.0)
+        bound = self.bound[:, None]
+        if pressing is not None:
+            bound = bound + self.friction[:, None] * np.maximum(pressing, 0.0)
+        return Behaviour(
+            slip=beyond(slip, 2.0 * noise),
+            friction=force[self.tangent.above],
+            bound=np.broadcast_to(bound, slip.shape),
+            pressing=pressing,
+            opening=opening,
+        )
 
+    def capacity(self, held: NDArray[np.bool_]) -> float:
+        """Give the friction force that it can carry without pressing, beside the supports.
 
-def Play(n_points: int, n_times: int) -> _Walk | _Scan:  # noqa: N802  # chooses a class, as one
-    """Prepare the play operator for a size: its memory is allocated once, here.
+        Parameters
+        ----------
+        held
+            Rows whose displacement is prescribed, shape (n_rows,).
+        """
+        return float(self.bound[~held[self.tangent.above]].sum())
 
-    Calling the result as `play(target, reach)`, with reach of shape (n_points, n_times) or
-    (n_points, 1), gives an array that the next call overwrites.
-    """
-    few = n_points < WALK_FROM_POINTS and n_times > 1
-    return _Scan(n_points, n_times) if few else _Walk(n_points, n_times)
+    def carried(self, force: Array) -> float:
+        """Give the largest force on a pair where it may open, of that of all rows."""
+        rows = [component.above for component in self.components if self.opens]
+        return max((float(np.abs(force[own]).max()) for own in rows), default=0.0)
 
+    def status(self, displacement: Array, force: Array | None = None) -> NDArray[np.int8]:
+        """Give the contact status of a local stage, shape (n_points, n_instants).
 
-class _Walk:
-    """One instant after the other."""
+        The law repeats the position of a stuck point bit by bit, or up to rounding where both sides
+        move; a point that is just at its bound moves by rounding alone, and that is not called
+        slip. Where a cut ends at the interface both sides have their say, and the larger slip wins.
 
-    def __init__(self, n_points: int, n_times: int) -> None:
-        self._low, self._high, self._position = np.zeros((3, n_times, n_points))
-        before = [np.zeros(n_points), *self._position[:-1]]
-        self._steps = list(zip(before, self._low, self._high, self._position, strict=True))
+        Parameters
+        ----------
+        displacement, force
+            W^ and F^ of all rows, shape (n_rows, n_instants); F^ where `reads_force`.
+        """
+        total = self.slip(displacement, force)
+        largest = max(np.abs(displacement[rows]).max(initial=0.0) for rows in self.tangent.sides)
+        if self.normal is not None and force is not None:
+            # A stuck contact moves by rounding alone; but a scaled structure's compliance is 1.
+            largest = max(np.abs(displacement).max(), np.abs(force).max())
+        total[np.abs(total) <= NO_SLIP * largest] = 0.0
+        found = np.sign(total).astype(np.int8)
+        if self.normal is not None and force is not None:
+            found[self.by_point(force[self.normal.above]) <= 0.0] = OPEN
+        return found
 
-    def __call__(self, target: Array, reach: Array) -> Array:
-        np.subtract(target, reach, out=self._low.T)
-        np.add(target, reach, out=self._high.T)
-        for before, low, high, position in self._steps:
-            np.maximum(before, low, out=position)
-            np.minimum(position, high, out=position)
-        return self._position.T
+    def slip(self, displacement: Array, force: Array | None) -> Array:
+        """Give the slip of every point at every instant, (n_points, n_instants), as `status`.
 
+        It is the sum of its pairs'.
+        """
+        return np.diff(self.by_point(self.slider(displacement, force)), axis=1, prepend=0.0)
 
-class _Scan:
-    """Blocks of instants side by side: compose inside all blocks, carry across, apply.
+    def rules(self, first: int) -> list[Rules]:
+        """Say what the jumps of the points obey, component by component.
 
-    `composed[j, 0]` and `composed[j, 1]` are the clip of the first j + 1 instants of every block:
-    what the block makes of a point that enters it far below, or far above.
-    """
+        Parameters
+        ----------
+        first
+            Place of the first of them in a stack.
+        """
+        size = len(self.positions)
+        none, own = np.zeros(size), first + np.arange(size)
+        no, yes = np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
+        bound, friction = self.by_point(self.bound), self.mean_by_point(self.friction)
+        tangential = Rules(no, none, own, friction, bound, self.compliance)
+        if not self.opens:
+            return [tangential]
+        return [Rules(yes, self.mean_by_point(self.gap), own, none, none, none), tangential]
 
-    def __init__(self, n_points: int, n_times: int) -> None:
-        size = max(2, round(0.5 * np.sqrt(n_times)))
-        blocks = -(-n_times // size)
-        self._n_times = n_times
-        self._limits = np.zeros((2, blocks, size, n_points))
-        low, high = self._limits
-        self._low, self._high = (limit.reshape(-1, n_points)[:n_times] for limit in self._limits)
-        self._composed = np.zeros((size, 2, blocks, n_points))
-        self._steps = [
-            (self._composed[j - 1], low[:, j], high[:, j], self._composed[j])
-            for j in range(1, size)
-        ]
-        entry = np.zeros((blocks + 1, n_points))
-        last_low, last_high = self._composed[-1]
-        self._carries = list(zip(entry[:-1], last_low, last_high, entry[1:], strict=True))
-        self._entry = entry[:-1, None]
-        self._position = np.zeros((blocks, size, n_points))
-        self._result = self._position.reshape(-1, n_points)[:n_times]
-
-    def __call__(self, target: Array, reach: Array) -> Array:
-        np.subtract(target, reach, out=self._low.T)
-        np.add(target, reach, out=self._high.T)
-        self._composed[0] = self._limits[:, :, 0]
-        for before, low, high, after in self._steps:
-            np.maximum(before, low, out=after)
-            np.minimum(after, high, out=after)
-        for before, low, high, after in self._carries:
-            np.maximum(before, low, out=after)
-            np.minimum(after, high, out=after)
-        low, high = self._composed.transpose(1, 2, 0, 3)
-        np.maximum(self._entry, low, out=self._position)
-        np.minimum(self._position, high, out=self._position)
-        return self._result.T
+    @property
+    def acts(self) -> bool:
+        """Whether the bodies overlap."""
+        return bool(self.gap.min(initial=0.0) < 0.0)

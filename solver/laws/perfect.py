@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from solver.arrays import Array, Indices
+from solver.laws.interface import Gaps, Interface, MacroPart, Region, Rule, beyond, squared
 
 
 @dataclass(frozen=True)
-class Perfect:
+class Perfect(Interface):
     """A glued cut.
 
     Attributes
@@ -27,9 +28,46 @@ class Perfect:
     second: Indices
     macro: Array
 
+    @property
+    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
+        """Rows of both sides."""
+        return np.concatenate([self.first, self.second])
+
+    @classmethod
+    def together(cls, laws: Sequence[Self]) -> list[Self]:
+        """Join all cuts; the macro bases stay behind, a local stage knows none."""
+        if not laws:
+            return []
+        first = np.concatenate([law.first for law in laws])
+        second = np.concatenate([law.second for law in laws])
+        return [cls(first, second, np.zeros((len(first), 0)))]
+
+    def rule(self, region: Region) -> Rule:
+        """Give both sides the mean of what they would do, weighted by k."""
+        first, second = region.of(self.first), region.of(self.second)
+        k, other = region.k[self.first], region.k[self.second]
+        share = (k / (k + other))[:, None]
+
+        def glue(incoming: Array, displacement: Array, some: slice) -> None:
+            common = perfect(incoming[first], incoming[second], share)
+            displacement[first] = common
+            displacement[second] = common
+
+        return glue
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare both sides."""
+        apart = beyond(displacement[self.first] - displacement[self.second], 2.0 * noise)
+        unbalanced = beyond(force[self.first] + force[self.second], noise)
+        return Gaps(squared(apart), squared(unbalanced))
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Give the macro forces of both sides, which cancel."""
+        yield MacroPart(self.rows, np.concatenate([self.macro, self.macro]))
+
 
 def perfect(first: Array, second: Array, share: Array) -> Array:
-    """Find the common displacement of two glued sides (theory.md, 2).
+    """Find the common displacement of two glued sides (solver/README.md, 2).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A separated basis: space modes times time functions (theory.md, 3)."""
+"""A separated basis: space modes times time functions (solver/README.md, 3)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.discrete.problem import Array, Indices
+from solver.arrays import Array, Indices
 
 
 @dataclass
@@ -15,7 +15,7 @@ class SeparatedBasis:
     """A field as a sum of space modes times time functions.
 
     The modes are orthonormal in the inner product of the search direction, a^T k b; for the
-    boundary fields g = k u of theory.md, 3 that is the 1/k inner product.
+    boundary fields g = k u of solver/README.md, 3 that is the 1/k inner product.
 
     Attributes
     ----------

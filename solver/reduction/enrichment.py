@@ -1,4 +1,4 @@
-"""Finding the pair that a residual asks for (paper, problem 2.3; theory.md, 3)."""
+"""Finding the pair that a residual asks for (paper, problem 2.3; solver/README.md, 3)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 from solver.settings import Settings
 
 

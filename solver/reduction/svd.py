@@ -14,7 +14,8 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.discrete.problem import Array, Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 
 ALIKE = 1e-9
 """Relative difference up to which two entries count as equally large when a sign is fixed."""
@@ -211,7 +212,7 @@ def constant_speed_front(n_points: int, n_instants: int) -> Decomposition:
 
 
 def front_decay(count: int) -> Array:
-    """Give sigma_n/sigma_1 = 1/(2n - 1) of a constant-speed front, (count,) (theory.md, 3)."""
+    """Give sigma_n/sigma_1 of a constant-speed front (solver/README.md, 3), shape (count,)."""
     return np.asarray(1.0 / (2.0 * np.arange(1, count + 1) - 1.0))
 
 

@@ -7,7 +7,7 @@ from numpy.linalg import LinAlgError
 from scipy import sparse
 from scipy.linalg import blas, lapack
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 
 _LOOSE = "the matrix is not positive definite on the degrees of freedom that are kept"
 

@@ -1,4 +1,4 @@
-"""The broken wire in closed form: each side of its break is a friction bar (theory.md, 6).
+"""The broken wire in closed form: each side of its break is a friction bar (solver/README.md, 6).
 
 Unbroken, all wires carry the tension T and nothing slips. The break adds a force n to the broken
 wire, -T at its two new ends, which the neighbours take over in equal shares: with m of them, what
@@ -12,13 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from solver.arrays import Array
 from solver.reference.closed_form import ClosedForm, closed_form
 from solver.scenes.bar import Bar
 from solver.scenes.strand import Strand
-
-Array = NDArray[np.float64]
 
 STEPS = 100
 PRECISION = 1e-13

@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import Protocol
 
 from solver.discrete.problem import Problem
-from solver.laws import Friction
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod
 from solver.reference.solution import Reference, States
@@ -49,4 +48,4 @@ def incremental_solver(problem: Problem) -> Incremental:
 def is_alone(problem: Problem) -> bool:
     """Tell whether all friction is of known bound, on one rigid support."""
     laws = list(problem.rubbing.values())
-    return len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
+    return len(laws) == 1 and laws[0].is_plain

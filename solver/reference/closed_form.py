@@ -1,10 +1,10 @@
-"""The friction bar in closed form: its normal force is a play operator (theory.md, 6).
+"""The friction bar in closed form: its normal force is a play operator (solver/README.md, 6).
 
 Sliding needs the whole bound between a section and the free end, R(x) = integral of mu p from x to
 L. So the normal force N(x, t) follows the load F(t) with play R(x): on a rising load it is the
 larger of its old value and F - R, on a falling one the smaller of its old value and F + R. This
 holds for every bound mu p >= 0 along the bar and every load path from rest, full sliding included,
-and gives the loading, unloading and reloading formulas of theory.md, 6 for a uniform bound.
+and gives the loading, unloading and reloading formulas of solver/README.md, 6 for a uniform bound.
 """
 
 from __future__ import annotations
@@ -12,12 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from solver.laws.friction import play
+from solver.arrays import Array
+from solver.laws.play import play
 from solver.scenes.bar import Bar
-
-Array = NDArray[np.float64]
 
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""
@@ -54,7 +52,7 @@ class ClosedForm:
 
 
 def closed_form(scene: Bar) -> ClosedForm | None:
-    """Solve the friction bar in closed form (theory.md, 6).
+    """Solve the friction bar in closed form (solver/README.md, 6).
 
     Parameters
     ----------

@@ -20,10 +20,11 @@ from scipy import sparse
 from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
-from solver.discrete.problem import Array, Indices, Problem, components
-from solver.laws import Contact, Friction
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.self_stress import self_stresses
+from solver.reference.states import rules_of
 
 LOOSE = 1e-14
 """Pivot, as a share of its diagonal entry, below which a structure counts as not held."""
@@ -69,6 +70,8 @@ class Condensation:
     stresses, tie
         Where jumps depend on each other: forces that move nothing, (n_moving, n_stresses), and the
         stiffness in S that keeps the jumps from coming apart along them, scaled.
+    compliance
+        In series with every jump, shape (n_forces,), scaled; S is of both together.
     given
         Jumps that prescribed displacements make, shape (n_forces, n_instants); final where a jump
         is not unknown.
@@ -80,6 +83,7 @@ class Condensation:
         self._whole = assembled_stiffness(problem)
         self._force = external_force(problem)
         self._jumps = jumps(problem)
+        self.compliance: Array = rules_of(problem).compliance
         self._fixed, self._prescribed, self._free = fixed, prescribed, free
         self.given: Array = self._jumps[:, fixed] @ prescribed
         own = self._jumps[:, free]
@@ -102,14 +106,28 @@ class Condensation:
         sides[:, :n_own], sides[:, n_own:] = own.T.toarray(order="F"), patterns
         solved = _solve(sparse.csc_array(held), sides)
         self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
-        compliance = own @ self._answers
-        self.stresses: Array = self_stresses(own)
+        compliance, alone = own @ self._answers, own @ self._alone
+        in_series = self.compliance[self.moving]
+        self.stresses: Array = np.zeros((n_own, 0)) if np.all(in_series) else self_stresses(own)
         self.tie = TIE * float(self.springs.max(initial=0.0))
         compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
-        inverse = _inverse(0.5 * (compliance + compliance.T))
-        self.stiffness: Array = inverse - np.diag(self.springs)
-        given = self.given[self.moving]
-        self.load: Array = inverse @ (own @ self._alone) + self.stiffness @ given
+        if in_series.any():
+            self.stiffness, load = self._in_series(compliance, alone, in_series)
+        else:
+            inverse = _inverse(0.5 * (compliance + compliance.T))
+            self.stiffness, load = inverse - np.diag(self.springs), inverse @ alone
+        self.load: Array = load + self.stiffness @ self.given[self.moving]
+
+    def _in_series(self, compliance: Array, alone: Array, more: Array) -> tuple[Array, Array]:
+        """Give S and C^-1 times the free jumps where a jump is longer by `more` times its force.
+
+        With j = C (f + rho j) + a and p = j + c f: (C + (1 - C rho) c) f = (1 - C rho) p - a. This
+        needs no inverse of C, so jumps with something in series may depend on each other.
+        """
+        rigid = np.eye(len(more)) - compliance * self.springs
+        found = np.linalg.solve(compliance + rigid * more, np.column_stack([rigid, alone]))
+        stiffness, load = found[:, : len(more)], found[:, len(more) :]
+        return np.asarray(0.5 * (stiffness + stiffness.T)), np.asarray(load)
 
     def displacement(self, jump: Array, force: Array) -> Array:
         """Give all displacements from those of the contacts, shape (n_dofs, n_instants), scaled.
@@ -121,13 +139,15 @@ class Condensation:
         """
         found = np.empty_like(self._force)
         found[self._fixed] = self._prescribed
-        springs = self.springs[:, None] * (jump - self.given[self.moving])
+        alone = jump - self.compliance[self.moving, None] * force
+        springs = self.springs[:, None] * (alone - self.given[self.moving])
         found[self._free] = self._alone + self._answers @ (force + springs)
         return found
 
-    def jump(self, displacement: Array) -> Array:
-        """Give the jumps of a displacement, shape (n_forces, n_instants)."""
-        return np.asarray(self._jumps @ displacement)
+    def jump(self, displacement: Array, force: Array | None = None) -> Array:
+        """Give the jumps of a displacement under contact forces, shape (n_forces, n_instants)."""
+        found = np.asarray(self._jumps @ displacement)
+        return found if force is None else found + self.compliance[:, None] * force
 
     def unbalanced(self, displacement: Array, force: Array) -> Array:
         """Give the forces out of balance where nothing is prescribed, (n_free, n_instants).
@@ -163,21 +183,14 @@ def jumps(problem: Problem) -> sparse.csr_array:
     rows, columns, values, first = [], [], [], 0
     for law in problem.rubbing.values():
         points, pairs = np.unique(law.points, return_index=True)
-        for above, below in zip(components(law), _below(law), strict=True):
-            for side, value in ((above, 1.0), (below, -1.0)):
-                if side is not None:
-                    rows.append(first + points)
-                    columns.append(problem.row_dofs[side[pairs]])
-                    values.append(np.full(len(points), value))
+        for component in law.components:
+            for side, value in zip(component.sides, (1.0, -1.0), strict=False):
+                rows.append(first + points)
+                columns.append(problem.row_dofs[side[pairs]])
+                values.append(np.full(len(points), value))
             first += len(law.positions)
     entries = np.concatenate(rows), np.concatenate(columns)
     return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))
-
-
-def _below(law: Friction | Contact) -> tuple[Indices | None, ...]:
-    if isinstance(law, Friction):
-        return (law.below,)
-    return law.below or (None, None)
 
 
 def _separated(load: Array) -> tuple[Array, Array]:

@@ -21,12 +21,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.discrete.contact_fields import OPEN
-from solver.discrete.problem import Array, Problem, components
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.laws import OPEN
+from solver.laws.play import play
+from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.residual import unbalanced_of
 from solver.reference.solution import Interrupted, Reference
-from solver.reference.states import HELD, Response, Rules, Sides, States, rules_of
+from solver.reference.states import HELD, Response, Sides, States, rules_of
 from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
@@ -125,8 +128,9 @@ class IncrementalContact:
             reached[instant] = True
         displacement = condensed.displacement(jump, force)
         jumps = condensed.jump(displacement)
-        jumps[condensed.moving] = jump
         forces = _all_forces(condensed, rules, jumps, force)
+        jumps = condensed.jump(displacement, forces)
+        jumps[condensed.moving] = jump
         unbalanced = unbalanced_of(condensed, rules, displacement, forces)
         blurred = condensed.rounding(displacement)
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
@@ -149,7 +153,8 @@ class IncrementalContact:
 
 def jumps_in(problem: Problem) -> int:
     """Give the number of components of contact that `IncrementalContact` condenses."""
-    return sum(len(rows) for law in problem.rubbing.values() for rows in components(law))
+    laws = problem.rubbing.values()
+    return sum(len(component.above) for law in laws for component in law.components)
 
 
 class _Solved(NamedTuple):
@@ -194,7 +199,8 @@ class _Newton:
                 force = condensed.stiffness @ self._position - load + self._self_stress
                 return self._position, force
             self._states, jump, force = solved
-            apart = stresses.T @ (jump - condensed.given[condensed.moving, instant])
+            alone = jump - condensed.compliance[condensed.moving] * force
+            apart = stresses.T @ (alone - condensed.given[condensed.moving, instant])
             pull = condensed.tie * (stresses @ apart)
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._largest:
                 break
@@ -268,8 +274,13 @@ def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Arra
     found[condensed.moving] = force
     given = ~rules.normal
     given[condensed.moving] = False
+    bound = rules.bounds(found)
     slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
-    found[given] = (-rules.bounds(found) * slip)[given]
+    found[given] = (-bound * slip)[given]
+    sprung = np.flatnonzero(given & (rules.compliance > 0.0))
+    if len(sprung):
+        soft, jump = rules.compliance[sprung, None], jumps[sprung]
+        found[sprung] = (play(jump, bound[sprung] * soft) - jump) / soft
     return found
 
 

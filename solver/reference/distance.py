@@ -1,4 +1,4 @@
-"""Errors: distances to a reference (theory.md, 4)."""
+"""Errors: distances to a reference (solver/README.md, 4)."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.discrete.problem import Indices, Problem
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
 from solver.laws import Neumann
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.condensation import jumps
 from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 
-Array = NDArray[np.float64]
 ROUNDING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
 
@@ -107,7 +107,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
     Where no forces are given, those that move what is prescribed are the load; and where these are
     but rounding, because nothing resists, those that such displacements would cost elements.
     """
-    forces = [law.force for law in problem.of_law(Neumann) if isinstance(law, Neumann)]
+    forces = [law.force for law in problem.of_law(Neumann)]
     forces += [part.body_force for part in problem.substructures if part.body_force is not None]
     if not any(force.any() for force in forces):
         dofs, prescribed = problem.prescribed

@@ -22,7 +22,7 @@ def fingerprint(problem: Problem) -> bytes:
     """
     digest = blake2b(digest_size=16)
     for name, law in problem.rubbing.items():
-        digest.update(f"{name} {type(law).__name__} {law.below is None}".encode())
+        digest.update(f"{name} {law.opens} {law.is_on_support}".encode())
     for array in _arrays(problem):
         digest.update(f"{array.dtype.str} {array.shape}".encode())
         digest.update(np.ascontiguousarray(array).data)
@@ -36,7 +36,14 @@ def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
     yield problem.positions
     yield external_force(problem)
     yield from problem.prescribed
-    yield from (rules.normal, rules.gap, rules.partner, rules.friction, rules.bound)
+    yield from (
+        rules.normal,
+        rules.gap,
+        rules.partner,
+        rules.friction,
+        rules.bound,
+        rules.compliance,
+    )
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         matrix.sort_indices()
         yield from (matrix.indptr, matrix.indices, matrix.data)

@@ -1,6 +1,7 @@
 """The incremental reference: friction solved instant by instant, on the assembled structure.
 
-Over one instant the displacement increment v minimises a strictly convex function (theory.md, 6),
+Over one instant the displacement increment v minimises a strictly convex function
+(solver/README.md, 6),
 
     phi(v) = 1/2 v' K v - g' v + sum r |v|,
 
@@ -19,7 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.discrete.problem import Array, Problem
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.band import Band, pairs
 from solver.reference.solution import Interrupted, Reference, States
@@ -30,7 +32,7 @@ ROUNDING = 32.0 * float(np.finfo(float).eps)
 
 
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve instant by instant (theory.md, 6), as `IncrementalRod` does."""
+    """Solve instant by instant (solver/README.md, 6), as `IncrementalRod` does."""
     start = time.perf_counter()
     found = IncrementalRod(problem).march(stop=stop)
     return replace(found, seconds=time.perf_counter() - start)
@@ -136,7 +138,7 @@ class _Structure:
 
     def __init__(self, problem: Problem) -> None:
         law = problem.friction
-        rubbing = problem.row_dofs[law.rows]
+        rubbing = problem.row_dofs[law.tangent.above]
         self.point_dofs = np.zeros(len(law.positions), dtype=np.intp)
         self.point_dofs[law.points] = rubbing
         self.band = Band(assembled_stiffness(problem))

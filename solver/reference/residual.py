@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
+from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
-from solver.reference.states import Rules
 
 
 def unbalanced_of(
@@ -20,7 +20,7 @@ def unbalanced_of(
     r of the pair makes a force of a length; the conditions hold if and only if both distances
     vanish.
     """
-    jumps = condensed.jump(displacement)
+    jumps = condensed.jump(displacement, forces)
     unit = np.zeros((len(jumps), 1))
     unit[condensed.moving, 0] = condensed.springs
     unit[unit == 0.0] = 1.0

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 
 NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""

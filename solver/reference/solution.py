@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
-from solver.discrete.problem import Array, Problem
+from solver.discrete.problem import Problem
 
 States = NDArray[np.int8]
 

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import lapack
 
-from solver.discrete.contact_fields import mean_by_point
-from solver.discrete.problem import Array, Indices, Problem
-from solver.laws import Friction
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
+from solver.laws.rules import Rules, stacked
 
 States = NDArray[np.int8]
 HELD = 0
@@ -26,66 +26,15 @@ ROUNDING = 1e-14
 """The same as a share of the largest stiffness of all jumps."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rules:
-    """What the jumps obey, stacked; shape (n,) each.
-
-    Attributes
-    ----------
-    normal
-        Whether the jump is a normal one.
-    gap
-        Opening where it vanishes, scaled; 0 of tangential ones.
-    partner
-        Place of the normal jump whose force carries the friction; the own place without one.
-    friction
-        Coefficient mu, 0 of normal jumps.
-    bound
-        Friction force r that needs no normal force, scaled; 0 of normal jumps.
-    """
-
-    normal: NDArray[np.bool_]
-    gap: Array
-    partner: Indices
-    friction: Array
-    bound: Array
-
-    @property
-    def smooth(self) -> NDArray[np.bool_]:
-        """Tangential jumps without friction."""
-        return np.asarray(~self.normal & (self.friction == 0.0) & (self.bound == 0.0))
-
-    def kept(self, moving: Indices) -> Rules:
-        """Keep the unknown jumps; friction needs its normal force among them."""
-        place = np.full(len(self.gap), -1)
-        place[moving] = np.arange(len(moving))
-        partner = place[self.partner[moving]]
-        alone = partner < 0
-        partner[alone] = np.flatnonzero(alone)
-        friction = self.friction[moving] * ~alone
-        return Rules(self.normal[moving], self.gap[moving], partner, friction, self.bound[moving])
-
-    def bounds(self, force: Array) -> Array:
-        """Give the largest friction force, r + mu f_n, of the same shape as the forces."""
-        shape = -1, *[1] * (force.ndim - 1)
-        carried = self.friction.reshape(shape) * force[self.partner]
-        return np.asarray(self.bound.reshape(shape) + np.maximum(carried, 0.0))
-
-
 def rules_of(problem: Problem) -> Rules:
     """Stack the laws of all interfaces with friction, point by point."""
-    parts, first = [], 0
+    found: list[Rules] = []
+    first = 0
     for law in problem.rubbing.values():
-        size = len(law.positions)
-        none, own = np.zeros(size), first + np.arange(size)
-        if isinstance(law, Friction):
-            parts.append((none, none, own, none, law.by_point(law.bound)))
-        else:
-            parts.append((none + 1.0, mean_by_point(law, law.gap), own, none, none))
-            parts.append((none, none, own, mean_by_point(law, law.friction), none))
-        first += size * (1 if isinstance(law, Friction) else 2)
-    normal, gap, partner, friction, bound = map(np.concatenate, zip(*parts, strict=True))
-    return Rules(normal > 0.0, gap, partner.astype(np.intp), friction, bound)
+        own = law.rules(first)
+        found += own
+        first += len(own) * len(law.positions)
+    return stacked(found)
 
 
 @dataclass(frozen=True, eq=False)

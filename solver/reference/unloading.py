@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.discrete.contact_fields import OPEN
-from solver.discrete.problem import Array
-from solver.reference.states import HELD, Response, Rules, Sides, States
+from solver.arrays import Array
+from solver.laws import OPEN
+from solver.laws.rules import Rules
+from solver.reference.states import HELD, Response, Sides, States
 
 CHANGES = 30
 """Changes of state for each jump, at most; 11 are the most seen, with mu = 10."""

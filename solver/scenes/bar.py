@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.loads import PRESETS, Array, instants_of, interpolate, load_path
+from solver.loads import PRESETS, instants_of, interpolate, load_path
 from solver.settings import Settings
 
 PROFILES = {

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import SettingError, choice, curve, quantity, redefined
-from solver.loads import PRESETS, Array, interpolate
+from solver.loads import PRESETS, interpolate
 from solver.scenes.equilibrium import loss_of_equilibrium
 from solver.scenes.sides import SideSettings
 from solver.scenes.stack import Given, Side, Stack, Support

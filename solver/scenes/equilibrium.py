@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.loads import Array
+from solver.arrays import Array
 from solver.scenes.stack import Given, Stack
 
 SLACK = 1e-9

@@ -7,8 +7,9 @@ import math
 import param
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, quantity, redefined
-from solver.loads import Array, instants_of, load_path
+from solver.loads import instants_of, load_path
 from solver.settings import Settings
 
 LARGEST_FIELD = 50_000_000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.loads import Array
+from solver.arrays import Array
 from solver.scenes.equilibrium import is_held_up, is_upright, wrench
 from solver.scenes.stack import Stack
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solver.loads import Array
+from solver.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Parallel elastic wires that rub on their neighbours, one of them broken (theory.md, 6)."""
+"""Parallel elastic wires that rub on their neighbours, one of them broken (solver/README.md, 6)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.loads import PULLS, Array, instants_of, load_path
+from solver.loads import PULLS, instants_of, load_path
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000

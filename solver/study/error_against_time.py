@@ -16,11 +16,11 @@ from typing import Any, Literal
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.discrete import discretise
-from solver.discrete.problem import Array, Problem
+from solver.discrete.problem import Problem
 from solver.latin import judged
-from solver.laws import Friction
-from solver.reference.choice import reference_of
+from solver.reference.choice import is_alone, reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
@@ -204,8 +204,7 @@ def is_quadratic(problem: Problem) -> bool:
 
     Unilateral contact with friction is no quadratic programme.
     """
-    laws = list(problem.rubbing.values())
-    return len(laws) == 1 and isinstance(laws[0], Friction) and laws[0].below is None
+    return is_alone(problem)
 
 
 def _latin_entry(

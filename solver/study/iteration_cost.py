@@ -10,11 +10,13 @@ from itertools import islice
 
 import numpy as np
 
+from solver.arrays import space_time
 from solver.discrete import discretise
-from solver.discrete.problem import Problem, space_time
+from solver.discrete.problem import Problem
 from solver.latin import StopRules, iterations, solve
+from solver.latin.clock import Clock
 from solver.latin.direction import search_direction
-from solver.latin.iterations import Clock, Engine
+from solver.latin.iterations import Method
 from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
 from solver.latin.response import DenseResponse
@@ -96,7 +98,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
 
 def _floor(problem: Problem, stage: FullLinearStage) -> Callable[[], None]:
     law = problem.friction
-    friction = np.zeros((4, problem.n_instants, len(law.rows)))
+    friction = np.zeros((4, problem.n_instants, len(law.points)))
     low, high, before, after = friction
     rows = np.zeros((3, problem.n_instants, problem.n_rows))
     one, two, three = rows
@@ -176,9 +178,10 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
     number = len(solve(problem, settings, watch=False).records)
 
     def bare() -> None:
-        engine, clock = Engine(problem, settings, None), Clock(0.0)
+        cycle = Method(problem, settings, None, Clock()).cycle
         for count in range(1, number + 1):
-            engine.step(count, clock)
+            cycle.local_stage(count)
+            cycle.linear_stage(count)
 
     def kept() -> None:
         for _ in islice(iterations(problem, settings), number):

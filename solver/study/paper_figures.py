@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, front_decay
 from solver.reference.distance import Fields
@@ -270,7 +270,7 @@ def figure_8(runs: PaperRuns) -> PaperFigure:
 def _displacement_modes(iterate: Iterate) -> Array:
     """Give the PGD's displacement modes of the last substructure on its friction rows."""
     part = iterate.problem.substructures[-1]
-    rubs = np.isin(part.rows, iterate.problem.friction.rows)
+    rubs = np.isin(part.rows, iterate.problem.friction.tangent.above)
     found: Array = iterate.bases[-1].displacement_modes[rubs]
     return found
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 from solver.latin import Record
 from solver.reduction.svd import Decomposition, against_front
 from solver.reference.distance import Fields

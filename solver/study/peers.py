@@ -29,7 +29,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from solver.discrete.problem import Array, Problem, space_time
+from solver.arrays import Array, space_time
+from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 
 Solve = Callable[[Array, Array], Array]
@@ -94,7 +95,7 @@ def solve_by_peer(problem: Problem, peer: Peer, tolerance: float) -> PeerFields:
     """
     start = time.perf_counter()
     law = problem.friction
-    rubbing = problem.row_dofs[law.rows]
+    rubbing = problem.row_dofs[law.tangent.above]
     bound = np.zeros(problem.n_dofs)
     np.add.at(bound, rubbing, law.bound)
     fixed, prescribed = problem.prescribed

@@ -13,14 +13,15 @@ import numpy as np
 from scipy import sparse
 from scipy.fft import idct
 
+from solver.arrays import Array, space_time
 from solver.discrete import Problem, discretise
-from solver.discrete.problem import Array, Elasticity, Scales, Substructure, space_time
+from solver.discrete.problem import Elasticity, Scales, Substructure
 from solver.latin import iterations
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
-from solver.laws import Friction
+from solver.laws import Component, Friction
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 
@@ -74,7 +75,13 @@ def half_plane(points: int, instants: int) -> Problem:
     dense = shapes.T * (1.0 + np.pi * np.arange(points)) @ shapes
     rows = np.arange(points)
     positions = (rows + 0.5) / points
-    law = Friction(rows, rows, positions, np.full(points, 1.0 / points), np.full(points, 1e-3))
+    law = Friction.of_known_bound(
+        Component(rows),
+        np.full(points, 1e-3),
+        points=rows,
+        positions=positions,
+        weights=np.full(points, 1.0 / points),
+    )
     elasticity = Elasticity(sparse.csr_array(dense), rows, np.full(points, float(points)))
     return Problem(
         substructures=(Substructure(elasticity, rows, rows, None),),

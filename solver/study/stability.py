@@ -13,9 +13,10 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import eigvals_banded, eigvalsh
 
+from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.discrete import discretise
-from solver.discrete.problem import Array, Problem
+from solver.discrete.problem import Problem
 from solver.latin import Ending, Solution, iterations, solve
 from solver.latin.direction import search_direction
 from solver.reference.assembly import assembled_stiffness

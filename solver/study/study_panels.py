@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solver.discrete.problem import Array
+from solver.arrays import Array
 from solver.study.error_against_time import INCREMENTAL, Course, Study
 from solver.study.figure_data import HUES, Axis, Curve, Line, Panel
 from solver.study.growth import MEASURED, Growth

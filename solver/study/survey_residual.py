@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from solver.discrete.problem import Array, Problem
+from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.condensation import jumps
 from solver.reference.distance import Fields, determinate_forces

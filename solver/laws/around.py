@@ -1,0 +1,187 @@
+"""What is around an interface with friction, and the search direction k that suits it.
+
+Small k converges fast globally and slowly locally, large k the reverse (solver/README.md, 5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.laws.interface import Component
+
+FRICTION_FACTOR = 2.0
+"""k of a friction point over the geometric mean of the two stiffnesses in play, ES/s and ES/h.
+Measured with Anderson acceleration and a nested start, sine and decaying cycles of 300 to 2400 N:
+1 % of friction force within 23 iterations with 1.5 and 2, 19 with 3, 28 with 1, 43 with 4; and
+1e-6 the later the larger it is."""
+CONTACT_STIFFNESS = 7.0
+"""k per area of a contact in the plane, times its length over E. With both, 1 % of the contact
+force takes 8 to 14 iterations, 7 to 11 with Anderson acceleration, and differs by at most two from
+4 to 64 substructures: pressed flat, on a parabola, tilted, and a quarter as high; 48 and 96
+elements along (measured). Twice as much takes up to 20."""
+RESOLVED, FINER = 96.0, 1.0 / 3.0
+"""Elements along a support from which its k grows with their number, and to which power. What is
+local then is stiffer than the body as a whole, so a constant k finds it ever later. Block of
+768 x 384 elements on a parabola: 1 % of the contact force takes 14 iterations, 1e-4 takes 52; 13
+and 104 with a constant k, 18 and 47 with three times as much; flat, 17 and 53, instead of 29 and
+62. With the power 1/2, of the geometric mean of global and local stiffness, 1 % takes 21 if k grows
+from 48 elements on; and 96 x 96 need more than 15 without acceleration (measured). Layers, where k
+
+from solver.arrays import Array
+from solver.laws.interface import Component
+is of their sliding, gain nothing."""
+SLIDING_BETWEEN_BODIES = 1.0 / 7.0
+"""The tangential k between two bodies over the normal one: layers slide on each other along their
+length. Measured as `SLENDER` is: at most 45 iterations; 76 with half as much, 67 with twice."""
+SLENDER = 40.0
+"""How many times as long as thick two bodies in contact may be before k must be smaller. Measured
+on 2 to 10 layers, 10 to 1000 times as long as thick, friction 0.3 and 1, one to four substructures
+along and one or two up, pressures that let them slide: 1 % of the contact force takes 10 to 45
+iterations. At most 54 with half of it, 46 with twice, 82 with four times; layers 1000 times as long
+as thick take more than 150 with no such limit."""
+
+
+class Surface(Protocol):
+    """What k depends on of an interface; attributes as of `Friction`."""
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        """All components, the tangential one last."""
+
+    @property
+    def positions(self) -> Array:
+        """Of the points, shape (n_points,), m."""
+
+    @property
+    def weights(self) -> Array:
+        """Of the pairs, shape (n_pairs,), m or m^2."""
+
+    @property
+    def is_on_support(self) -> bool:
+        """Whether what lies below is rigid."""
+
+
+class Around(Protocol):
+    """What is around an interface with friction.
+
+    Attributes
+    ----------
+    elsewhere
+        Factor on the paper's k of all rows that do not rub.
+    on_cuts
+        The same of those on cuts, beside it.
+    """
+
+    elsewhere: ClassVar[float]
+    on_cuts: ClassVar[float]
+
+    def choose(self, law: Surface, k: Array, parts: float) -> None:
+        """Write the k of an interface into that of all rows, shape (n_rows,).
+
+        Parameters
+        ----------
+        law
+            The interface.
+        k
+            Scaled, shape (n_rows,).
+        parts
+            Over the share of one interface that slides, the number of interfaces.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class Rod:
+    """A rod along the interface.
+
+    What is global is the length s that is expected to slide, what is local the distance h of its
+    points. So k of a point is `FRICTION_FACTOR` times the geometric mean of ES/s and ES/h, for
+    which neither end is slower than the other, and a row's share of it is by tributary length, so
+    that cuts change nothing. Of the n contacts of a strand only those of the broken wire slide far:
+    s is a mean over all of them, and k grows by sqrt(n). For 1 % of the friction force that takes
+    31 iterations instead of 67 with 10 wires, 65 instead of 109 with 20, 147 instead of 191 with
+    40; half and twice as much k takes 49 and 49 with 10, 79 and 75 with 20 (measured, the middle
+    one broken, 40 elements). Where the section varies, ES is that around the point: with ten
+    thousand times more at the load than at the clamp, 1 % of friction force takes 45 iterations,
+    and more than 1500 with the mean.
+
+    Attributes
+    ----------
+    modulus
+        Stiffness of what rubs around each pair, shape (n_pairs,), scaled; None where it is 1.
+    """
+
+    modulus: Array | None = None
+
+    elsewhere: ClassVar[float] = 1.0
+    on_cuts: ClassVar[float] = 10.0
+    """Measured with 1 to 50 substructures: 1 % of friction force takes 16 to 17 iterations with 10,
+    16 to 20 with 3, 16 to 19 with 100, 16 to 31 with 1."""
+
+    def choose(self, law: Surface, k: Array, parts: float) -> None:
+        """Write the k of an interface, as `Around` says."""
+        length = law.weights.sum()
+        spacing = length / max(len(law.positions) - 1, 1)
+        stiffness = FRICTION_FACTOR * np.sqrt(length / spacing * parts)
+        for rows in law.components[-1].sides:
+            k[rows] = stiffness * law.weights / spacing
+            if self.modulus is not None:
+                k[rows] *= self.modulus
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Bodies in the plane, above and below: k is that of a body as a whole.
+
+    A smaller k on cuts along slender substructures is no better, where the macro basis grows with
+    their length (measured).
+
+    Attributes
+    ----------
+    moduli
+        Young's moduli above and below, scaled; infinite for a rigid support.
+    depth
+        Across the interface, m; infinite where nothing limits it.
+    """
+
+    moduli: tuple[float, float] = (1.0, float("inf"))
+    depth: float = float("inf")
+
+    elsewhere: ClassVar[float] = 8.0
+    on_cuts: ClassVar[float] = 1.0
+
+    def choose(self, law: Surface, k: Array, parts: float) -> None:
+        """Write the k of an interface, as `Around` says.
+
+        A thin body on a rigid support is squeezed, with the stiffness E / d of its depth d: 1 % of
+        the contact force takes 9 and 14 iterations where it is 100 and 1000 times as long as high,
+        15 and 67 without (measured).
+        """
+        length = law.weights.sum()
+        if law.is_on_support:
+            finer = max((len(law.positions) - 1) / RESOLVED, 1.0) ** FINER
+            pressing = sliding = max(CONTACT_STIFFNESS * finer, length / self.depth)
+        else:
+            pressing = CONTACT_STIFFNESS * self._slender(law)
+            sliding = SLIDING_BETWEEN_BODIES * pressing
+        share = law.weights / length
+        *normal, tangent = law.components
+        for component, stiffness in ((tangent, sliding), *((one, pressing) for one in normal)):
+            for rows, modulus in zip(component.sides, self.moduli, strict=False):
+                k[rows] = modulus * stiffness * share
+
+    def _slender(self, law: Surface) -> float:
+        """Give the factor on k between two bodies that are thin beside their length.
+
+        Layers slide like rods: what is global is the stiffness E d / l^2 per area of a rod of depth
+        d along the contact's length l, what is local E d / (l h) with the distance h of its points,
+        or with d where that is larger. Their geometric mean is E / l times the root of
+        d / l min(1, d / h). Bending is softer still, but the macro forces see to its long waves.
+        """
+        length = float(law.weights.sum())
+        spacing = length / max(len(law.positions) - 1, 1)
+        resolved = min(self.depth / spacing, 1.0)
+        return float(np.sqrt(min(SLENDER * self.depth / length * resolved, 1.0)))

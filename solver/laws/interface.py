@@ -1,0 +1,159 @@
+"""What every interface is asked, whatever its law."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol, Self
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array, Indices, as_slice
+
+
+class Component(NamedTuple):
+    """Rows of one component of the jump, shape (n_pairs,) each.
+
+    Attributes
+    ----------
+    above
+        Of the body above.
+    below
+        Of the body below, each opposite its partner; None on a rigid support.
+    """
+
+    above: Indices
+    below: Indices | None = None
+
+    def jump(self, field: Array) -> Array:
+        """Give a row field above minus that below, shape (n_pairs, ...)."""
+        found: Array = field[self.above]
+        return found if self.below is None else found - field[self.below]
+
+    @property
+    def sides(self) -> tuple[Indices, ...]:
+        """Rows of both sides, or of the one there is."""
+        return (self.above,) if self.below is None else (self.above, self.below)
+
+
+class MacroPart(NamedTuple):
+    """Rows whose macro forces are in equilibrium (paper, eq. 1).
+
+    Attributes
+    ----------
+    rows
+        Of both sides, shape (n,).
+    basis
+        Shape (n, n_macro), dense or sparse.
+    load
+        Macro force from outside, shape (n_macro, n_instants); None is zero.
+    """
+
+    rows: Indices
+    basis: Array | sparse.coo_array
+    load: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """Where a local stage evaluates the laws: some rows, at some instants.
+
+    Attributes
+    ----------
+    place
+        Where every row of the problem stands in the fields of the region, shape (n_rows,); -1
+        where it is left out.
+    k
+        Search direction of all rows, shape (n_rows,).
+    instants
+        Shape (n_instants,).
+    """
+
+    place: Indices
+    k: Array
+    instants: Indices
+
+    def of(self, rows: Indices) -> slice | Indices:
+        """Give where rows stand in the region's fields."""
+        return as_slice(self.place[rows])
+
+
+class Rule(Protocol):
+    """A law that is ready for one region: it obeys in the local stage (paper, problem 2.1)."""
+
+    def __call__(self, incoming: Array, displacement: Array, some: slice) -> None:
+        """Write W^ of the interface's rows.
+
+        Parameters
+        ----------
+        incoming
+            z = W - F/k of the region's rows, shape (n_rows, n) of n instants.
+        displacement
+            W^, same shape; what is not of the interface stays.
+        some
+            Which instants of the region these are; all of them where the rule remembers.
+        """
+
+
+class Gaps(NamedTuple):
+    """What is missing to continuity and to balance: sums of squares, scaled."""
+
+    displacement: float = 0.0
+    force: float = 0.0
+
+
+class Interface(ABC):
+    """An interface of substructures with each other or with the outside.
+
+    Attributes
+    ----------
+    rows
+        All its rows.
+    remembers
+        Whether its law ties the instants to each other.
+    """
+
+    rows: Indices
+    remembers = False
+
+    @classmethod
+    def together(cls, laws: Sequence[Self]) -> list[Self]:
+        """Join interfaces of one law that a local stage may treat as one: points know none."""
+        return list(laws)
+
+    @abstractmethod
+    def rule(self, region: Region) -> Rule:
+        """Prepare the law for a region."""
+
+    @abstractmethod
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Give by how much W and F of all rows miss continuity and balance, without k.
+
+        Parameters
+        ----------
+        displacement, force
+            Shape (n_rows, n_instants), scaled.
+        noise
+            What rounding makes of either; less is nothing.
+        """
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Give what is in equilibrium in the coarse problem."""
+        return iter(())
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything is given here that is not zero: load, displacement, overlap."""
+        return False
+
+
+def beyond(field: Array, noise: float) -> Array:
+    """Give a field with what may be rounding taken as zero."""
+    return np.where(np.abs(field) > noise, field, 0.0)
+
+
+def squared(field: Array) -> float:
+    """Give the sum of the squares of a field."""
+    return float(np.vdot(field, field))

@@ -1,0 +1,75 @@
+"""What jumps of the displacement obey at one instant, as incremental solvers read it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array, Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Rules:
+    """What the jumps obey, stacked; shape (n,) each.
+
+    Attributes
+    ----------
+    normal
+        Whether the jump is a normal one.
+    gap
+        Opening where it vanishes, scaled; 0 of tangential ones.
+    partner
+        Place of the normal jump whose force carries the friction; the own place without one.
+    friction
+        Coefficient mu, 0 of normal jumps.
+    bound
+        Friction force r that needs no normal force, scaled; 0 of normal jumps.
+    compliance
+        Displacement in series with the jump, per force, scaled; 0 of normal jumps. What is said of
+        the jump is then said of the jump and it together.
+    """
+
+    normal: NDArray[np.bool_]
+    gap: Array
+    partner: Indices
+    friction: Array
+    bound: Array
+    compliance: Array
+
+    @property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Tangential jumps without friction."""
+        return np.asarray(~self.normal & (self.friction == 0.0) & (self.bound == 0.0))
+
+    def kept(self, moving: Indices) -> Rules:
+        """Keep the unknown jumps; friction needs its normal force among them."""
+        place = np.full(len(self.gap), -1)
+        place[moving] = np.arange(len(moving))
+        partner = place[self.partner[moving]]
+        alone = partner < 0
+        partner[alone] = np.flatnonzero(alone)
+        friction = self.friction[moving] * ~alone
+        return Rules(
+            self.normal[moving],
+            self.gap[moving],
+            partner,
+            friction,
+            self.bound[moving],
+            self.compliance[moving],
+        )
+
+    def bounds(self, force: Array) -> Array:
+        """Give the largest friction force, r + mu f_n, of the same shape as the forces."""
+        shape = -1, *[1] * (force.ndim - 1)
+        carried = self.friction.reshape(shape) * force[self.partner]
+        return np.asarray(self.bound.reshape(shape) + np.maximum(carried, 0.0))
+
+
+def stacked(rules: Sequence[Rules]) -> Rules:
+    """Put the rules of all components of all interfaces one after the other."""
+    return Rules(
+        *(np.concatenate([getattr(one, name.name) for one in rules]) for name in fields(Rules))
+    )

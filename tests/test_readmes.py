@@ -1,0 +1,106 @@
+"""The papers are in their drawers: what they point to is there, and so is what the code cites."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from solver.cli import main
+
+ROOT = Path(__file__).resolve().parents[1]
+FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"
+MATHEMATICS, MEASUREMENTS = ROOT / "solver" / "README.md", ROOT / "solver" / "study" / "README.md"
+READMES = [FRONT, PAGE, MATHEMATICS, MEASUREMENTS]
+NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
+LONGEST = 150
+"""Lines of the first page."""
+NEVER_THERE = "theory" + ".md"
+SOURCES = [path for folder in ("solver", "app", "tests") for path in (ROOT / folder).rglob("*.py")]
+
+
+def words(path: Path) -> str:
+    """Give a file's text with every line break as one space."""
+    return " ".join(path.read_text(encoding="utf-8").split())
+
+
+def headings(path: Path) -> list[str]:
+    return re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def anchor(heading: str) -> str:
+    """Give a heading as addresses have it."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def paths_in(readme: Path) -> set[str]:
+    """Give what looks like a file of the repository, or a folder in backticks."""
+    text = re.sub(r"https?://\S+|`NAME[^`]*`", "", readme.read_text(encoding="utf-8"))
+    files = re.findall(r"(?<![\w/.])[\w./-]+\.(?:py|md|png|svg|css)\b", text)
+    return {*files, *re.findall(r"`([\w./-]+/)`", text)}
+
+
+def test_the_first_page_is_short() -> None:
+    assert len(FRONT.read_text(encoding="utf-8").splitlines()) <= LONGEST
+
+
+@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+def test_every_path_that_is_named_exists(readme: Path) -> None:
+    gone = [
+        name
+        for name in paths_in(readme)
+        if not any((start / name).exists() for start in (readme.parent, ROOT))
+    ]
+    assert not gone
+
+
+@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+def test_every_link_leads_somewhere(readme: Path) -> None:
+    for target in re.findall(r"\]\(([^)]+)\)", readme.read_text(encoding="utf-8")):
+        if target.startswith("http"):
+            continue
+        name, _, place = target.partition("#")
+        page = (readme.parent / name).resolve() if name else readme
+        assert page.exists(), target
+        assert not place or place in map(anchor, headings(page)), target
+
+
+def test_the_map_names_every_folder_of_the_code() -> None:
+    folders = {f"{path.parent.relative_to(ROOT)}/" for path in SOURCES}
+    assert folders <= paths_in(FRONT)
+
+
+@pytest.mark.parametrize("readme", READMES, ids=NAMES)
+def test_every_command_that_is_named_is_one(
+    readme: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    known = set(re.findall(r"^    (\w+) ", capsys.readouterr().out, re.MULTILINE))
+    assert "run" in known
+    assert set(re.findall(r"python -m solver (\w+)", words(readme))) <= known
+
+
+def test_every_section_that_is_cited_exists() -> None:
+    numbers = {heading.partition(" ")[0].rstrip(".") for heading in headings(MATHEMATICS)}
+    cited = {
+        (path.name, number)
+        for path in SOURCES
+        for number in re.findall(r"solver/README\.md, (\d+(?:\.\d+)*)", words(path))
+    }
+    assert len(cited) > 20
+    assert {number for _, number in cited} <= numbers, sorted(cited)
+
+
+def test_nothing_is_cited_that_is_not_here() -> None:
+    listed = subprocess.run(
+        ["git", "-c", "safe.directory=*", "ls-files"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split("\n")
+    texts = [ROOT / name for name in listed if name and not name.endswith(".png")]
+    assert not [path for path in texts if path.exists() and NEVER_THERE in words(path)]
