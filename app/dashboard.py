@@ -262,9 +262,7 @@ class Dashboard:
             self.session.ask(afresh=True)
 
     def _on_key(self, event: Any) -> None:
-        action = {
-            " ": self.transport.toggle,
-            "s": self.transport.step,
-            "r": self.transport.reset,
-        }[event.new[0]]
+        action = {" ": self.transport.toggle, "s": self.transport.step, "r": self.transport.reset}[
+            event.new[0]
+        ]
         action()

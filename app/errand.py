@@ -21,15 +21,7 @@ WAITING, STARTING = "Waiting for what was asked for before", "Starting"
 
 @dataclass(eq=False)
 class Found:
-    """A report, which grows.
-
-    Attributes
-    ----------
-    sections
-        What there is of it; those that are there stay, but for what their words say.
-    files
-        What the command line would write, by name, once it is whole.
-    """
+    """A report: its sections, which grow, and at its end the files of the command, by name."""
 
     title: str = ""
     sections: Sequence[Section] = ()

@@ -98,9 +98,7 @@ class Report:
 
     def _bar(self) -> list[Any]:
         self._start = pmui.Button(label="Start", icon="play_arrow", size="small", color="primary")
-        self._cancel = pmui.Button(
-            label="Cancel", icon="stop", size="small", variant="outlined", visible=False
-        )
+        self._cancel = pmui.Button(label="Cancel", icon="stop", size="small", variant="outlined")
         self._start.on_click(lambda event: self._on_start())
         self._cancel.on_click(lambda event: self._on_cancel())
         parts = self._start, self._cancel, *self._choices(), self._past
@@ -206,10 +204,6 @@ def downloads(files: Mapping[str, bytes]) -> list[Any]:
 def progress(errand: Errand) -> str:
     """Say how far a report is, or why it came to nothing (HTML)."""
     if errand.is_busy:
-        share = f"{100.0 * errand.share:.0f}"
-        bar = (
-            f'<span class="bar" role="progressbar" aria-valuenow="{share}">'
-            f'<i style="width: {share}%"></i></span>'
-        )
+        bar = f'<progress value="{errand.share:.3f}"></progress>'
         return f"{bar} {escape(errand.doing)} <small>({escape(errand.title)})</small>"
     return f"<b>{escape(errand.notice)}</b>" if errand.notice else ""

@@ -30,7 +30,6 @@ def overlay(panel: Panel) -> hv.Overlay:
     return hv.Overlay([part for curve in panel.curves for part in _drawn(panel, curve)]).opts(
         responsive=True,
         height=340,
-        min_width=280,
         title=panel.title,
         logx=panel.x.logarithmic,
         logy=panel.y.logarithmic,

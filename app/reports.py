@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from html import escape
 from typing import Any
@@ -10,9 +9,10 @@ from weakref import WeakKeyDictionary
 
 import panel_material_ui as pmui
 
-from app.errand import Errand, Found
+from app.errand import Found
 from app.labels import label_of
 from app.report import Report
+from app.session import Session
 from app.worker.shown import has_reference
 from app.worker.studies import figures_of_the_paper, stability_of, study_of
 from solver.settings import Settings
@@ -71,12 +71,10 @@ class StudyReport(Report):
 
     Parameters
     ----------
-    errand, style
+    session
+        Has it made, with its settings.
+    style
         As for `Report`.
-    settings
-        Gives the present settings.
-    crowd
-        Gives the most runs of other pages that were at work during the last study.
     """
 
     title = "Error against run time"
@@ -86,12 +84,9 @@ class StudyReport(Report):
         "page stands still while they are timed."
     )
 
-    def __init__(
-        self, errand: Errand, style: str, settings: Callable[[], Settings], crowd: Callable[[], int]
-    ) -> None:
-        super().__init__(errand, style)
-        self._settings = settings
-        self._crowd = crowd
+    def __init__(self, session: Session, style: str) -> None:
+        super().__init__(session.study, style)
+        self._session = session
         self._crowds: WeakKeyDictionary[Found, int] = WeakKeyDictionary()
 
     def _choices(self) -> list[Any]:
@@ -112,16 +107,16 @@ class StudyReport(Report):
         return [self._repeats, self._growth]
 
     def _ask(self) -> None:
-        settings, repeats = self._settings(), int(self._repeats.value)
+        settings, repeats = self._session.wanted, int(self._repeats.value)
         sizes = bool(self._growth.value)
         work = partial(study_of, settings.scene, settings.values(), repeats, sizes)
         self._errand.ask(title_of(settings), work)
 
     def _refusal(self) -> str:
-        return "" if has_reference(self._settings()) else NO_REFERENCE
+        return "" if has_reference(self._session.wanted) else NO_REFERENCE
 
     def _title(self, found: Found) -> str:
-        crowd = self._crowds.setdefault(found, self._crowd())
+        crowd = self._crowds.setdefault(found, self._session.crowd)
         return f"<h2>Study: {escape(found.title)}</h2><p>{company(crowd)}</p>"
 
 

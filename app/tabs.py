@@ -60,9 +60,7 @@ class Tabs:
         self._changed = changed
         self._beside: dict[str, Report] = {
             "Figures": PaperFigures(session.figures, style),
-            "Study": StudyReport(
-                session.study, style, lambda: session.wanted, lambda: session.crowd
-            ),
+            "Study": StudyReport(session, style),
             "Stability": StabilityReport(session.stability, style),
         }
         self.bar = pmui.RadioButtonGroup(

@@ -13,7 +13,8 @@ from concurrent.futures import Future
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from jobs import count_to, refuse, sleep, vanish
@@ -352,7 +353,8 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
 def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
     for layers, refused in ((3, False), (20, True)):
         settings = LayersSettings.checked({"layers": layers, "instants": 11})
-        report = StudyReport(errand, "", lambda chosen=settings: chosen, lambda: 0)
+        page = SimpleNamespace(study=errand, wanted=settings, crowd=0)
+        report = StudyReport(cast(Session, page), "")
         report.open()
         assert report._start.disabled == refused
         assert ("would take too long here" in report._progress.object) == refused

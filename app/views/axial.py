@@ -66,9 +66,4 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
     return (*keys, *((Key(GREEN, "band", "closed form"),) if is_exact else ()))
 
 
-VIEW = View(
-    "Force in the wires",
-    Plot("Position x (m)", "Axial force (N)"),
-    draw,
-    applies,
-)
+VIEW = View("Force in the wires", Plot("Position x (m)", "Axial force (N)"), draw, applies)

@@ -58,9 +58,4 @@ def _before(scene: Scene, factor: float) -> Curve | None:
     return Curve(before.stand.positions, found[:, instant] / factor, SKY, 2)
 
 
-VIEW = View(
-    "Friction force",
-    Plot("Position x (m)", "Friction force (N/m)"),
-    draw,
-    applies,
-)
+VIEW = View("Friction force", Plot("Position x (m)", "Friction force (N/m)"), draw, applies)

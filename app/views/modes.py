@@ -85,8 +85,5 @@ SPACE_MODES = View(
     applies_in_space,
 )
 TIME_FUNCTIONS = View(
-    "PGD time functions",
-    Plot("Time t (s)", "Time function / largest"),
-    draw_time,
-    applies_in_time,
+    "PGD time functions", Plot("Time t (s)", "Time function / largest"), draw_time, applies_in_time
 )

@@ -51,10 +51,7 @@ def _step(axis: np.ndarray) -> float:
 VIEW = View(
     "Stick and slip",
     Plot(
-        "Position x (m)",
-        "Time t (s)",
-        palette=(BACKWARD, STICK, FORWARD, OPEN),
-        chooses="instant",
+        "Position x (m)", "Time t (s)", palette=(BACKWARD, STICK, FORWARD, OPEN), chooses="instant"
     ),
     draw,
 )
