@@ -211,7 +211,7 @@ class Dashboard:
             self._plots.styles = DIMMED if is_dimmed else CLEAR
 
     def _offer_looks(self) -> None:
-        bodies = any(view.watches == "mesh" for view in self._shown)
+        bodies = any(view.plot.equal for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
 
     def _pass_on(self, blocks: list[bytes]) -> None:
@@ -262,9 +262,7 @@ class Dashboard:
             self.session.ask(afresh=True)
 
     def _on_key(self, event: Any) -> None:
-        action = {
-            " ": self.transport.toggle,
-            "s": self.transport.step,
-            "r": self.transport.reset,
-        }[event.new[0]]
+        action = {" ": self.transport.toggle, "s": self.transport.step, "r": self.transport.reset}[
+            event.new[0]
+        ]
         action()

@@ -1,121 +1,127 @@
-"""A long job that a page has asked for: how far it is, and what came of those before."""
+"""A long report that a page has asked for: how far it is, and what came of those before."""
 
 from __future__ import annotations
 
-import threading
+import pickle
 from collections import deque
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from app.worker.bench import Bench
-from app.worker.job import Broke, Doing, Done, Job, Part, Said, Started, Work
+from app.worker.desk import PROGRESS, SECTIONS, files, said
+from app.worker.studies import Work
+from solver.study.page import Section
 
 KEPT = 6
 WAITING, STARTING = "Waiting for what was asked for before", "Starting"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Found:
-    """A result with what it is called."""
+    """A report: its sections, which grow, and at its end the files of the command, by name."""
 
-    title: str
-    result: Any
+    title: str = ""
+    sections: Sequence[Section] = ()
+    files: Mapping[str, bytes] = field(default_factory=dict)
 
 
 class Errand:
-    """One kind of job of one page, at most one at a time; its results stay until the page closes.
-
-    Messages arrive on another thread and wait in a mailbox for `collect`.
+    """One kind of report of one page, at most one at a time; results stay until the page closes.
 
     Parameters
     ----------
-    bench
-        Where it is done.
+    executor
+        Makes it.
 
     Attributes
     ----------
     title
-        Of the job at work, or of the last one.
+        Of the report that is being made, or of the last one.
     doing, share
-        What it does, and the share that is done.
-    parts
-        What it has found so far.
+        What is done for it, and the share that is done.
+    growing
+        What there is of it so far.
     found
         Results, oldest first.
     notice
-        Why the last job brought no result, or empty.
-    is_begun
-        Whether the job is at work, and not only asked for.
+        Why the last one came to nothing, or empty.
     """
 
-    def __init__(self, bench: Bench) -> None:
-        self._bench = bench
-        self._lock = threading.Lock()
-        self._mailbox: deque[tuple[int, Said]] = deque()
-        self._number = 0
-        self._job: Job | None = None
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._future: Future[Any] | None = None
+        self._folder: TemporaryDirectory[str] | None = None
+        self._read = b"", b""
         self.title = ""
         self.doing, self.share = "", 0.0
-        self.parts: list[Any] = []
+        self.growing = Found()
         self.found: deque[Found] = deque(maxlen=KEPT)
         self.notice = ""
-        self.is_begun = False
 
     @property
     def is_busy(self) -> bool:
-        """Whether a job is asked for or at work."""
-        return self._job is not None
+        """Whether a report is asked for or being made."""
+        return self._future is not None
+
+    @property
+    def is_begun(self) -> bool:
+        """Whether it is being made, and not only asked for."""
+        return self._future is not None and self._future.running()
 
     @property
     def last(self) -> Found | None:
-        """The result of the job before, if there is no newer one and that brought any."""
+        """The result of the one before, if there is no newer one and that came to anything."""
         return self.found[-1] if self.found and not self.is_busy and not self.notice else None
 
     def ask(self, title: str, work: Work) -> None:
-        """Have a job done, unless one is at work."""
-        if self._job is not None:
+        """Have a report made, unless one is."""
+        if self._future is not None:
             return
-        self._number += 1
-        number = self._number
-        self.title, self.parts, self.notice = title, [], ""
-        self.doing = WAITING if self._bench.is_busy else STARTING
-        self.share = 0.0
-
-        def hear(said: Said) -> None:
-            with self._lock:
-                self._mailbox.append((number, said))
-
-        self._job = self._bench.ask(work, hear)
+        self.title, self.notice, self.share = title, "", 0.0
+        self.growing, self._read = Found(title), (b"", b"")
+        # What a killed process was writing just then is no reason to complain.
+        self._folder = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
+        self._future = self._executor.submit(work, Path(self._folder.name))
+        self.doing = STARTING if self.is_begun else WAITING
 
     def cancel(self) -> None:
-        """End the job; what it has found so far stays."""
-        if self._job is not None:
-            self._job.cancel()
+        """End it; what has been found so far stays."""
+        if self._future is not None:
+            self._future.cancel()
             self._end("Cancelled.")
 
     def collect(self) -> bool:
-        """Take the waiting messages; tell whether anything is new."""
-        with self._lock:
-            waiting = list(self._mailbox)
-            self._mailbox.clear()
-        for number, said in waiting:
-            if number == self._number and self._job is not None:
-                self._take(said)
-        return bool(waiting)
+        """Read how far it is; tell whether anything is new."""
+        future = self._future
+        if future is None or self._folder is None:
+            return False
+        is_done, folder = future.done(), Path(self._folder.name)
+        before = self.doing, self._read
+        self._read = progress, sections = said(folder, PROGRESS), said(folder, SECTIONS)
+        self.doing = STARTING if self.is_begun else WAITING
+        if progress:
+            self.doing, self.share = pickle.loads(progress)
+        if sections != before[1][1]:
+            self.growing.sections = pickle.loads(sections)
+        if is_done:
+            self._take(future, folder)
+        return is_done or before != (self.doing, self._read)
 
-    def _take(self, said: Said) -> None:
-        match said:
-            case Started():
-                self.is_begun, self.doing = True, STARTING
-            case Doing():
-                self.doing, self.share = said.text, said.share
-            case Part():
-                self.parts.append(said.value)
-            case Done():
-                self.found.append(Found(self.title, said.result))
-                self._end("")
-            case Broke():
-                self._end(said.reason)
+    def _take(self, future: Future[Any], folder: Path) -> None:
+        """Follow the end of the process."""
+        if future.cancelled():
+            self._end("Cancelled.")
+        elif problem := future.exception():
+            self._end(str(problem))
+        else:
+            self.growing.files = files(folder)
+            self.found.append(self.growing)
+            self._end("")
 
     def _end(self, notice: str) -> None:
-        self._job, self.is_begun, self.notice = None, False, notice
+        assert self._folder is not None
+        self._folder.cleanup()
+        self._future, self._folder, self.notice = None, None, notice

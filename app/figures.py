@@ -27,7 +27,8 @@ from bokeh.models import (
     Scatter,
 )
 
-from app.views.drawing import View, shaded
+from app.views.colors import shaded
+from app.views.drawing import View
 
 FIT = """
 const [left, right, low, high] = box.data.edge

@@ -8,13 +8,13 @@ from solver.definitions import about
 from solver.settings import Settings
 
 
-def label_of(settings: Settings, changed: dict[str, Any]) -> str:
-    """Name settings by what is new in them."""
+def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:
+    """Name settings by what is new in them, or by the first few of it."""
     definitions = settings.definitions()
     parts = []
-    for name, value in list(changed.items())[:2]:
+    for name, value in list(changed.items())[:most]:
         unit = about(definitions[name]).unit
         text = f"{value:.4g}" if isinstance(value, float) else str(value)
         text = "points" if isinstance(value, tuple) else text
         parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
-    return ", ".join(parts) + (", ..." if len(changed) > 2 else "")
+    return ", ".join(parts) + (", ..." if len(changed) > most else "")

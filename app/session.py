@@ -76,13 +76,7 @@ class Session:
         Has the worker process.
     """
 
-    def __init__(
-        self,
-        pages: Pages,
-        bench: Bench,
-        settings: Settings,
-        hire: Hire = Link,
-    ) -> None:
+    def __init__(self, pages: Pages, bench: Bench, settings: Settings, hire: Hire = Link) -> None:
         self.settings = settings
         self.keeper = Keeper(hire)
         self.ticket = 0

@@ -8,11 +8,9 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.report import Report
+from app.reports import PaperFigures, StabilityReport, StudyReport
 from app.session import Session
-from app.views.paper_figures import PaperFigures
-from app.views.report import Report
-from app.views.stability import StabilityReport
-from app.views.study import StudyReport
 
 LIVE = "Live"
 IN_HEADER = {
@@ -62,9 +60,7 @@ class Tabs:
         self._changed = changed
         self._beside: dict[str, Report] = {
             "Figures": PaperFigures(session.figures, style),
-            "Study": StudyReport(
-                session.study, style, lambda: session.wanted, lambda: session.crowd
-            ),
+            "Study": StudyReport(session, style),
             "Stability": StabilityReport(session.stability, style),
         }
         self.bar = pmui.RadioButtonGroup(

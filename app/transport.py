@@ -110,9 +110,7 @@ class Transport:
                 start=1, end=max(done, 2), shown=at, text=f"{at} of {done}"
             )
             self._instant.param.update(
-                end=max(facts.instants - 1, 1),
-                shown=facts.instant,
-                text=f"t = {facts.time:.3g} s",
+                end=max(facts.instants - 1, 1), shown=facts.instant, text=f"t = {facts.time:.3g} s"
             )
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)

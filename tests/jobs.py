@@ -1,29 +1,32 @@
-"""Long pieces of work as short as can be.
+"""Long reports as short as can be.
 
-A job's process imports the module of its work: here nothing of the page, which would take seconds.
+A report's process imports the module of its work: here nothing of the page, which would take
+seconds.
 """
 
 import os
 import time
+from pathlib import Path
 
-from app.worker.job import Doing, Part, Send
+from app.worker.desk import Desk
 
 
-def count_to(number: int, send: Send) -> int:
+def count_to(number: int, folder: Path) -> None:
+    desk = Desk(folder)
     for done in range(number):
-        send(Doing(f"{done} done", done / number))
-        send(Part(done))
-    return number
+        desk.tell(f"{done} done", done / number)
+        desk.show([f"<p>{done}</p>"])
+        desk.publish(lambda place, done=done: (place / "counted.csv").write_text(f"{done}\n"))
 
 
-def sleep(send: Send) -> None:
-    send(Doing("asleep", 0.5))
+def sleep(folder: Path) -> None:
+    Desk(folder).tell("asleep", 0.5)
     time.sleep(600.0)
 
 
-def refuse(send: Send) -> None:
+def refuse(folder: Path) -> None:
     raise ValueError("no such thing")
 
 
-def vanish(send: Send) -> None:
+def vanish(folder: Path) -> None:
     os._exit(1)

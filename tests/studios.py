@@ -5,15 +5,15 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from unpacking import unpack
+
 from app.views.catalogue import VIEWS
 from app.views.drawing import Drawing, Scene
-from app.worker.block import unpack
-from app.worker.easel import watched
-from app.worker.frames import Frame
 from app.worker.orders import Order, Ready, Run, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Picture
 from app.worker.run import WorkerRun
+from app.worker.sampler import Frame
 from app.worker.shown import Look
 from app.worker.studio import Studio
 
@@ -73,7 +73,7 @@ class Shown:
         return self.at_work.recording
 
     def frame(self, look: Look = ALL) -> Frame:
-        return self.at_work.frame(watched(self.recording.settings, look), look)
+        return self.at_work.frame(look)
 
     def scene(self, look: Look = ALL, instant: int = 5) -> Scene:
         studio = self.studio

@@ -3,43 +3,54 @@
 from __future__ import annotations
 
 import csv
+import os
+import pickle
+import re
+import subprocess
+import sys
 from collections.abc import Iterator
+from concurrent.futures import Future
 from contextlib import closing
 from functools import partial
-from typing import Any
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from jobs import count_to, refuse, sleep, vanish
 from lone_link import LoneLink
-from processes import is_alive, wait_for
+from processes import PATIENCE, is_alive, wait_for
 
-from app.errand import KEPT, STARTING, WAITING, Errand
+from app.errand import KEPT, STARTING, WAITING, Errand, Found
 from app.pages import Pages
+from app.report import progress
+from app.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
 from app.session import Session
-from app.views.report import progress
-from app.views.stability import matrix
-from app.views.study import StudyReport, company, title_of
-from app.worker.bench import Bench
-from app.worker.job import Doing, Done, Part, Started
+from app.worker.bench import Bench, BrokenCallError
+from app.worker.desk import PROGRESS, SECTIONS, Desk, files, said
 from app.worker.orders import Pace
 from app.worker.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
+from solver.study.page import Plot
 from solver.study.stability import Row, Verdict, judge, run_case
 from solver.study.stability_cases import Case
+from solver.study.stability_report import stability_sections
 
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
 
 @pytest.fixture
 def bench() -> Iterator[Bench]:
-    with closing(Bench()) as opened:
+    with Bench() as opened:
         yield opened
 
 
 @pytest.fixture
-def errand(bench: Bench) -> Errand:
-    return Errand(bench)
+def errand(bench: Bench) -> Iterator[Errand]:
+    made = Errand(bench)
+    yield made
+    made.cancel()
 
 
 def until_idle(errand: Errand) -> None:
@@ -50,18 +61,64 @@ def until_idle(errand: Errand) -> None:
     wait_for(idle)
 
 
-def test_a_job_says_how_far_it_is_and_then_what_came_of_it(bench: Bench) -> None:
-    said: list[Any] = []
-    bench.ask(partial(count_to, 2), said.append)
-    wait_for(lambda: said and isinstance(said[-1], Done))
-    assert said == [
-        Started(),
-        Doing("0 done", 0.0),
-        Part(0),
-        Doing("1 done", 0.5),
-        Part(1),
-        Done(2),
-    ]
+def test_a_report_says_how_far_it_is_and_then_what_came_of_it(errand: Errand) -> None:
+    said = []
+
+    def idle() -> bool:
+        errand.collect()
+        said.append((errand.doing, errand.share))
+        return not errand.is_busy
+
+    errand.ask("any", partial(count_to, 2))
+    wait_for(idle)
+    every = [(STARTING, 0.0), ("0 done", 0.0), ("1 done", 0.5)]
+    assert said[-1] == every[-1]
+    assert list(dict.fromkeys(said)) == [one for one in every if one in said]
+    assert errand.last is not None
+    assert errand.last.files == {"counted.csv": b"1\n"}
+    assert errand.last.sections == ["<p>1</p>"]
+
+
+def test_what_grows_is_never_read_half_written(tmp_path: Path) -> None:
+    def write(folder: Path) -> None:
+        (folder / "one.html").write_text("half")
+        assert files(tmp_path) == {}
+        (folder / "one.html").write_text("whole")
+
+    assert said(tmp_path, PROGRESS) == b""
+    assert said(tmp_path, SECTIONS) == b""
+    Desk(tmp_path).publish(write)
+    assert files(tmp_path) == {"one.html": b"whole"}
+    Desk(tmp_path).tell("writing", 0.5)
+    Desk(tmp_path).show(["so far"])
+    assert pickle.loads(said(tmp_path, PROGRESS)) == ("writing", 0.5)
+    assert pickle.loads(said(tmp_path, SECTIONS)) == ["so far"]
+    assert len(files(tmp_path)) == 1
+
+
+def test_what_a_report_had_written_when_it_was_cancelled_stays_and_its_folder_goes(
+    errand: Errand,
+) -> None:
+    errand.ask("any", write_and_sleep)
+    assert errand._folder is not None
+    folder = Path(errand._folder.name)
+    wait_for(lambda: errand.collect() and errand.growing.sections)
+    errand.cancel()
+    assert errand.growing.sections == ["so far"]
+    assert not folder.exists()
+
+
+def write_and_sleep(folder: Path) -> None:
+    Desk(folder).show(["so far"])
+    sleep(folder)
+
+
+def test_the_executor_is_one_as_the_library_has_them(bench: Bench) -> None:
+    results: list[Future[int]] = [bench.submit(pow, 2, power) for power in (3, 4)]
+    assert [one.result(timeout=60.0) for one in results] == [8, 16]
+    assert list(bench.map(abs, [-1, 2])) == [1, 2]
+    with pytest.raises(BrokenCallError, match="invalid literal"):
+        bench.submit(int, "no number").result(timeout=60.0)
 
 
 @pytest.mark.parametrize(
@@ -79,7 +136,7 @@ def test_a_job_that_breaks_says_so_and_the_next_one_is_done(
     until_idle(errand)
     assert errand.notice == ""
     assert errand.last is not None
-    assert (errand.last.title, errand.last.result) == ("second", 1)
+    assert (errand.last.title, errand.last.sections) == ("second", ["<p>0</p>"])
 
 
 def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
@@ -93,7 +150,7 @@ def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
     assert WAITING in progress(second)
     first.cancel()
     until_idle(second)
-    assert second.parts == [0, 1, 2]
+    assert second.growing.sections == ["<p>2</p>"]
 
 
 def test_a_job_that_nobody_is_before_does_not_say_that_it_waits(errand: Errand) -> None:
@@ -133,9 +190,48 @@ def test_closing_the_bench_ends_the_job(bench: Bench, errand: Errand) -> None:
     errand.ask("any", sleep)
     wait_for(lambda: errand.collect() and errand.doing == "asleep")
     pid = bench.pid
-    bench.close()
+    bench.shutdown()
     assert pid is not None
     wait_for(lambda: not is_alive(pid))
+
+
+SERVER = """
+import sys
+from app.errand import Errand
+from app.worker.bench import shared_bench
+from jobs import sleep
+
+bench, errand = shared_bench(), Errand(shared_bench())
+errand.ask("any", sleep)
+while not (errand.collect() and errand.doing == "asleep"):
+    pass
+print(bench.pid, errand._folder.name, flush=True)
+sys.stdin.readline()
+"""
+
+
+@pytest.mark.parametrize("killed", [False, True])
+def test_a_report_ends_with_its_server_which_does_not_wait_for_it(killed: bool) -> None:
+    tests = Path(__file__).parent
+    server = subprocess.Popen(
+        [sys.executable, "-c", SERVER],
+        cwd=tests.parent,
+        env={**os.environ, "PYTHONPATH": str(tests)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    with server:
+        assert server.stdout is not None
+        number, folder = server.stdout.readline().split()
+        pid = int(number)
+        assert is_alive(pid)
+        assert Path(folder).exists()
+        if killed:
+            server.kill()
+        server.communicate(timeout=PATIENCE)
+    wait_for(lambda: not is_alive(pid))
+    assert not Path(folder).exists()
 
 
 def test_a_page_that_closes_ends_its_jobs(bench: Bench) -> None:
@@ -182,27 +278,39 @@ def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
     errand.ask("tiny", partial(study_of, "bar", TINY, 1, False))
     until_idle(errand)
     assert errand.last is not None, errand.notice
-    found = errand.last.result
-    assert set(found.files) == {"curves.csv", "levels.csv", "study.html"}
-    rows = list(csv.DictReader(found.files["curves.csv"].decode().splitlines()))
-    assert {row["method"] for row in rows} == {course.method for course in found.study.courses}
-    assert found.study.settings.values() == BarSettings.checked(TINY).values()
-    assert found.study.machine.count("BLAS threads: 1;") == 1
+    found = errand.last.files
+    assert set(found) == {"curves.csv", "levels.csv", "study.html"}
+    rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
+    assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
+    assert sum(isinstance(section, Plot) for section in errand.last.sections) == 1
+    page = found["study.html"].decode()
+    for section in errand.last.sections:
+        assert isinstance(section, Plot) or section in page
+    assert "Scene: bar (" in page
+    assert all(f"{name} = {value}" in page for name, value in TINY.items())
+    assert page.count("BLAS threads: 1;") == 1
 
 
-def test_stability_sends_every_row_and_gives_them_all(
-    monkeypatch: pytest.MonkeyPatch,
+def test_stability_is_shown_as_it_grows_and_then_whole(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     few = [Case("size", "tiny", TINY), Case("size", "small", {**TINY, "elements": 10})]
     monkeypatch.setattr("app.worker.studies.cases_of", lambda quick: few)
-    said: list[Any] = []
-    found = stability_of(False, said.append)
-    parts = [one.value for one in said if isinstance(one, Part)]
-    assert parts == found.rows
-    assert len(parts) == 4
-    assert set(found.files) == {"stability.csv", "stability.html"}
-    shares = [one.share for one in said if isinstance(one, Doing)]
+    monkeypatch.setattr("app.worker.studies.SHOWN_EVERY", 0.0)
+    rows: list[int] = []
+    shares: list[float] = []
+    tell = Desk.tell
+    monkeypatch.setattr(
+        Desk, "show", lambda desk, sections: rows.append("".join(sections).count('"verdict'))
+    )
+    monkeypatch.setattr(
+        Desk, "tell", lambda desk, doing, share: shares.append(share) or tell(desk, doing, share)
+    )
+    stability_of(False, tmp_path)
+    assert rows == [1, 2, 3, 4, 4]
+    assert list(files(tmp_path)) == ["stability.csv", "stability.html"]
     assert shares == sorted(shares)
+    assert "Invariance holds" in (tmp_path / "stability.html").read_text()
 
 
 def row(**changes: Any) -> Row:
@@ -211,18 +319,26 @@ def row(**changes: Any) -> Row:
     return Row(case, "paper", outcome, judge(outcome))
 
 
-def test_the_matrix_says_each_verdict_in_a_word_and_hides_only_what_is_right() -> None:
+def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand: Errand) -> None:
     rows = [row(), row(k_scale=1e-6, max_iterations=20)]
     assert [one.verdict for one in rows] == [Verdict.RIGHT, Verdict.TOLD]
-    every, wrong = matrix(rows, only_wrong=False), matrix(rows, only_wrong=True)
-    assert every.count("<tr>") == 3
-    assert wrong.count("<tr>") == 2
-    assert ">right</td>" in every
-    assert ">told</td>" in wrong
-    assert ">right</td>" not in wrong
-    assert "1 of 2 runs pass" in every
-    assert "1 of 2 runs pass" in wrong
-    assert rows[1].outcome.advice.split(".")[0] in wrong
+    sections = stability_sections(rows, {})
+    page = "".join(sections)
+    assert re.findall(r'<td class="verdict (\w+)"[^>]*>(\w+)</td>', page) == [
+        ("right", "right"),
+        ("told", "told"),
+    ]
+    assert "1 of 2 runs pass" in page
+    assert rows[1].outcome.advice.split(".")[0] in page
+    report = StabilityReport(errand, "")
+    report._put(Found("any", sections))
+    assert [pane.object for pane in report._sheet] == sections
+    report._filter(WRONG)
+    assert all(pane.css_classes == ["report", "wrong"] for pane in report._sheet)
+    report._put(Found("another", sections))
+    assert all(pane.css_classes == ["report", "wrong"] for pane in report._sheet)
+    report._filter(EVERY)
+    assert all(pane.css_classes == ["report"] for pane in report._sheet)
 
 
 def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> None:
@@ -237,7 +353,8 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
 def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
     for layers, refused in ((3, False), (20, True)):
         settings = LayersSettings.checked({"layers": layers, "instants": 11})
-        report = StudyReport(errand, "", lambda chosen=settings: chosen, lambda: 0)
+        page = SimpleNamespace(study=errand, wanted=settings, crowd=0)
+        report = StudyReport(cast(Session, page), "")
         report.open()
         assert report._start.disabled == refused
         assert ("would take too long here" in report._progress.object) == refused

@@ -16,15 +16,14 @@ import pytest
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
 from studios import Shown
+from unpacking import unpack
 
 from app.errand import Errand
 from app.pages import Pages
 from app.session import GIVEN_UP, RESTARTS, Session
 from app.transport import Transport
-from app.worker import job, link
-from app.worker.bench import Bench
-from app.worker.block import unpack
-from app.worker.job import STOPPED
+from app.worker import bench, link
+from app.worker.bench import STOPPED, Bench
 from app.worker.link import Link
 from app.worker.orders import Run, Step
 from app.worker.reports import Died, Facts, Picture, Report
@@ -144,7 +143,7 @@ def no_fork_server(*arguments: Any) -> Any:
 
 
 def test_a_job_whose_process_does_not_start_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(job, "start", no_fork_server)
+    monkeypatch.setattr(bench, "start", no_fork_server)
     errand = Errand(Bench())
     errand.ask("any", print)
     await_end(errand)
@@ -175,8 +174,7 @@ def _refuse() -> None:
 def test_a_job_whose_result_cannot_be_read_says_so_and_is_logged(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    bench = Bench()
-    errand = Errand(bench)
+    errand = Errand(Bench())
     errand.ask("any", not_to_be_sent)
     await_end(errand)
     assert "made to break" in errand.notice

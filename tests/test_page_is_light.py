@@ -31,7 +31,7 @@ def make(link: LoneLink) -> Iterator[Callable[[str], Dashboard]]:
     """Give what makes the page of an address."""
     pn.extension(notifications=True)
     with ExitStack() as stack:
-        bench = stack.enter_context(closing(Bench()))
+        bench = stack.enter_context(Bench())
 
         def made(query: str) -> Dashboard:
             settings, complaint = settings_from_query(query)

@@ -1,69 +1,97 @@
-"""The paper's figures as the page has them computed, and draws them."""
+"""The paper's figures as the page has them made, and shows them."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
-from contextlib import closing
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from html import escape
+from queue import SimpleQueue
 from typing import Any
 
+import holoviews as hv
 import numpy as np
 import pytest
 from bokeh.document import Document
+from jobs import refuse, sleep
 from panel.io.state import set_curdoc
+from processes import PATIENCE, wait_for
 
-from app.errand import Errand
-from app.views import paper_figures
-from app.views.panels import overlay
-from app.views.paper_figures import PaperFigures
+from app import reports
+from app.errand import Errand, Found
+from app.report_plots import overlay
+from app.reports import PaperFigures
 from app.worker.bench import Bench
-from app.worker.job import Doing, Part, Send
+from app.worker.desk import SECTIONS, Desk, said
 from app.worker.studies import figures_of_the_paper
-from solver.study.figure_data import PaperFigure
-
-PATIENCE = 60.0
-
-
-def refuse(send: Send) -> None:
-    raise ValueError("no such thing")
+from solver.study.figure_data import Panel
+from solver.study.page import Plot, Section
 
 
-def sleep(send: Send) -> None:
-    send(Doing("asleep", 0.5))
-    time.sleep(600.0)
+class Page(Document):
+    """A document without a server, which calls back when it is asked to."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._due: SimpleQueue[Callable[[], Any]] = SimpleQueue()
 
-def wait_for(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
+    def add_next_tick_callback(self, callback: Callable[[], Any]) -> Any:
+        self._due.put(callback)
 
-
-@pytest.fixture(scope="module")
-def said() -> list[Any]:
-    found: list[Any] = []
-    figures_of_the_paper(found.append)
-    return found
+    def draw(self, view: PaperFigures) -> None:
+        """Draw all that is owed."""
+        while view._owed:
+            self._due.get(timeout=PATIENCE)()
 
 
 @pytest.fixture(scope="module")
-def figures(said: list[Any]) -> list[PaperFigure]:
-    return [one.value for one in said if isinstance(one, Part)]
+def told() -> list[float]:
+    """Give the shares that were told while `found` was made."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def seen() -> list[int]:
+    """Give how many sections there were after each figure."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: list[int]) -> Found:
+    folder = tmp_path_factory.mktemp("figures")
+
+    class Spied(Desk):
+        def tell(self, doing: str, share: float) -> None:
+            told.append(share)
+
+        def show(self, sections: Sequence[Section]) -> None:
+            super().show(sections)
+            seen.append(len(sections))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.worker.studies.Desk", Spied)
+        figures_of_the_paper(folder)
+    return Found("any", pickle.loads(said(folder, SECTIONS)))
+
+
+@pytest.fixture(scope="module")
+def panels(found: Found) -> list[Panel]:
+    return [panel for plot in found.sections if isinstance(plot, Plot) for panel in plot.panels]
 
 
 @pytest.fixture(autouse=True)
-def computed(monkeypatch: pytest.MonkeyPatch) -> list[PaperFigure]:
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[Found]:
     """Give what the server has computed: nothing yet."""
-    nothing: list[PaperFigure] = []
-    monkeypatch.setattr(paper_figures, "COMPUTED", nothing)
+    nothing: list[Found] = []
+    monkeypatch.setattr(reports, "COMPUTED", nothing)
     return nothing
 
 
 @pytest.fixture
 def errand() -> Iterator[Errand]:
-    with closing(Bench()) as bench:
-        yield Errand(bench)
+    with Bench() as bench:
+        made = Errand(bench)
+        yield made
+        made.cancel()
 
 
 @pytest.fixture
@@ -74,67 +102,76 @@ def view(errand: Errand) -> PaperFigures:
 
 
 def test_they_come_one_by_one_and_say_how_far_they_are(
-    said: list[Any], figures: list[PaperFigure]
+    found: Found, told: list[float], seen: list[int]
 ) -> None:
-    assert [figure.number for figure in figures] == [3, 4, 5, 6, 7, 8]
-    shares = [one.share for one in said if isinstance(one, Doing)]
-    assert shares == sorted(shares)
-    assert shares[0] == 0.0
+    each = len(found.sections) // 6
+    assert seen == [each * count for count in range(1, 7)]
+    assert told == sorted(told)
+    assert told[0] == 0.0
 
 
-def test_every_curve_is_drawn_with_its_values(figures: list[PaperFigure]) -> None:
-    for figure in figures:
-        for panel in figure.panels:
-            drawn = {part.label: part for part in overlay(panel) if type(part).__name__ == "Curve"}
-            assert list(drawn) == [curve.label for curve in panel.curves]
-            for curve in panel.curves:
-                part = drawn[curve.label]
-                assert np.array_equal(part.dimension_values(0), curve.x)
-                shown = part.dimension_values(1)
-                fits = (curve.y > 0.0) if panel.y.logarithmic else np.ones(len(curve.y), bool)
-                assert np.array_equal(shown[fits], curve.y[fits])
-                assert np.isnan(shown[~fits]).all()
+def test_every_curve_is_drawn_with_its_values(panels: list[Panel]) -> None:
+    for panel in panels:
+        drawn = {part.label: part for part in overlay(panel) if type(part).__name__ == "Curve"}
+        assert list(drawn) == [curve.label for curve in panel.curves]
+        for curve in panel.curves:
+            part = drawn[curve.label]
+            assert np.array_equal(part.dimension_values(0), curve.x)
+            values = part.dimension_values(1)
+            fits = (curve.y > 0.0) if panel.y.logarithmic else np.ones(len(curve.y), bool)
+            assert np.array_equal(values[fits], curve.y[fits])
+            assert np.isnan(values[~fits]).all()
 
 
-def test_claims_findings_and_panels_stand_on_a_page_that_finds_them_computed(
-    view: PaperFigures, errand: Errand, computed: list[PaperFigure], figures: list[PaperFigure]
+def test_a_plot_can_be_read_and_enlarged_but_does_not_hold_a_page_that_is_scrolled(
+    panels: list[Panel],
 ) -> None:
-    computed[:] = figures
-    view.open()
+    drawn = hv.renderer("bokeh").get_plot(overlay(panels[0])).state
+    kinds = {type(tool).__name__ for tool in drawn.tools}
+    assert {"HoverTool", "BoxZoomTool", "PanTool", "WheelZoomTool", "ResetTool"} <= kinds
+    assert drawn.toolbar.active_drag is None
+    assert drawn.toolbar.active_scroll in (None, "auto")
+
+
+def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
+    view: PaperFigures, errand: Errand, computed: list[Found], found: Found, panels: list[Panel]
+) -> None:
+    computed.append(found)
+    page = Page()
+    with set_curdoc(page):
+        view.open()
+        page.draw(view)
     assert not errand.is_busy
     assert not view._start.visible
-    for (words, row), figure in zip(view._results, figures, strict=True):
-        assert f"Fig. {figure.number}" in words.object
-        assert figure.verdict in words.object
-        assert words.object.count("<li>") == len(figure.findings)
-        assert len(row) == len(figure.panels)
+    assert view._card.visible
+    drawn = 0
+    for pane, section in zip(view._sheet, found.sections, strict=True):
+        if isinstance(section, Plot):
+            assert all(escape(c.label) in pane[0].object for p in section.panels for c in p.curves)
+            drawn += len(pane) - 1
+        else:
+            assert pane.object == section
+    assert drawn == len(panels)
 
 
-def test_a_page_draws_one_panel_at_a_time(
-    view: PaperFigures, computed: list[PaperFigure], figures: list[PaperFigure]
-) -> None:
-    """Twelve of them would hold up every page of the server for seconds."""
-    later: list[Callable[[], None]] = []
-
-    class Page(Document):
-        def add_next_tick_callback(self, callback: Callable[[], None]) -> None:
-            later.append(callback)
-
-    computed[:] = figures
-    drawn = []
+def test_what_is_drawn_stays_while_a_report_grows(view: PaperFigures, found: Found) -> None:
+    grows = Found("any", found.sections[:3])
     with set_curdoc(Page()):
-        view.open()
-        while later:
-            drawn.append(sum(len(row) for _, row in view._results))
-            view.refresh()
-            later.pop(0)()
-    assert drawn == list(range(1, sum(len(figure.panels) for figure in figures) + 1))
+        view._put(grows)
+        first = list(view._sheet)
+        grows.sections = ["<p>other words</p>", *found.sections[1:6]]
+        view._put(grows)
+        assert view._sheet[:3] == first
+        assert first[0].object == "<p>other words</p>"
+        assert len(view._sheet) == 6
+        view._put(found)
+        assert first[1] not in view._sheet.objects
 
 
 def test_a_failure_is_told_and_can_be_tried_again(
     view: PaperFigures, errand: Errand, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(paper_figures, "figures_of_the_paper", refuse)
+    monkeypatch.setattr(reports, "figures_of_the_paper", refuse)
     view.open()
     assert not view._start.visible
     wait_for(lambda: errand.collect() and not errand.is_busy)
@@ -142,7 +179,7 @@ def test_a_failure_is_told_and_can_be_tried_again(
     assert "no such thing" in view._progress.object
     assert view._start.visible
     assert not view._start.disabled
-    monkeypatch.setattr(paper_figures, "figures_of_the_paper", sleep)
+    monkeypatch.setattr(reports, "figures_of_the_paper", sleep)
     view._on_start()
     assert errand.is_busy
     assert not view._start.visible
@@ -151,11 +188,11 @@ def test_a_failure_is_told_and_can_be_tried_again(
 def test_it_can_be_cancelled_and_another_page_has_them_later(
     view: PaperFigures,
     errand: Errand,
-    computed: list[PaperFigure],
-    figures: list[PaperFigure],
+    computed: list[Found],
+    found: Found,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(paper_figures, "figures_of_the_paper", sleep)
+    monkeypatch.setattr(reports, "figures_of_the_paper", sleep)
     view.open()
     wait_for(lambda: errand.collect() and errand.doing == "asleep")
     view.refresh()
@@ -163,7 +200,8 @@ def test_it_can_be_cancelled_and_another_page_has_them_later(
     view._on_cancel()
     assert "Cancelled." in view._progress.object
     assert view._start.visible
-    computed[:] = figures
-    view.open()
-    assert len(view._results) == len(figures)
+    computed.append(found)
+    with set_curdoc(Page()):
+        view.open()
+    assert len(view._sheet) == len(found.sections)
     assert not view._start.visible

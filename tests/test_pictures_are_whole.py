@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from studios import ALL, Shown
+from unpacking import unpack
 
 from app.views.catalogue import fitting
-from app.worker.block import Packer, Quads, unpack
+from app.worker.block import Packer, Quads
 from app.worker.orders import Pace, Ready, Run, Seek, Step, Watch
 from app.worker.reports import Picture
 from app.worker.studio import Studio

@@ -51,7 +51,7 @@ def test_worker_gives_the_numbers_of_a_direct_solution(values: dict[str, Any]) -
     assert same(shown.recording.history, expected.records)
     settings = BarSettings.checked(values)
     sampler = Sampler(expected.iterate.problem, settings, ALL)
-    frame, other = shown.frame(), sampler.frame(expected.iterate, frozenset(), ALL)
+    frame, other = shown.frame(), sampler.frame(expected.iterate, ALL)
     assert frame.iteration == other.iteration
     for name in ("friction", "status", "end_displacement"):
         assert np.array_equal(getattr(frame, name), getattr(other, name))

@@ -11,10 +11,9 @@ from studios import ALL, Shown
 from test_worker_process import same
 from worker_line import SHORT, STALLING
 
-from app.worker.checkpoints import Checkpoints
-from app.worker.frames import Frame
 from app.worker.orders import Pace, Seek
-from app.worker.sampler import Sampler
+from app.worker.sampler import Frame, Sampler
+from app.worker.seeking import Checkpoints
 from solver.latin import Checkpoint
 from solver.scenes.bar import BarSettings
 
@@ -22,7 +21,7 @@ from solver.scenes.bar import BarSettings
 def expected(number: int, values: dict[str, Any]) -> Frame:
     iterate = iterate_number(number, values)
     sampler = Sampler(iterate.problem, BarSettings.checked(values), ALL)
-    return sampler.frame(iterate, frozenset(), ALL)
+    return sampler.frame(iterate, ALL)
 
 
 @pytest.mark.parametrize("number", [1, 2, 30, 49])

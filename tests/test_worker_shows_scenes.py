@@ -11,8 +11,10 @@ from studios import ALL, Shown
 
 from app.views.deformed import fitting
 from app.views.scales import held
+from app.worker.frames import Fields
 from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.orders import Watch
+from app.worker.sampler import Sampler
 from app.worker.shown import STATUS_OPEN, Look, Mesh, has_reference
 from solver.discrete import discretise
 from solver.scenes import CATALOGUE
@@ -74,13 +76,27 @@ def test_a_block_that_lifts_off_is_open_there() -> None:
 
 
 @pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers"])
-def test_frames_carry_only_what_is_watched(scene: str) -> None:
-    shown = told(scene)
-    bare, full = shown.frame(Look()), shown.frame()
-    assert bare.mesh is bare.axial is bare.spectra is bare.bases is None
-    assert (full.mesh is not None) == (scene in ("block", "layers"))
-    assert (full.axial is not None) == (scene == "strand")
-    assert (bare.load is None) == (scene in ("bar", "strand"))
+def test_what_few_views_show_is_computed_when_one_looks(
+    scene: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frame, asked = told(scene).frame(), []
+    assert not {"mesh", "axial", "spectra", "bases"} & set(vars(frame))
+    assert (frame.mesh is not None) == (scene in ("block", "layers"))
+    assert (frame.axial is not None) == (scene == "strand")
+    assert (frame.load is None) == (scene in ("bar", "strand"))
+    monkeypatch.setattr("app.worker.sampler.friction_spectra", asked.append)
+    monkeypatch.setattr(Sampler, "axial", lambda *given: asked.append(given))
+    monkeypatch.setattr(Sampler, "mesh_field", lambda *given: asked.append(given))
+    told(scene, look=Look(views=("Stick and slip", "Convergence")))
+    assert asked == []
+
+
+def test_a_run_before_keeps_its_fields_without_its_problem() -> None:
+    shown = told("bar")
+    shown.run(2, "bar", SIZES["bar"])
+    before = shown.scene().before
+    assert before is not None
+    assert type(before.frame) is Fields
 
 
 def test_mesh_shows_the_chosen_instant_and_stress() -> None:
@@ -92,8 +108,6 @@ def test_mesh_shows_the_chosen_instant_and_stress() -> None:
         mesh = shown.frame(replace(ALL, phase=phase, stress="yy")).mesh
         assert mesh is not None
         whole = iterate.problem.inside.displacement(iterate.displacement, [instant])[:, :, 0]
-        assert mesh.instant == instant
-        assert mesh.component == "yy"
         assert mesh.displacement == pytest.approx(whole, rel=1e-5, abs=1e-12)
         stress = iterate.problem.inside.stress(whole)[:, 1]
         assert np.sort(mesh.stress) == pytest.approx(np.sort(stress), rel=1e-4, abs=1.0)
@@ -136,7 +150,7 @@ def test_broken_wire_is_shown_beside_its_closed_form() -> None:
     assert wires.exact is not None
     assert wires.exact_positions is not None
     assert axial is not None
-    broken = axial.force[wires.numbers.index(2)]
+    broken = axial[wires.numbers.index(2)]
     exact = np.interp(wires.positions, wires.exact_positions, wires.exact[0, :, -1])
     assert broken == pytest.approx(exact, abs=0.03 * 600.0)
 

@@ -12,9 +12,10 @@ from studios import ALL, Shown
 from test_worker_process import same
 
 from app.views.basis_size import MOST_COLUMNS
-from app.worker.checkpoints import Checkpoints
+from app.worker.bases import Bases
 from app.worker.orders import Seek
-from app.worker.shown import MOST_MODES, MOST_SIZES, Bases, Look, ShownModes
+from app.worker.seeking import Checkpoints
+from app.worker.shown import MOST_MODES, MOST_SIZES, Look, ShownModes
 
 SMALL: dict[str, Any] = {
     "method": "paper",
@@ -39,9 +40,7 @@ def bases_of(shown: Shown, look: Look = ALL) -> Bases:
 
 
 def modes_of(shown: Shown, look: Look = ALL) -> ShownModes:
-    modes = bases_of(shown, look).modes
-    assert modes is not None
-    return modes
+    return bases_of(shown, look).modes
 
 
 def test_the_full_linear_stage_shows_nothing_of_bases() -> None:
@@ -51,12 +50,19 @@ def test_the_full_linear_stage_shows_nothing_of_bases() -> None:
     assert not len(shown.recording.beside)
 
 
-def test_modes_and_their_sizes_are_there_only_when_watched() -> None:
-    shown = told(SMALL)
-    for names in ((), ("PGD space modes",), ("Singular values",)):
-        bases = bases_of(shown, Look(views=names))
-        assert (bases.modes is not None) == ("PGD space modes" in names)
-        assert (bases.values is not None) == ("Singular values" in names)
+def test_modes_and_their_sizes_are_computed_only_for_views_that_are_seen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[str] = []
+    for name in ("_modes", "_values"):
+        monkeypatch.setattr(
+            f"app.worker.bases.{name}", lambda *given, name=name: asked.append(name)
+        )
+    shown = Shown(Look(views=("Convergence", "PGD basis size")))
+    shown.run(1, "bar", SMALL)
+    assert asked == []
+    bases = bases_of(shown)
+    assert (bases.modes, bases.values, asked) == (None, None, ["_modes", "_values"])
 
 
 @pytest.mark.parametrize(("wanted", "found"), [(None, 3), (0, 0), (2, 2), (99, 3)])
@@ -98,9 +104,8 @@ def test_what_was_there_was_added_and_was_dropped_adds_up() -> None:
 
 def test_modes_are_together_as_large_as_the_field_that_they_hold_once_it_has_converged() -> None:
     generous = {**SMALL, "pgd_modes": 20, "pgd_tolerance": 1e-10, "max_iterations": 300}
-    values = bases_of(told(generous)).values
-    assert values is not None
-    assert np.linalg.norm(values.basis) == pytest.approx(np.linalg.norm(values.wanted), rel=1e-3)
+    own, wanted = bases_of(told(generous)).values
+    assert np.linalg.norm(own) == pytest.approx(np.linalg.norm(wanted), rel=1e-3)
 
 
 def test_numbers_of_modes_are_kept_for_a_screenful_of_substructures() -> None:

@@ -53,7 +53,7 @@ def test_warm_run_starts_from_the_run_that_it_takes_the_place_of() -> None:
         shown.obey(Seek(2, number))
         iterate = iterates[number - 1]
         expected = Sampler(iterate.problem, BarSettings.checked(NEAR), ALL)
-        other = expected.frame(iterate, frozenset(), ALL)
+        other = expected.frame(iterate, ALL)
         assert np.array_equal(shown.frame().friction, other.friction)
 
 

@@ -4,24 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    length_of,
-    spanned,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held
+from app.views.scales import Limits, decimal_scale, held, length_of, spanned
 from app.worker.shown import Wires
 from solver.scenes.strand import StrandSettings
 from solver.settings import Settings
@@ -46,17 +32,16 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         return None
     load = scene.run.stand.load if scene.run.stand.load is not None else scene.frame.load
     assert load is not None
-    force = axial.force
-    top = max(SHARED * float(np.abs(load).max()), float(force.max()))
-    limits = held(kept, min(-0.1 * top, float(force.min())), top)
+    top = max(SHARED * float(np.abs(load).max()), float(axial.max()))
+    limits = held(kept, min(-0.1 * top, float(axial.min())), top)
     factor, unit = decimal_scale(limits[1], "N")
-    exact = [] if wires.exact is None else list(wires.exact[:, :, axial.instant] / factor)
+    exact = [] if wires.exact is None else list(wires.exact[:, :, scene.instant] / factor)
     assert not exact or wires.exact_positions is not None
     curves = [Curve(wires.exact_positions, one, GREEN, 6, alpha=0.35) for one in exact]
     for place in np.argsort([number == wires.broken for number in wires.numbers], kind="stable"):
         number = wires.numbers[place]
         width = 3.5 if number == wires.broken else 2.0
-        curves.append(Curve(wires.positions, force[place] / factor, _color(number, wires), width))
+        curves.append(Curve(wires.positions, axial[place] / factor, _color(number, wires), width))
     return Drawing(
         spanned(0.0, length_of(scene.run.settings)),
         spanned(*(limit / factor for limit in limits), label=f"Axial force ({unit})"),
@@ -81,10 +66,4 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
     return (*keys, *((Key(GREEN, "band", "closed form"),) if is_exact else ()))
 
 
-VIEW = View(
-    "Force in the wires",
-    Plot("Position x (m)", "Axial force (N)"),
-    applies,
-    draw,
-    watches="axial",
-)
+VIEW = View("Force in the wires", Plot("Position x (m)", "Axial force (N)"), draw, applies)

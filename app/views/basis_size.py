@@ -4,30 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    VERMILION,
-    VIRIDIS,
-    Colors,
-    Drawing,
-    Image,
-    Plot,
-    Scene,
-    View,
-    across,
-    spanned,
-    upright,
-)
+from app.views.colors import VERMILION, VIRIDIS
+from app.views.drawing import Colors, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import round_up
-from solver.settings import Settings
+from app.views.scales import across, round_up, spanned, upright
 
 MOST_COLUMNS = 240
 """Iterations that are drawn at most; a small plot has no more pixels."""
-
-
-def applies(settings: Settings) -> bool:
-    """Only separated bases have modes."""
-    return settings.is_reduced
 
 
 def draw(scene: Scene, kept: None) -> Drawing | None:
@@ -63,6 +46,6 @@ VIEW = View(
         chooses="substructure",
         whole="y",
     ),
-    applies,
     draw,
+    lambda settings: settings.is_reduced,
 )

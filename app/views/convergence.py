@@ -2,27 +2,12 @@
 
 from __future__ import annotations
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    in_decades,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decades, round_up
+from app.views.scales import decades, in_decades, round_up, spanned, upright
 from app.worker.recording import History
 from app.worker.shown import has_reference
-from solver.settings import Settings
 
 CURVES = (
     ("indicator", GREY, "η", "dashed"),
@@ -40,11 +25,6 @@ MOST_POINTS = 400
 KEYS = tuple(
     Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
 )
-
-
-def applies(settings: Settings) -> bool:
-    """Every run converges, or not."""
-    return True
 
 
 def draw(scene: Scene, kept: None) -> Drawing:
@@ -76,6 +56,4 @@ def draw(scene: Scene, kept: None) -> Drawing:
     return Drawing(x, y, curves, keys=keys)
 
 
-VIEW = View(
-    "Convergence", Plot("Iteration", "Indicator, error", logarithmic="y", whole="x"), applies, draw
-)
+VIEW = View("Convergence", Plot("Iteration", "Indicator, error", logarithmic="y", whole="x"), draw)

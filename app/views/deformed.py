@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import GREY, Bodies, Colors, Drawing, Plot, Scene, View
+from app.views.colors import GREY
+from app.views.drawing import Bodies, Colors, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, round_up
 from app.worker.shown import Mesh
-from solver.scenes.plane import PlaneSettings
-from solver.settings import Settings
 
 SHOWN = 0.06
 """Share of the bodies' size that the largest displacement takes by default."""
 CIVIDIS = ("#00224e", "#1a386f", "#434e6c", "#61656f", "#7d7c78", "#9b9476", "#bcae6c", "#dfc858")
-
-
-def applies(settings: Settings) -> bool:
-    """Tell whether there are plane bodies to draw."""
-    return isinstance(settings, PlaneSettings)
 
 
 def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | None:
@@ -39,7 +33,7 @@ def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | No
         bodies=Bodies(mesh.quads, moved, field.stress / np.float32(unit), _box(mesh, reach)),
         colors=Colors(low, high, (low, 0.5 * (low + high), high), name),
         keys=(
-            Key(GREY, "bare", field.component),
+            Key(GREY, "bare", scene.look.stress),
             Key(GREY, "bare", f"displacement × {factor:g}"),
         ),
         kept=(limits, fit),
@@ -71,7 +65,6 @@ def fitting(mesh: Mesh, largest: float, present: float = 1.0) -> float:
 VIEW = View(
     "Deformed bodies",
     Plot("x (m)", "y (m)", palette=CIVIDIS, scale="MPa", equal=True),
-    applies,
     draw,
-    watches="mesh",
+    is_plane,
 )

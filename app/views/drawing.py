@@ -14,15 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from app.views.legend import Key
-from app.worker.frames import Frame
 from app.worker.recording import Recording
+from app.worker.sampler import Frame
 from app.worker.shown import Look
+from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
-
-BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"
-SKY, VERMILION = "#56B4E9", "#D55E00"
-BACKWARD, STICK, FORWARD, OPEN = BLUE, "#D9D9D9", ORANGE, "#4D4D4D"
-VIRIDIS = ("#470e61", "#433d84", "#33628d", "#25828e", "#1fa287", "#42be71", "#91d742", "#d8e219")
 
 
 @dataclass(frozen=True)
@@ -182,6 +178,16 @@ class Plot:
     whole: str = ""
 
 
+def is_plane(settings: Settings) -> bool:
+    """Tell whether there are plane bodies, which press on each other as they deform."""
+    return isinstance(settings, PlaneSettings)
+
+
+def has_instants(settings: Settings) -> bool:
+    """Tell whether there are several instants: one makes no loop, and has one singular value."""
+    return int(settings.values()["instants"]) > 1
+
+
 @dataclass(frozen=True)
 class View:
     """One plot of the page.
@@ -192,64 +198,18 @@ class View:
         Its name in the choice of views.
     plot
         Its figure.
-    applies
-        Tells whether the view says anything about a run with such settings.
     draw
         Gives the drawing of a scene, None as long as the scene has not what it needs; also given
         what the drawing before wanted to be kept.
-    watches
-        What a frame must carry beyond the fields, or an empty text.
+    applies
+        Tells whether the view says anything about a run with such settings.
     """
 
     name: str
     plot: Plot
-    applies: Callable[[Settings], bool]
     draw: Callable[[Scene, Any], Drawing | None]
-    watches: str = ""
+    applies: Callable[[Settings], bool] = lambda settings: True
     slug: str = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "slug", self.name.lower().replace(" ", "-"))
-
-
-def across(places: Sequence[float], axis: Axis, **style: Any) -> Curve:
-    """Give lines over the whole width of a plot at some heights, as one curve."""
-    return _rules(places, axis, upright=False, **style)
-
-
-def upright(places: ArrayLike, axis: Axis, **style: Any) -> Curve:
-    """Give lines over the whole height of a plot at some places, as one curve."""
-    return _rules(places, axis, upright=True, **style)
-
-
-def _rules(places: ArrayLike, axis: Axis, *, upright: bool, **style: Any) -> Curve:
-    one = np.repeat(np.asarray(places, dtype=np.float64), 3)
-    other = np.tile([axis.low, axis.high, np.nan], len(one) // 3)
-    return Curve(one, other, **style) if upright else Curve(other, one, **style)
-
-
-def length_of(settings: Settings) -> float:
-    """Give the length of a scene, m, which all axes along it show from end to end."""
-    return float(settings.values()["length"])
-
-
-def spanned(low: float, high: float, **options: Any) -> Axis:
-    """Give an axis between two ends, of some length in any case."""
-    if not high > low:
-        low, high = low - 0.5, high + 0.5
-    return Axis(float(low), float(high), **options)
-
-
-def in_decades(low: float, high: float) -> Axis:
-    """Give a logarithmic axis, marked at whole decades: a small plot has room for no more."""
-    powers = range(round(np.log10(low)), round(np.log10(high)) + 1)
-    ticks = tuple(10.0**power for power in powers)[:: max(1, len(powers) // 5)]
-    return Axis(float(low), float(high), ticks=ticks)
-
-
-def shaded(count: int, palette: Sequence[str] = VIRIDIS) -> list[str]:
-    """Give so many colours between those of a palette."""
-    anchors = np.array([[int(one[i : i + 2], 16) for i in (1, 3, 5)] for one in palette])
-    places = np.linspace(0, len(anchors) - 1, max(count, 2))
-    mixed = [np.interp(places, range(len(anchors)), anchors[:, part]) for part in range(3)]
-    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in np.array(mixed).T.round().astype(int)]

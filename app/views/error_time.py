@@ -2,36 +2,16 @@
 
 from __future__ import annotations
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    in_decades,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
+from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import decades
+from app.views.scales import decades, in_decades, upright
 from app.worker.recording import History
 from app.worker.shown import has_reference
-from solver.settings import Settings
 
 PAST_COLORS = (GREEN, VERMILION, PURPLE, SKY, ORANGE, GREY)
 FLOOR = 1e-14
 MOST_POINTS = 200
-
-
-def applies(settings: Settings) -> bool:
-    """Every run takes time, but there are errors only beside a reference."""
-    return has_reference(settings)
 
 
 def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
@@ -79,6 +59,6 @@ def _colors(given: dict[int, str], tickets: list[int]) -> dict[int, str]:
 VIEW = View(
     "Error against run time",
     Plot("Run time of the method (s)", "Friction force error", logarithmic="xy"),
-    applies,
     draw,
+    has_reference,
 )

@@ -4,33 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    SKY,
-    Axis,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    across,
-    length_of,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, SKY
+from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import decimal_scale
+from app.views.scales import across, decimal_scale, length_of, spanned, upright
 from app.worker.shown import instant_of
-from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 
 def applies(settings: Settings) -> bool:
     """Plane bodies have no bound that is known beforehand, and tractions instead."""
-    return not isinstance(settings, PlaneSettings)
+    return not is_plane(settings)
 
 
 def draw(scene: Scene, kept: Any) -> Drawing | None:
@@ -74,9 +58,4 @@ def _before(scene: Scene, factor: float) -> Curve | None:
     return Curve(before.stand.positions, found[:, instant] / factor, SKY, 2)
 
 
-VIEW = View(
-    "Friction force",
-    Plot("Position x (m)", "Friction force (N/m)"),
-    applies,
-    draw,
-)
+VIEW = View("Friction force", Plot("Position x (m)", "Friction force (N/m)"), draw, applies)

@@ -14,7 +14,8 @@ class Key:
     Attributes
     ----------
     mark
-        "line", "dashed", "dotted", "pale", "band", "square", "ring", "cross", or "bare" for none.
+        "line", "dashed", "dotted", "pale", "band", "square", "dot", "ring", "cross", or "bare" for
+        none.
     """
 
     color: str

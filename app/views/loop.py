@@ -7,36 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    ORANGE,
-    SKY,
-    VERMILION,
-    Axis,
-    Curve,
-    Drawing,
-    Marks,
-    Plot,
-    Scene,
-    View,
-    spanned,
-)
+from app.views.colors import BLUE, ORANGE, SKY, VERMILION
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held
-from app.worker.frames import Frame, Reference
+from app.views.scales import Limits, decimal_scale, held, spanned
+from app.worker.frames import Fields
 from app.worker.recording import Recording
 from app.worker.shown import Axes
-from solver.settings import Settings
 
 Pair = tuple[np.ndarray, np.ndarray]
 POINT = Marks((), (), VERMILION)
 STILL = 1e-6
 """Displacement that an axis reaches where nothing moves, m."""
-
-
-def applies(settings: Settings) -> bool:
-    """Tell whether there is more than one instant to make a loop of."""
-    return int(settings.values()["instants"]) > 1
 
 
 def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
@@ -82,7 +64,7 @@ def _limits(run: Recording, now: Pair, kept: tuple[Limits, Limits] | None) -> tu
     return _around(settled[0], begun.loop.across[1]), _around(settled[1], begun.loop.up[1])
 
 
-def _pair(run: Recording, fields: Frame | Reference) -> Pair:
+def _pair(run: Recording, fields: Fields) -> Pair:
     """Give displacement and force of an iterate or a reference."""
     load = run.stand.load if fields.load is None else fields.load
     assert load is not None
@@ -110,5 +92,8 @@ def _around(values: np.ndarray, unit: str) -> Limits:
 
 
 VIEW = View(
-    "Hysteresis loop", Plot("End displacement (mm)", "Force (N)", marks=(POINT,)), applies, draw
+    "Hysteresis loop",
+    Plot("End displacement (mm)", "Force (N)", marks=(POINT,)),
+    draw,
+    has_instants,
 )

@@ -6,26 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Axis,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, has_instants, is_plane
 from app.views.legend import Key
-from app.views.scales import decimal_scale
+from app.views.scales import decimal_scale, spanned, upright
 from app.worker.shown import ShownModes
-from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
@@ -34,18 +19,18 @@ UP = Axis(-1.12, 1.12)
 
 def applies_in_space(settings: Settings) -> bool:
     """Only separated bases have modes, and only those of wires are curves."""
-    return settings.is_reduced and not isinstance(settings, PlaneSettings)
+    return settings.is_reduced and not is_plane(settings)
 
 
 def applies_in_time(settings: Settings) -> bool:
     """Only separated bases have time functions, and one instant makes no function."""
-    return settings.is_reduced and bool(settings.values()["instants"] > 1)
+    return settings.is_reduced and has_instants(settings)
 
 
 def draw_space(scene: Scene, kept: None) -> Drawing | None:
     """Draw displacement modes along the chosen substructure, dashed when just born."""
     bases = scene.frame.bases
-    if bases is None or bases.modes is None:
+    if bases is None:
         return None
     modes = bases.modes
     # A substructure of one element may rub at one point only.
@@ -60,7 +45,7 @@ def draw_space(scene: Scene, kept: None) -> Drawing | None:
 def draw_time(scene: Scene, kept: None) -> Drawing | None:
     """Draw the time functions of the same modes, each over its largest value, which is told."""
     bases, instants = scene.frame.bases, scene.run.stand.instants
-    if bases is None or bases.modes is None:
+    if bases is None:
         return None
     modes = bases.modes
     sizes = np.abs(modes.time_functions).max(axis=1, initial=0.0)
@@ -96,14 +81,9 @@ def _length(size: float) -> str:
 SPACE_MODES = View(
     "PGD space modes",
     Plot("Position x (m)", "Displacement / largest"),
-    applies_in_space,
     draw_space,
-    watches="modes",
+    applies_in_space,
 )
 TIME_FUNCTIONS = View(
-    "PGD time functions",
-    Plot("Time t (s)", "Time function / largest"),
-    applies_in_time,
-    draw_time,
-    watches="modes",
+    "PGD time functions", Plot("Time t (s)", "Time function / largest"), draw_time, applies_in_time
 )

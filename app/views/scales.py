@@ -1,9 +1,15 @@
-"""Units, decades and limits: how the values of a plot fill its axes."""
+"""Units, decades, limits and axes: how the values of a plot fill it."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
+
+from app.views.drawing import Axis, Curve
+from solver.settings import Settings
 
 FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
 
@@ -60,3 +66,38 @@ def held(old: Limits | None, low: float, high: float) -> Limits:
         return 0.0, 1.0
     step = round_up(ROOM * span) / 10.0
     return float(np.floor(ROOM * low / step) * step), float(np.ceil(ROOM * high / step) * step)
+
+
+def across(places: Sequence[float], axis: Axis, **style: Any) -> Curve:
+    """Give lines over the whole width of a plot at some heights, as one curve."""
+    return _rules(places, axis, upright=False, **style)
+
+
+def upright(places: ArrayLike, axis: Axis, **style: Any) -> Curve:
+    """Give lines over the whole height of a plot at some places, as one curve."""
+    return _rules(places, axis, upright=True, **style)
+
+
+def _rules(places: ArrayLike, axis: Axis, *, upright: bool, **style: Any) -> Curve:
+    one = np.repeat(np.asarray(places, dtype=np.float64), 3)
+    other = np.tile([axis.low, axis.high, np.nan], len(one) // 3)
+    return Curve(one, other, **style) if upright else Curve(other, one, **style)
+
+
+def length_of(settings: Settings) -> float:
+    """Give the length of a scene, m, which all axes along it show from end to end."""
+    return float(settings.values()["length"])
+
+
+def spanned(low: float, high: float, **options: Any) -> Axis:
+    """Give an axis between two ends, of some length in any case."""
+    if not high > low:
+        low, high = low - 0.5, high + 0.5
+    return Axis(float(low), float(high), **options)
+
+
+def in_decades(low: float, high: float) -> Axis:
+    """Give a logarithmic axis, marked at whole decades: a small plot has room for no more."""
+    powers = range(round(np.log10(low)), round(np.log10(high)) + 1)
+    ticks = tuple(10.0**power for power in powers)[:: max(1, len(powers) // 5)]
+    return Axis(float(low), float(high), ticks=ticks)

@@ -6,44 +6,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.views.drawing import (
-    GREY,
-    VERMILION,
-    VIRIDIS,
-    Colors,
-    Curve,
-    Drawing,
-    Marks,
-    Plot,
-    Scene,
-    View,
-    in_decades,
-    shaded,
-    spanned,
-)
+from app.views.colors import GREY, VERMILION, VIRIDIS, shaded
+from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
-from app.views.scales import decades, round_up
-from solver.settings import Settings
+from app.views.scales import decades, in_decades, round_up, spanned
 
 FLOOR = 1e-8
 LEAST = 1e-30
 CROSS, RING = Marks((), (), GREY, "cross"), Marks((), (), VERMILION, "ring")
 
 
-def applies(settings: Settings) -> bool:
-    """One instant has one singular value."""
-    return int(settings.values()["instants"]) > 1
-
-
-def draw(scene: Scene, kept: None) -> Drawing | None:
+def draw(scene: Scene, kept: None) -> Drawing:
     """Draw how fast the singular values fall, each over the largest of all.
 
     Rings are the sizes of the chosen separated basis's modes; crosses are the singular values of
     the field that it has to hold.
     """
     spectra, bases = scene.frame.spectra, scene.frame.bases
-    if spectra is None:
-        return None
     count, width = spectra.shape
     total = scene.run.settings.n_substructures
     numbers = np.linspace(1, total, count).round().astype(int)
@@ -54,13 +33,12 @@ def draw(scene: Scene, kept: None) -> Drawing | None:
         Curve(modes, values, color, name=str(number))
         for values, color, number in zip(scaled, shaded(count), numbers, strict=False)
     ]
-    found = bases.values if bases else None
     marks: tuple[Marks, ...] = ()
     keys: tuple[Key, ...] = ()
     more = np.zeros(0)
-    if bases is not None and found is not None:
-        more = found.wanted
-        marks = (_sizes(found.wanted, CROSS), _sizes(found.basis, RING))
+    if bases is not None:
+        own, more = bases.values
+        marks = (_sizes(more, CROSS), _sizes(own, RING))
         keys = (
             Key(VERMILION, "ring", f"PGD, sub. {bases.substructure + 1}"),
             Key(GREY, "cross", "its field"),
@@ -92,7 +70,6 @@ VIEW = View(
         marks=(CROSS, RING),
         names="substructure",
     ),
-    applies,
     draw,
-    watches="spectra",
+    has_instants,
 )

@@ -6,25 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from app.views.drawing import (
-    BACKWARD,
-    FORWARD,
-    GREY,
-    OPEN,
-    STICK,
-    VERMILION,
-    Drawing,
-    Image,
-    Plot,
-    Scene,
-    View,
-    across,
-    length_of,
-    spanned,
-    upright,
-)
+from app.views.colors import BACKWARD, FORWARD, GREY, OPEN, STICK, VERMILION
+from app.views.drawing import Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
-from solver.settings import Settings
+from app.views.scales import across, length_of, spanned, upright
 
 KEYS = (
     Key(BACKWARD, "square", "slip −"),
@@ -33,11 +18,6 @@ KEYS = (
 )
 CHOSEN = Key(VERMILION, "line", "chosen instant")
 OPENED = (Key(OPEN, "square", "open"), Key(VERMILION, "line", "instant"))
-
-
-def applies(settings: Settings) -> bool:
-    """Friction is what the page is about."""
-    return True
 
 
 def draw(scene: Scene, kept: Any) -> Drawing:
@@ -71,11 +51,7 @@ def _step(axis: np.ndarray) -> float:
 VIEW = View(
     "Stick and slip",
     Plot(
-        "Position x (m)",
-        "Time t (s)",
-        palette=(BACKWARD, STICK, FORWARD, OPEN),
-        chooses="instant",
+        "Position x (m)", "Time t (s)", palette=(BACKWARD, STICK, FORWARD, OPEN), chooses="instant"
     ),
-    applies,
     draw,
 )

@@ -4,37 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.drawing import (
-    BLUE,
-    GREY,
-    ORANGE,
-    PURPLE,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    length_of,
-    spanned,
-    upright,
-)
+from app.views.colors import BLUE, GREY, ORANGE, PURPLE
+from app.views.drawing import Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held
-from app.worker.frames import Frame, Reference
+from app.views.scales import Limits, decimal_scale, held, length_of, spanned, upright
+from app.worker.frames import Fields
 from app.worker.shown import instant_of
-from solver.scenes.plane import PlaneSettings
-from solver.settings import Settings
 
 KEYS = (
     Key(PURPLE, "line", "pressure p"),
     Key(BLUE, "line", "friction"),
     Key(GREY, "dashed", "±μp"),
 )
-
-
-def applies(settings: Settings) -> bool:
-    """Plane bodies press on each other as they deform."""
-    return isinstance(settings, PlaneSettings)
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
@@ -72,7 +53,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
 
 def _pair(
     places: np.ndarray,
-    fields: Frame | Reference,
+    fields: Fields,
     instant: int,
     factor: float,
     color: str = "",
@@ -88,4 +69,4 @@ def _pair(
     return found
 
 
-VIEW = View("Contact tractions", Plot("Position x (m)", "Traction (Pa)"), applies, draw)
+VIEW = View("Contact tractions", Plot("Position x (m)", "Traction (Pa)"), draw, is_plane)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from app.worker.shown import (
     MOST_MODES,
     MOST_SIZES,
     MOST_VALUES,
-    Bases,
     Counts,
     Floats,
-    OwnValues,
     ShownModes,
     thinned,
 )
@@ -25,22 +26,54 @@ LOBE = 0.5
 """Share of a mode's largest entry, from which an entry may fix the sign."""
 
 
-def show_bases(
-    iterate: Iterate, before: Checkpoint | None, watch: frozenset[str], substructure: int | None
-) -> Bases | None:
-    """Show the bases of an iterate, if it has any; `before` is the iterate before."""
+@dataclass(frozen=True, eq=False)
+class Bases:
+    """The separated bases of one iterate.
+
+    Attributes
+    ----------
+    iterate, before
+        It, and the one before.
+    found
+        Its bases.
+    substructure
+        The chosen one, counted from 0.
+    """
+
+    iterate: Iterate
+    before: Checkpoint | None
+    found: Reduction
+    substructure: int
+
+    @property
+    def largest(self) -> int:
+        """Modes of the largest basis."""
+        return max(modes.n_modes for modes in self.found.modes)
+
+    @cached_property
+    def modes(self) -> ShownModes:
+        """The modes of the chosen substructure."""
+        return _modes(self.iterate, self.found, self.before, self.substructure)
+
+    @cached_property
+    def values(self) -> tuple[Floats, Floats]:
+        """How large the modes of the chosen substructure are, beside the field that they hold.
+
+        Norms of the time functions, shape (n_modes,), relative to the largest entry of both; and
+        singular values, at most `MOST_VALUES`, of what the local stage asks for, W^ + F^/k, in the
+        same inner product.
+        """
+        return _values(self.iterate, self.found.modes[self.substructure], self.substructure)
+
+
+def bases_of(iterate: Iterate, before: Checkpoint | None, substructure: int | None) -> Bases | None:
+    """Give the bases of an iterate, if it has any; None chooses the last substructure."""
     found = iterate.reduction
     if found is None:
         return None
     last = len(found.modes) - 1
     place = last if substructure is None else min(max(substructure, 0), last)
-    return Bases(
-        substructure=place,
-        largest=max(modes.n_modes for modes in found.modes),
-        stored=found.stored,
-        modes=_modes(iterate, found, before, place) if "modes" in watch else None,
-        values=_values(iterate, found.modes[place], place) if "spectra" in watch else None,
-    )
+    return Bases(iterate, before, found, place)
 
 
 def sizes(entry: Record) -> Counts | None:
@@ -98,7 +131,7 @@ def _outside(modes: Modes, past: Modes | None) -> Array:
     return np.asarray(1.0 - np.sum(inside**2, axis=0))
 
 
-def _values(iterate: Iterate, modes: Modes, place: int) -> OwnValues:
+def _values(iterate: Iterate, modes: Modes, place: int) -> tuple[Floats, Floats]:
     problem = iterate.problem
     rows, weights = problem.substructures[place].rows, problem.time_weights
     wanted = 2.0 * iterate.local_displacement[rows] - iterate.local_incoming[rows]
@@ -106,7 +139,7 @@ def _values(iterate: Iterate, modes: Modes, place: int) -> OwnValues:
     values = np.linalg.svd(weighted, compute_uv=False)[:MOST_VALUES]
     own = np.sqrt(modes.time_functions**2 @ weights)
     largest = max(float(values.max()), float(own.max(initial=0.0))) or 1.0
-    return OwnValues(basis=_floats(own / largest), wanted=_floats(values / largest))
+    return _floats(own / largest), _floats(values / largest)
 
 
 def _floats(values: Array) -> Floats:

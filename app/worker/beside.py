@@ -20,12 +20,7 @@ class Beside:
         Where the run on separated bases started, if that was chosen: this one starts there too.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        settings: Settings,
-        start: Start | None,
-    ) -> None:
+    def __init__(self, problem: Problem, settings: Settings, start: Start | None) -> None:
         full = settings.replace(linear_stage="full", finish="none")
         self._number = 0
         self._rules = StopRules(full)

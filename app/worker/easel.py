@@ -46,11 +46,6 @@ def seen(settings: Settings, look: Look) -> list[View]:
     return [view for view in fitting(settings) if view.name in look.views]
 
 
-def watched(settings: Settings, look: Look) -> frozenset[str]:
-    """Give what frames have to carry for them."""
-    return frozenset(view.watches for view in seen(settings, look) if view.watches)
-
-
 def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
     """Give what the models of a view's figure are set to, by their names."""
     found: dict[str, Attributes] = {"title": {"text": escape(card_title(view.name, drawing.keys))}}

@@ -1,19 +1,10 @@
-"""One iterate as views see it: its fields, what they stand on, and what they are compared with."""
+"""The fields of an iterate or a reference as views see them, and what they stand on."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.worker.shown import (
-    Axes,
-    AxialForces,
-    Bases,
-    Bytes,
-    Floats,
-    Mesh,
-    MeshField,
-    Wires,
-)
+from app.worker.shown import Axes, Bytes, Floats, Mesh, Wires
 
 
 @dataclass(frozen=True)
@@ -66,23 +57,9 @@ class Stand:
     is_idle: bool = False
 
 
-@dataclass(frozen=True)
-class Reference:
-    """The reference; its fields are as in Frame."""
-
-    interface: str
-    friction: Floats
-    pressure: Floats | None
-    status: Bytes
-    end_displacement: Floats
-    load: Floats | None
-    residual: float
-    seconds: float
-
-
-@dataclass(frozen=True)
-class Frame:
-    """The fields of one iterate, thinned, in SI.
+@dataclass(frozen=True, kw_only=True)
+class Fields:
+    """What is drawn of an iterate and of a reference alike, thinned, in SI.
 
     Attributes
     ----------
@@ -98,23 +75,18 @@ class Frame:
         Displacement of the loaded end or side, m, or its rotation, shape (n_curve,).
     load
         Force that it takes, N, same shape; None where the stand tells it.
-    spectra
-        Singular values, shape (n_substructures, n_values), NaN where there is none, of the
-        substructures `thinned(number, MOST_SPECTRA)`; or None.
-    bases
-        The separated bases, if there are any.
-    mesh, axial
-        What was chosen of them, where it is watched and there is any.
     """
 
-    iteration: int
     interface: str
     friction: Floats
     pressure: Floats | None
     status: Bytes
     end_displacement: Floats
     load: Floats | None
-    spectra: Floats | None
-    bases: Bases | None
-    mesh: MeshField | None = None
-    axial: AxialForces | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reference(Fields):
+    """The reference, and the time that it took, s."""
+
+    seconds: float

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.frames import Frame, Reference, Stand
+from app.worker.frames import Fields, Reference, Stand
 from app.worker.shown import Counts, thinned
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
@@ -95,7 +95,7 @@ class Recording:
     history: History = field(default_factory=History)
     beside: History = field(default_factory=History)
     sizes: list[Counts] = field(default_factory=list)
-    frame: Frame | None = None
+    frame: Fields | None = None
     status: Status | None = None
     is_warm: bool = False
     choice: StartChoice | None = None

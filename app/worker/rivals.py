@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import fields
-from typing import Any
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -32,7 +31,7 @@ class References:
     def __init__(self, entries: int = 8, budget: int = 200_000_000) -> None:
         self._entries = entries
         self._budget = budget
-        self._kept: OrderedDict[bytes, _Kept] = OrderedDict()
+        self._kept: OrderedDict[bytes, Reference] = OrderedDict()
 
     def __len__(self) -> int:
         return len(self._kept)
@@ -50,34 +49,20 @@ class References:
         if not has_reference(settings):
             return None
         key = fingerprint(problem)
-        kept = self._kept.pop(key, None)
-        if kept is None:
-            found = _find(problem, stop)
-            if found is None:
-                return None
-            kept = _Kept(found)
-        self._kept[key] = kept
-        while len(self) > self._entries or self._size > self._budget:
+        found = self._kept.pop(key, None) or _find(problem, stop)
+        if found is None:
+            return None
+        self._kept[key] = replace(found, problem=None)
+        while len(self) > self._entries or sum(map(_size, self._kept.values())) > self._budget:
             self._kept.popitem(last=False)
-        return kept.of(problem)
-
-    @property
-    def _size(self) -> int:
-        return sum(kept.size for kept in self._kept.values())
+        # That of a problem that is solved alike has to be given this one.
+        return replace(found, problem=problem)
 
 
-class _Kept:
-    """A reference without its problem, and the bytes of its fields."""
-
-    def __init__(self, found: Reference) -> None:
-        names = [one.name for one in fields(found) if one.name != "problem"]
-        self._values: dict[str, Any] = {name: getattr(found, name) for name in names}
-        arrays = [value for value in self._values.values() if isinstance(value, np.ndarray)]
-        self.size = sum(value.nbytes for value in arrays)
-
-    def of(self, problem: Problem) -> Reference:
-        """Give it back its problem, or one that is solved alike."""
-        return Reference(problem, **self._values)
+def _size(found: Reference) -> int:
+    """Give the bytes of a reference's fields."""
+    arrays = [getattr(found, one.name) for one in fields(found)]
+    return sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
 
 
 def _find(problem: Problem, stop: Callable[[], bool]) -> Reference | None:

@@ -11,11 +11,10 @@ import numpy as np
 
 from app.worker.bases import sizes
 from app.worker.beside import beside
-from app.worker.frames import Frame
 from app.worker.orders import Pace, Run, Seek, Step
 from app.worker.recording import Recording
 from app.worker.rivals import References
-from app.worker.sampler import Sampler
+from app.worker.sampler import Frame, Sampler
 from app.worker.seeking import Found, Seeking
 from app.worker.shown import Look
 from app.worker.tempo import Tempo
@@ -170,11 +169,11 @@ class WorkerRun:
         self.recording.stand = self._sampler.completed(stand) if self._is_compared else stand
         self._show_reference()
 
-    def frame(self, watch: frozenset[str], look: Look) -> Frame:
+    def frame(self, look: Look) -> Frame:
         """Show the iterate that is looked at."""
         assert self._newest is not None
         iterate, before = self._sought or (self._newest, self._before)
-        return self._sampler.frame(iterate, watch, look, before)
+        return self._sampler.frame(iterate, look, before)
 
     def _open(self) -> None:
         """Do the first iteration, from the start that is better: its picture comes first."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.bases import show_bases
-from app.worker.frames import Frame, Reference, Stand
+from app.worker.bases import Bases, bases_of
+from app.worker.frames import Fields as Shown
+from app.worker.frames import Reference, Stand
 from app.worker.meshes import Thinned
 from app.worker.shown import (
     LONGEST_CURVE,
@@ -123,54 +125,54 @@ class Sampler:
     def reference(self, found: incremental.Reference) -> Reference:
         """Show a reference."""
         fields = found.contact(self.interface)
-        return Reference(
-            interface=self.interface,
-            friction=self._density(fields.tangential_force),
-            pressure=None if fields.normal_force is None else self._density(fields.normal_force),
-            status=self._status(fields.status),
-            end_displacement=_floats(self._loop.displacement(found.displacement)[self._curve]),
-            load=self._load(found),
-            residual=found.residual,
-            seconds=found.seconds,
-        )
+        shown = self._fields(found, fields.tangential_force, fields.normal_force, fields.status)
+        return Reference(**shown, seconds=found.seconds)
 
-    def frame(
-        self,
-        iterate: Iterate,
-        watch: frozenset[str],
-        look: Look,
-        before: Checkpoint | None = None,
-    ) -> Frame:
-        """Show an iterate, with what is watched beyond its fields.
-
-        The iterate `before` tells what became of its modes.
-        """
+    def frame(self, iterate: Iterate, look: Look, before: Checkpoint | None = None) -> Frame:
+        """Show an iterate; the one `before` tells what became of its modes."""
         *normal, tangential = self._problem.contact_places[self.interface]
-        force = iterate.contact_force
-        instant = instant_of(look.phase, len(self._columns))
-        axial = self._wires if "axial" in watch else None
+        force, status = iterate.contact_force, iterate.status[self._points]
+        pressure = force[normal[0]] if normal else None
+        shown = self._fields(iterate, force[tangential], pressure, status)
         return Frame(
+            **shown,
             iteration=iterate.number,
-            interface=self.interface,
-            friction=self._density(force[tangential]),
-            pressure=self._density(force[normal[0]]) if normal else None,
-            status=self._status(iterate.status[self._points]),
-            end_displacement=_floats(self._loop.displacement(iterate.displacement)[self._curve]),
-            load=self._load(iterate),
-            spectra=_table(friction_spectra(iterate)) if "spectra" in watch else None,
-            bases=show_bases(iterate, before, watch, look.substructure),
-            mesh=self._mesh_field(iterate, look, instant) if "mesh" in watch else None,
-            axial=axial.forces(iterate, instant, self._columns[instant]) if axial else None,
+            iterate=iterate,
+            before=before,
+            look=look,
+            sampler=self,
         )
 
-    def _mesh_field(self, iterate: Iterate, look: Look, instant: int) -> MeshField | None:
+    def mesh_field(self, iterate: Iterate, look: Look) -> MeshField | None:
+        """Show the inside of plane bodies at the chosen instant."""
         if self._mesh is None:
             return None
-        column = int(self._columns[instant])
+        column = int(self._columns[instant_of(look.phase, len(self._columns))])
         whole = iterate.displacement
         displacement, stress = self._mesh.fields(whole, column, look.stress)
         largest = max(float(whole.max()), -float(whole.min()))
-        return MeshField(instant, look.stress, _floats(displacement), _floats(stress), largest)
+        return MeshField(_floats(displacement), _floats(stress), largest)
+
+    def axial(self, iterate: Iterate, look: Look) -> Floats | None:
+        """Give the forces in the wires of a strand at the chosen instant."""
+        column = int(self._columns[instant_of(look.phase, len(self._columns))])
+        return self._wires.forces(iterate, column) if self._wires else None
+
+    def _fields(
+        self,
+        fields: Fields,
+        friction: NDArray[np.float64],
+        pressure: NDArray[np.float64] | None,
+        status: NDArray[np.int8],
+    ) -> dict[str, Any]:
+        return {
+            "interface": self.interface,
+            "friction": self._density(friction),
+            "pressure": None if pressure is None else self._density(pressure),
+            "status": self._status(status),
+            "end_displacement": _floats(self._loop.displacement(fields.displacement)[self._curve]),
+            "load": self._load(fields),
+        }
 
     def _load(self, fields: Fields) -> Floats | None:
         force = self._loop.force
@@ -184,6 +186,45 @@ class Sampler:
 
     def _status(self, status: NDArray[np.int8]) -> Bytes:
         return np.ascontiguousarray(self._thin(status))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame(Shown):
+    """One iterate as views see it; what only some of them show is computed when one looks."""
+
+    iteration: int
+    iterate: Iterate
+    before: Checkpoint | None
+    look: Look
+    sampler: Sampler
+
+    @property
+    def alone(self) -> Shown:
+        """Its fields, without the run that they are of."""
+        return Shown(**{one.name: getattr(self, one.name) for one in fields(Shown)})
+
+    @cached_property
+    def spectra(self) -> Floats:
+        """Singular values, shape (n_substructures, n_values), NaN where there is none.
+
+        They are those of the substructures `thinned(number, MOST_SPECTRA)`.
+        """
+        return _table(friction_spectra(self.iterate))
+
+    @cached_property
+    def bases(self) -> Bases | None:
+        """The separated bases, if there are any."""
+        return bases_of(self.iterate, self.before, self.look.substructure)
+
+    @cached_property
+    def mesh(self) -> MeshField | None:
+        """The inside of plane bodies."""
+        return self.sampler.mesh_field(self.iterate, self.look)
+
+    @cached_property
+    def axial(self) -> Floats | None:
+        """Forces in the wires of a strand, shape (n_wires, n_positions), N."""
+        return self.sampler.axial(self.iterate, self.look)
 
 
 def _floats(values: NDArray[np.float64]) -> Floats:

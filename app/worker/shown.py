@@ -114,53 +114,11 @@ class ShownModes:
 
 
 @dataclass(frozen=True)
-class OwnValues:
-    """How large the modes of one substructure are, beside the field that they have to hold.
-
-    Attributes
-    ----------
-    basis
-        Norms of the time functions, shape (n_modes,), relative to the largest entry of both.
-    wanted
-        Singular values, at most `MOST_VALUES`, of what the local stage asks for, W^ + F^/k, in the
-        same inner product.
-    """
-
-    basis: Floats
-    wanted: Floats
-
-
-@dataclass(frozen=True)
-class Bases:
-    """The separated bases of one iterate.
-
-    Attributes
-    ----------
-    substructure
-        The chosen one, counted from 0.
-    largest, stored
-        Modes of the largest basis, and of all together, a shared one counted once.
-    modes, values
-        Of the chosen substructure, if "modes", or "spectra", is watched.
-    """
-
-    substructure: int
-    largest: int
-    stored: int
-    modes: ShownModes | None
-    values: OwnValues | None
-
-
-@dataclass(frozen=True)
 class MeshField:
     """Displacement and stress on a `Mesh` at one instant.
 
     Attributes
     ----------
-    instant
-        Index of the instant among those of the stand.
-    component
-        One of `STRESSES`.
     displacement
         Shape (n_nodes, 2), m.
     stress
@@ -169,19 +127,9 @@ class MeshField:
         Largest displacement over the whole time, m.
     """
 
-    instant: int
-    component: str
     displacement: Floats
     stress: Floats
     largest: float
-
-
-@dataclass(frozen=True)
-class AxialForces:
-    """Axial forces at one instant, an index as in `MeshField`: (n_wires, n_positions), N."""
-
-    instant: int
-    force: Floats
 
 
 @dataclass(frozen=True)

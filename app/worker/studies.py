@@ -1,95 +1,76 @@
-"""The studies of the command line as jobs of a page: what a process does, and what comes of it."""
+"""The long commands of the command line as a page has them made: the same reports, as they grow."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import time
+from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from app.worker.job import Doing, Part, Send
+from app.worker.desk import Desk
 from solver.scenes import CATALOGUE
-from solver.study.error_against_time import Study, error_against_time
-from solver.study.figure_data import PaperFigure
-from solver.study.growth import Growth, growth
+from solver.study.error_against_time import error_against_time
+from solver.study.figure_page import figure_sections
+from solver.study.growth import growth
+from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
 from solver.study.stability import METHODS, Row, cases_of, invariance, stability
-from solver.study.stability_report import write_report
+from solver.study.stability_report import stability_sections, write_report
 from solver.study.study_files import write_study
+from solver.study.study_page import study_sections
 
 SHARE_OF_GROWTH = 0.8
 """Of the whole time, roughly, where growth is measured too."""
-Files = Mapping[str, bytes]
-"""Contents of the files that the command line would write, by name."""
+SHOWN_EVERY = 0.5
+"""Seconds: a table that grows is sent to the browser as a whole."""
+Work = Callable[[Path], None]
+"""Picklable; it is given the folder of its report."""
 
 
-@dataclass(frozen=True, eq=False)
-class StudyFound:
-    """Error against run time, and growth with the size, which may be empty."""
-
-    study: Study
-    growth: Sequence[Growth]
-    files: Files
-
-
-@dataclass(frozen=True, eq=False)
-class StabilityFound:
-    """The stability matrix, and differences between units."""
-
-    rows: Sequence[Row]
-    apart: Mapping[str, float]
-    files: Files
-
-
-def study_of(
-    scene: str, values: dict[str, Any], repeats: int, sizes: bool, send: Send
-) -> StudyFound:
+def study_of(scene: str, values: dict[str, Any], repeats: int, sizes: bool, folder: Path) -> None:
     """Measure error against run time, and with `sizes` growth with the size of the problem."""
-    settings = CATALOGUE[scene].settings.checked(values)
+    desk, settings = Desk(folder), CATALOGUE[scene].settings.checked(values)
     first = 1.0 - SHARE_OF_GROWTH if sizes else 1.0
     study = error_against_time(
-        settings, repeats, lambda doing, share: send(Doing(doing, first * share))
+        settings, repeats, lambda doing, share: desk.tell(doing, first * share)
     )
     found = (
-        growth(settings, lambda doing, share: send(Doing(doing, first + (1.0 - first) * share)))
+        growth(settings, lambda doing, share: desk.tell(doing, first + (1.0 - first) * share))
         if sizes
         else []
     )
-    send(Doing("Writing the report", 1.0))
-    return StudyFound(study, found, _files(lambda folder: write_study(study, found, folder)))
+    desk.tell("Writing the report", 1.0)
+    desk.publish(lambda place: write_study(study, found, place))
+    desk.show(study_sections(study, found))
 
 
-def stability_of(quick: bool, send: Send) -> StabilityFound:
-    """Run the stability matrix, or a quarter of it, and send every row as it comes."""
-    matrix = cases_of(quick=quick)
+def stability_of(quick: bool, folder: Path) -> None:
+    """Run the stability matrix, or a quarter of it, and show it again and again as it grows."""
+    desk, matrix, rows = Desk(folder), cases_of(quick=quick), list[Row]()
     total = len(METHODS) * len(matrix)
-    rows: list[Row] = []
+    shown = 0.0
 
     def report(row: Row) -> None:
+        nonlocal shown
         rows.append(row)
-        send(Part(row))
-        send(Doing(f"{len(rows)} of {total} runs", len(rows) / total))
+        desk.tell(f"{len(rows)} of {total} runs", len(rows) / total)
+        if time.monotonic() - shown > SHOWN_EVERY:
+            desk.show(stability_sections(rows, {}))
+            shown = time.monotonic()
 
-    send(Doing(f"0 of {total} runs", 0.0))
+    desk.tell(f"0 of {total} runs", 0.0)
     stability(matrix, report)
-    send(Doing("The same bar in other units", 1.0))
+    desk.tell("The same bar in other units", 1.0)
     apart = invariance()
-    return StabilityFound(rows, apart, _files(lambda folder: write_report(rows, apart, folder)))
+    desk.publish(lambda place: write_report(rows, apart, place))
+    desk.show(stability_sections(rows, apart))
 
 
-def figures_of_the_paper(send: Send) -> list[PaperFigure]:
-    """Compute the paper's figures, and send each as it comes."""
-    runs, figures = PaperRuns(), list[PaperFigure]()
-    for make in MAKERS:
-        send(Doing(f"{len(figures)} of {len(MAKERS)} figures", len(figures) / len(MAKERS)))
-        figures.append(make(runs))
-        send(Part(figures[-1]))
-    return figures
-
-
-def _files(write: Callable[[Path], object]) -> Files:
-    with TemporaryDirectory() as name:
-        write(Path(name))
-        return {file.name: file.read_bytes() for file in sorted(Path(name).iterdir())}
+def figures_of_the_paper(folder: Path) -> None:
+    """Compute the paper's figures, and show each as it comes."""
+    desk, runs, shown = Desk(folder), PaperRuns(), list[Section]()
+    for number, make in enumerate(MAKERS):
+        desk.tell(f"{number} of {len(MAKERS)} figures", number / len(MAKERS))
+        shown += figure_sections(make(runs))
+        desk.show(shown)

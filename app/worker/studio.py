@@ -9,13 +9,13 @@ from collections.abc import Callable
 from html import escape
 
 from app.views.drawing import Scene
-from app.worker.easel import Easel, watched
-from app.worker.frames import Frame
+from app.worker.easel import Easel
 from app.worker.orders import Order, Ready, Run, Seek, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Facts, Picture
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
+from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
 from app.worker.words import key_figures, status_line
 from solver.definitions import SettingError
@@ -105,7 +105,7 @@ class Studio:
         self._last = run.last
         if run.recording.is_worth_keeping:
             run.obey(Seek(run.ticket, None))
-            run.recording.frame = run.frame(frozenset(), self._look)
+            run.recording.frame = run.frame(self._look).alone
             self._before = run.recording
             self._past.append(run.recording)
 
@@ -130,7 +130,7 @@ class Studio:
     def _show(self, run: WorkerRun) -> None:
         look, recording = self._look, run.recording
         run.has_news, self._paint_at = False, None
-        frame = run.frame(watched(recording.settings, look), look)
+        frame = run.frame(look)
         stand = recording.stand
         instant = instant_of(look.phase, len(stand.instants))
         scene = Scene(recording, self._before, tuple(self._past), frame, instant, look)

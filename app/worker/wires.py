@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.shown import AxialForces, Wires, thinned
+from app.worker.shown import Floats, Wires, thinned
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
 from solver.latin import Iterate
@@ -52,7 +52,7 @@ class ShownWires:
             exact=both[np.ix_(range(2), rows, columns)].astype(np.float32),
         )
 
-    def forces(self, iterate: Iterate, instant: int, column: int) -> AxialForces:
+    def forces(self, iterate: Iterate, column: int) -> Floats:
         """Show the forces of an iterate at one instant."""
         force = self._force(iterate.displacement[:, column]).reshape(self._shape)
-        return AxialForces(instant, force[self._chosen].astype(np.float32))
+        return force[self._chosen].astype(np.float32)

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from html import escape
 from typing import Literal
 
-from app.worker.frames import Frame
 from app.worker.recording import Recording
+from app.worker.sampler import Frame
 from app.worker.shown import has_reference
 from solver.latin import Ending
 
@@ -80,7 +80,7 @@ def status_line(
         line = f"{STATES[state].format(done)} · {scale}"
     if (bases := frame.bases) is not None:
         counted = "1 mode" if bases.largest == 1 else f"{bases.largest} modes"
-        line += f" · {counted} at most, {bases.stored} stored"
+        line += f" · {counted} at most, {bases.found.stored} stored"
     if (last := run.last) is not None:
         line += f" · η = {number(last.indicator)}"
         if math.isfinite(last.error_force):

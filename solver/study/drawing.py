@@ -1,4 +1,4 @@
-"""Figures as PNG files, and as one HTML page that needs nothing beside it.
+"""Plots as PNG files, and inside of one HTML page that needs nothing beside it.
 
 The only module that needs matplotlib; import it when something is to be drawn.
 """
@@ -9,6 +9,7 @@ import base64
 import io
 from collections.abc import Sequence
 from html import escape
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from matplotlib.ticker import MaxNLocator, NullLocator
 from PIL import Image
 
 from solver.study.figure_data import HUES, Line, Panel, PaperFigure
+from solver.study.figure_page import TITLE, WORDS, figure_sections
+from solver.study.page import Plot, Section, page
 
 COLORS = ("#404040", *HUES)
 """Of lines by their hue; the first is neutral."""
@@ -36,43 +39,6 @@ LETTERS = 13
 """Letters of a legend that an inch holds; the mark beside each entry takes eight."""
 ROWS, ROW = 3, 0.2
 """Rows of a legend that the height leaves room for, and what each further one adds, inches."""
-SAYS = {True: "Bears it out.", False: "Speaks against it."}
-PAGE = """<!DOCTYPE html>
-<html lang="en">
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: {title}</title>
-<style>
-body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem;
-  color: #222; background: #fff; }}
-figure {{ margin: 0 0 3.5rem; }}
-img {{ max-width: 100%; height: auto; }}
-li b {{ font-weight: 600; }}
-.caption {{ color: #555; font-size: 0.9rem; }}
-table {{ border-collapse: collapse; font-size: 0.9rem; }}
-th, td {{ padding: 0.2rem 0.8rem 0.2rem 0; text-align: right; border-bottom: 1px solid #ddd; }}
-th:first-child, td:first-child {{ text-align: left; }}
-</style>
-{body}
-</html>
-"""
-"""A page of the given title and body, which carries its own style."""
-BODY = """<h1>The paper's figures, drawn again</h1>
-<p>Computed by Slipfront. The paper prints curves without numbers; each figure here stands with
-what the paper says of it, and with the numbers that bear it out or do not.</p>
-{figures}"""
-FIGURE = """<figure id="figure-{number}">
-<h2>Fig. {number}: {title}</h2>
-{image}
-<figcaption>
-<p><b>The paper's claim:</b> {claim} <b>Here it {verdict}.</b></p>
-<ul>
-{findings}
-</ul>
-<p class="caption">{caption}</p>
-</figcaption>
-</figure>
-"""
 
 
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
@@ -94,24 +60,38 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
     OSError
         When a file cannot be written.
     """
-    images = [png(figure.panels, f"Fig. {figure.number}: {figure.title}") for figure in figures]
-    files = [folder / f"figure-{figure.number}.png" for figure in figures]
-    for file, image in zip(files, images, strict=True):
-        file.write_bytes(image)
     together = folder / "figures.html"
-    together.write_text(html(figures, images), encoding="utf-8")
+    report = [WORDS, *chain.from_iterable(map(figure_sections, figures))]
+    files = [folder / f"figure-{figure.number}.png" for figure in figures]
+    for file, image in zip(files, write_page(together, TITLE, report), strict=True):
+        file.write_bytes(image)
     return [*files, together]
 
 
-def png(panels: Sequence[Panel], heading: str) -> bytes:
-    """Draw panels side by side under a heading, as a PNG."""
+def write_page(file: Path, title: str, report: Sequence[Section]) -> list[bytes]:
+    """Write a report with its plots inside it, and give these as PNG files.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    images = {plot: png(plot) for plot in report if isinstance(plot, Plot)}
+    parts = [one if isinstance(one, str) else inline(images[one], one.heading) for one in report]
+    file.write_text(page(title, parts), encoding="utf-8")
+    return list(images.values())
+
+
+def png(plot: Plot) -> bytes:
+    """Draw panels side by side under their heading, as a PNG."""
+    panels = plot.panels
     width = WIDTH * max(len(panels), 1.5)
     sheet = Figure(layout="constrained")
     grid = sheet.subplots(1, len(panels), squeeze=False)
     entries: dict[str, Line2D] = {}
     for axes, panel in zip(grid[0], panels, strict=True):
         entries |= _draw(axes, panel)
-    sheet.suptitle(heading, fontsize=11)
+    sheet.suptitle(plot.heading, fontsize=11)
     columns = max(1, min(len(entries), int(LETTERS * width / (max(map(len, entries)) + 8))))
     more = max(-(-len(entries) // columns) - ROWS, 0)
     sheet.set_size_inches(width, HEIGHT + ROW * more)
@@ -129,26 +109,6 @@ def png(panels: Sequence[Panel], heading: str) -> bytes:
     image = Image.open(drawn).convert("RGB")
     image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE).save(small, format="png", optimize=True)
     return small.getvalue()
-
-
-def html(figures: Sequence[PaperFigure], images: Sequence[bytes]) -> str:
-    """Write the page, with the images inside it."""
-    parts = [
-        FIGURE.format(
-            number=figure.number,
-            title=escape(figure.title),
-            image=inline(image, figure.title),
-            claim=escape(figure.claim),
-            verdict=figure.verdict,
-            findings="\n".join(
-                f"<li>{escape(found.text)} <b>{SAYS[found.holds]}</b></li>"
-                for found in figure.findings
-            ),
-            caption=escape(figure.caption),
-        )
-        for figure, image in zip(figures, images, strict=True)
-    ]
-    return PAGE.format(title="the paper's figures", body=BODY.format(figures="\n".join(parts)))
 
 
 def inline(image: bytes, words: str) -> str:

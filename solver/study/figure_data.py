@@ -10,7 +10,7 @@ from solver.arrays import Array
 
 HUES = (
     *("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"),
-    *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#004D40"),
+    *("#7B5CE0", "#999933", "#8C564B", "#B3003C", "#1F9AA0"),
 )
 """Of curves, from hue 1 on: Okabe and Ito's palette, told apart by the colour-blind, and five more
 for panels of more curves, which have marks besides."""

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from solver.study.page import page
 from solver.study.row_report import (
     BLUE,
     GREY,
@@ -13,9 +14,9 @@ from solver.study.row_report import (
     ORANGE,
     RED,
     number,
-    page,
     prepare,
     table_of,
+    words,
     write_rows,
 )
 from solver.study.stability import (
@@ -25,6 +26,7 @@ from solver.study.stability import (
     Verdict,
 )
 
+TITLE = "Stability on stiff and extreme cases"
 COLOURS: dict[str, str] = {
     Verdict.RIGHT: BLUE,
     Verdict.NEAR: LIGHT,
@@ -97,9 +99,9 @@ def summary(rows: Sequence[Row]) -> str:
 
 def notes(apart: Mapping[str, float]) -> list[str]:
     """Say what the words mean, and what the table does not show."""
-    words = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
+    meanings = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
     return [
-        *words,
+        *meanings,
         "A run passes if it does not fail and, where the right answer is expected, comes to it. "
         "Errors are distances to the incremental reference, over space and time, relative to it; "
         "to the load or absolute where it is zero.",
@@ -139,7 +141,7 @@ def write_report(rows: Sequence[Row], apart: Mapping[str, float], folder: Path) 
     """
     table, page_file = prepare(folder, "stability")
     write_rows(table, COLUMNS, [values(row) for row in rows])
-    page_file.write_text(html(rows, apart), encoding="utf-8")
+    page_file.write_text(page(TITLE, stability_sections(rows, apart)), encoding="utf-8")
     return [table, page_file]
 
 
@@ -167,11 +169,10 @@ def values(row: Row) -> dict[str, object]:
     }
 
 
-def html(rows: Sequence[Row], apart: Mapping[str, float]) -> str:
-    """Write the page."""
+def stability_sections(rows: Sequence[Row], apart: Mapping[str, float]) -> list[str]:
+    """Write the report (HTML)."""
     table = table_of(COLUMNS, [values(row) for row in rows], COLOURS)
-    title = "Stability on stiff and extreme cases"
-    return page("stability", title, summary(rows), notes(apart), {"": table})
+    return [words(summary(rows), notes(apart)), table]
 
 
 def _passed(row: Row) -> str:

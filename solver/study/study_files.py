@@ -7,6 +7,7 @@ from pathlib import Path
 
 from solver.study.error_against_time import Study
 from solver.study.growth import Growth
+from solver.study.study_page import TITLE, study_sections
 from solver.study.study_report import write_tables
 
 NO_PAGE = "The page needs matplotlib: pip install 'slipfront[figures]'"
@@ -33,9 +34,11 @@ def write_study(study: Study, found: Sequence[Growth], folder: Path) -> tuple[li
     """
     files = write_tables(study, found, folder)
     try:
-        from solver.study.study_page import write_page
+        from solver.study.drawing import write_page
     except ModuleNotFoundError as missing:
         if (missing.name or "").split(".")[0] not in ("matplotlib", "PIL"):
             raise
         return files, False
-    return [*files, write_page(study, found, folder)], True
+    file = folder / "study.html"
+    write_page(file, TITLE, study_sections(study, found))
+    return [*files, file], True

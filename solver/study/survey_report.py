@@ -8,16 +8,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from solver.latin import Ending
+from solver.study.page import page, plain_table
 from solver.study.row_report import (
     BLUE,
     GREY,
     ORANGE,
     RED,
     number,
-    page,
-    plain_table,
     prepare,
     table_of,
+    words,
     write_rows,
 )
 from solver.study.study_report import aligned
@@ -161,11 +161,10 @@ def write_report(rows: Sequence[Row], folder: Path) -> list[Path]:
 
 def html(rows: Sequence[Row]) -> str:
     """Write the page."""
-    head, *counts = table_of_counts(rows)
     notes = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
-    cells = ["".join(f"<td>{cell}</td>" for cell in own) for own in counts]
-    tables = {
-        "By scene and method": plain_table(head, cells),
-        "Every run": table_of(COLUMNS, [values(row) for row in rows], COLOURS),
-    }
-    return page("survey", "Random runs of all scenes", summary(rows), notes, tables)
+    sections = [
+        words(summary(rows), notes),
+        f"<h2>By scene and method</h2>\n{plain_table(table_of_counts(rows))}",
+        f"<h2>Every run</h2>\n{table_of(COLUMNS, [values(row) for row in rows], COLOURS)}",
+    ]
+    return page("Random runs of all scenes", sections)

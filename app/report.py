@@ -1,0 +1,209 @@
+"""What the tabs of long reports share: ask, watch, cancel, read, and take away.
+
+What is read is the report of the command line, as it grows; its plots are drawn for the page.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from functools import partial
+from html import escape
+from io import BytesIO
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+from bokeh.document import Document
+
+from app.errand import Errand, Found
+from app.views.colors import GREY
+from app.views.legend import Key, card_title
+from solver.study.figure_data import HUES, Panel
+from solver.study.page import Plot, Section
+
+COLORS = (GREY, *HUES)
+"""Of curves, by their hue."""
+MARKS = {"solid": "line", "points": "dot"}
+
+
+class Report:
+    """A tab on which a report is asked for, watched while it is made, and read.
+
+    A subclass says what it is, and what asking for it means for the page (`title`, `words`), what
+    is asked (`_ask`) and what can be chosen (`_choices`).
+
+    Parameters
+    ----------
+    errand
+        The state that it shows.
+    style
+        Style sheet.
+
+    Attributes
+    ----------
+    view
+        What stands on the page; it is empty until `open`.
+    """
+
+    title = words = ""
+
+    def __init__(self, errand: Errand, style: str) -> None:
+        self._errand = errand
+        self._style = style
+        self._newest: Found | None = None
+        self._shown: tuple[Any, ...] = (None,)
+        self._role = "report"
+        self._owed: deque[tuple[pn.Column, Panel]] = deque()
+        self._progress = self._text("", role="progress")
+        self._heading, self._sheet = self._text(""), self._column()
+        self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
+        self._past.param.watch(lambda event: self._put(event.new), "value")
+        self._files = self._row(margin=(0, 6, 8, 6))
+        parts = self._heading, self._sheet, self._files
+        self._card = self._column(*parts, role="card paper", visible=False)
+        self.view = self._column(margin=(4, 10), visible=False)
+
+    def open(self) -> None:
+        """Show the report; nothing is computed before somebody asks."""
+        if not self.view.objects:
+            words = self._text(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
+            top = self._column(words, *self._bar(), role="card paper", margin=(0, 0, 12, 0))
+            self.view[:] = [top, self._card]
+        self._refresh()
+
+    def refresh(self) -> None:
+        """Follow the errand, as soon as somebody looks."""
+        if self.view.visible:
+            self._refresh()
+
+    def _ask(self) -> None:
+        raise NotImplementedError
+
+    def _choices(self) -> list[Any]:
+        return []
+
+    def _refusal(self) -> str:
+        """Say why it cannot be asked for at present, if so."""
+        return ""
+
+    def _found(self) -> list[Found]:
+        """Give the reports that are whole, oldest first."""
+        return list(self._errand.found)
+
+    def _title(self, found: Found) -> str:
+        """Say what stands above a report that is whole (HTML)."""
+        return ""
+
+    def _bar(self) -> list[Any]:
+        self._start = pmui.Button(label="Start", icon="play_arrow", size="small", color="primary")
+        self._cancel = pmui.Button(label="Cancel", icon="stop", size="small", variant="outlined")
+        self._start.on_click(lambda event: self._on_start())
+        self._cancel.on_click(lambda event: self._on_cancel())
+        parts = self._start, self._cancel, *self._choices(), self._past
+        return [self._row(*parts, align_items="center"), self._progress]
+
+    def _on_start(self) -> None:
+        self._ask()
+        self._refresh()
+
+    def _on_cancel(self) -> None:
+        self._errand.cancel()
+        self._refresh()
+
+    def _refresh(self) -> None:
+        errand, refusal = self._errand, self._refusal()
+        self._start.disabled = errand.is_busy or bool(refusal)
+        self._cancel.visible = errand.is_busy
+        waiting = f"<b>{escape(refusal)}</b>" if refusal and not errand.is_busy else ""
+        self._progress.object = waiting or progress(errand)
+        found = self._found()
+        options = {f"{number}: {one.title}": one for number, one in enumerate(found, start=1)}
+        if found and options != self._past.options:
+            self._past.param.update(options=options, value=found[-1], visible=len(found) > 1)
+        newest = errand.growing if errand.is_busy or not found else found[-1]
+        if newest.sections and (newest is self._shown[0] or newest is not self._newest):
+            self._newest = newest
+            self._put(newest)
+
+    def _put(self, found: Found) -> None:
+        """Show what there is of a report; of the same one, what is drawn already stays."""
+        before, self._shown = self._shown, (found, found.sections, found.files)
+        if self._shown == before:
+            return
+        if found is not before[0]:
+            self._owed.clear()
+            self._sheet[:] = []
+        for pane, section in zip(self._sheet, found.sections, strict=False):
+            if isinstance(section, str):
+                pane.object = section
+        self._sheet.extend(map(self._pane, found.sections[len(self._sheet) :]))
+        is_whole = found in self._found()
+        self._heading.object = self._title(found) if is_whole else ""
+        self._files[:] = downloads(found.files) if is_whole else []
+        self._card.visible = True
+
+    def _pane(self, section: Section) -> Any:
+        """Give what shows a section; a plot is drawn in it later."""
+        if isinstance(section, str):
+            return self._text(section, self._role)
+        keys = self._text(legend(section), role="title")
+        # A `FlexBox` would not do: what is put into it later misses the theme.
+        box = self._column(keys, role="panels")
+        if not self._owed:
+            threading.Thread(target=self._prepare, args=(pn.state.curdoc,), daemon=True).start()
+        self._owed += [(box, panel) for panel in section.panels]
+        return box
+
+    def _prepare(self, document: Document) -> None:
+        """Import what draws, and begin: on a thread, as pages would stand still for 0.6 s."""
+        from app.report_plots import plot
+
+        document.add_next_tick_callback(partial(self._draw, document, plot))
+
+    def _draw(self, document: Document, plot: Callable[[Panel], Any]) -> None:
+        """Draw one panel, and the others later: one takes 0.2 s, in which all pages stand still."""
+        if self._owed:
+            box, panel = self._owed.popleft()
+            box.append(plot(panel))
+            document.add_next_tick_callback(partial(self._draw, document, plot))
+
+    def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:
+        """Put parts one below the other, as high as they are."""
+        options = {"margin": 0, **self._looks(role), **options}
+        return pn.Column(*parts, **options)
+
+    def _row(self, *parts: Any, **options: Any) -> pn.FlexBox:
+        options = {"margin": (0, 6), "sizing_mode": "stretch_width", **options}
+        return pn.FlexBox(*parts, flex_wrap="wrap", **options)
+
+    def _text(self, html: str, role: str = "report") -> pn.pane.HTML:
+        return pn.pane.HTML(html, margin=(6, 14), **self._looks(role))
+
+    def _looks(self, role: str) -> dict[str, Any]:
+        classes, styles = role.split(), [self._style]
+        return {"css_classes": classes, "stylesheets": styles, "sizing_mode": "stretch_width"}
+
+
+def legend(plot: Plot) -> str:
+    """Write one legend for panels side by side (HTML)."""
+    curves = {curve.label: curve for panel in plot.panels for curve in panel.curves}.values()
+    keys = [Key(COLORS[one.hue], MARKS.get(one.line, one.line), one.label) for one in curves]
+    return card_title("", keys)
+
+
+def downloads(files: Mapping[str, bytes]) -> list[Any]:
+    """Give a button for each file."""
+    return [
+        pmui.FileDownload(label=name, filename=name, size="small", callback=partial(BytesIO, data))
+        for name, data in files.items()
+    ]
+
+
+def progress(errand: Errand) -> str:
+    """Say how far a report is, or why it came to nothing (HTML)."""
+    if errand.is_busy:
+        bar = f'<progress value="{errand.share:.3f}"></progress>'
+        return f"{bar} {escape(errand.doing)} <small>({escape(errand.title)})</small>"
+    return f"<b>{escape(errand.notice)}</b>" if errand.notice else ""
