@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app.address import query_of
+from app.address import PACES, Sight, query_of
 from app.cards import Cards
 from app.innards import ignore_business, send_without_delay
 from app.looks import Looks
@@ -19,6 +20,7 @@ from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
 from app.views.catalogue import fitting
+from solver.settings import Settings
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -27,6 +29,8 @@ CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
 """Plots that show the scene at work, and those that do not yet."""
 LOST_AFTER = 2.0
 """Seconds after which a picture that was not acknowledged is taken for lost."""
+SILENT = 30.0
+"""Seconds without a sign of life after which nobody is there, though no connection was closed."""
 REST = 0.2
 """Times what a browser needs for a picture, left to it to listen to its user."""
 
@@ -40,6 +44,8 @@ class Dashboard:
         What the page shows.
     complaint
         What was refused in the page's address; it is shown until a setting changes.
+    tab
+        The one that is looked at first.
     on_phone
         Whether the run comes first, with the settings out of the way and the tabs above it.
 
@@ -49,12 +55,21 @@ class Dashboard:
         What is served.
     """
 
-    def __init__(self, session: Session, *, complaint: str = "", on_phone: bool = False) -> None:
+    def __init__(
+        self,
+        session: Session,
+        *,
+        complaint: str = "",
+        tab: str = Sight.tab,
+        on_phone: bool = False,
+    ) -> None:
         self.session = session
         self._asked_for = session.wanted
         self._alone = True
         self._loaded = False
         self._sent_at = 0.0
+        self._heard_at = math.inf
+        self._stood: tuple[Settings, Sight] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
@@ -74,12 +89,14 @@ class Dashboard:
         )
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, self._style, self._on_tab)
+        self._first_tab = tab
         self.page = self._make_page()
         if on_phone:
             self.page.sidebar_open = False
             self._clear_the_header()
         self._sidebar.show(session.wanted)
         self._arrange()
+        self._keep_address()
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
@@ -94,10 +111,12 @@ class Dashboard:
         self._sidebar.fill()
         self._arrange()
         self._on_narrow()
+        self._tabs.bar.value = self._first_tab
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
-        alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
+        is_silent = time.monotonic() - self._heard_at > SILENT
+        alone = self._connections() == 0 or self._pulse.hidden or not self._loaded or is_silent
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
@@ -110,6 +129,7 @@ class Dashboard:
         if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
+        self._keep_address()
 
     def end(self) -> None:
         """Leave nothing behind when the page is gone."""
@@ -123,6 +143,7 @@ class Dashboard:
     def _listen(self) -> None:
         self._pulse.param.watch(self._on_painted, "painted")
         self._pulse.param.watch(self._on_key, "key")
+        self._pulse.param.watch(self._on_beat, "beat")
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
 
     def _make_live(self) -> pn.Column:
@@ -163,9 +184,20 @@ class Dashboard:
             margin=(2, 10),
         )
 
-    def _copy(self, query: str) -> None:
-        """Put a query into the address bar and the clipboard, even the same one again."""
-        self._pulse.copy = f"{query}#{time.monotonic()}"
+    def _keep_address(self) -> None:
+        """Have the address say where the page stands."""
+        if self._stood != (stands := self._stands()):
+            self._stood, self._pulse.query = stands, query_of(*stands)
+
+    def _copy(self) -> None:
+        self._keep_address()
+        self._pulse.copy += 1
+
+    def _stands(self) -> tuple[Settings, Sight]:
+        """Give what an address has to say to come back to this."""
+        session = self.session
+        pace = next(name for name, pace in PACES.items() if pace == session.pace)
+        return session.wanted, Sight(self._tabs.bar.value, round(session.look.phase, 4), pace)
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
@@ -181,7 +213,6 @@ class Dashboard:
         holds = session.wanted is self._asked_for
         complaint = session.look.complaint if holds else ""
         session.watch(views=tuple(view.name for view in self._shown), complaint=complaint)
-        self._pulse.query = query_of(session.wanted)
         self._dim()
         self._offer_looks()
         self.transport.show()
@@ -222,6 +253,13 @@ class Dashboard:
             self._sidebar.catch_up()
         if self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
+
+    def _on_beat(self, event: Any) -> None:
+        """Answer a sign of life; a page that missed some is given all that it has to show."""
+        self._heard_at = time.monotonic()
+        self._pulse.heard = event.new
+        if event.new < 0:
+            self.session.ask(afresh=True)
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:

@@ -8,7 +8,6 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from app.address import query_of
 from app.controls import Control, make_control
 from app.innards import gather_briefly
 from app.samples import points_of
@@ -53,7 +52,7 @@ class Sidebar:
     complain
         Tells the user what was refused and why.
     copy
-        Puts a query into the address bar and the clipboard.
+        Copies the page's address.
 
     Attributes
     ----------
@@ -66,7 +65,7 @@ class Sidebar:
         session: Session,
         rearrange: Callable[[], None],
         complain: Callable[[str], None],
-        copy: Callable[[str], None],
+        copy: Callable[[], None],
     ) -> None:
         self._session = session
         self._rearrange = rearrange
@@ -190,9 +189,9 @@ class Sidebar:
             icon="link",
             variant="outlined",
             size="small",
-            description="Put the settings into the address bar, and copy it.",
+            description="Copy the address, which has the settings and what is looked at.",
         )
-        link.on_click(lambda event: self._copy(query_of(self._session.settings)))
+        link.on_click(lambda event: self._copy())
         save = pmui.FileDownload(
             label="Save",
             callback=self._saved,

@@ -8,13 +8,13 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.address import TABS
 from app.session import Session
 from app.views.paper_figures import PaperFigures
 from app.views.report import Report
 from app.views.stability import StabilityReport
 from app.views.study import StudyReport
 
-LIVE = "Live"
 IN_HEADER = {
     "& button": {
         "color": "#fff",
@@ -60,15 +60,14 @@ class Tabs:
     ) -> None:
         self._live = live
         self._changed = changed
-        self._beside: dict[str, Report] = {
-            "Figures": PaperFigures(session.figures, style),
-            "Study": StudyReport(
-                session.study, style, lambda: session.wanted, lambda: session.crowd
-            ),
-            "Stability": StabilityReport(session.stability, style),
-        }
+        reports: list[Report] = [
+            PaperFigures(session.figures, style),
+            StudyReport(session.study, style, lambda: session.wanted, lambda: session.crowd),
+            StabilityReport(session.stability, style),
+        ]
+        self._beside = dict(zip(TABS[1:], reports, strict=True))
         self.bar = pmui.RadioButtonGroup(
-            options=[LIVE, *self._beside], value=LIVE, size="small", margin=(0, 12), sx=IN_HEADER
+            options=list(TABS), value=TABS[0], size="small", margin=(0, 12), sx=IN_HEADER
         )
         self.bar.param.watch(self._on_choice, "value")
         self.main = pn.Column(
@@ -92,7 +91,7 @@ class Tabs:
             self.main.insert(0, self.bar)
 
     def _on_choice(self, event: Any) -> None:
-        self._live.visible = event.new == LIVE
+        self._live.visible = event.new == TABS[0]
         for name, tab in self._beside.items():
             tab.view.visible = event.new == name
             if event.new == name:
