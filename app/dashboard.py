@@ -12,7 +12,7 @@ import panel_material_ui as pmui
 
 from app.address import PACES, Sight, query_of
 from app.cards import Cards
-from app.innards import ignore_business, send_without_delay
+from app.innards import connections, ignore_business, send_without_delay
 from app.looks import Looks
 from app.pulse import Pulse
 from app.session import Session
@@ -69,6 +69,7 @@ class Dashboard:
         self._loaded = False
         self._sent_at = 0.0
         self._heard_at = math.inf
+        self._sockets: set[Any] = set()
         self._stood: tuple[Settings, Sight] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
@@ -106,7 +107,6 @@ class Dashboard:
         self._loaded = True
         self._alone = False
         self.session.start()
-        send_without_delay()
         # The first row comes first: two thirds of what the page is made of are not in it.
         self._sidebar.fill()
         self._arrange()
@@ -116,7 +116,13 @@ class Dashboard:
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
         is_silent = time.monotonic() - self._heard_at > SILENT
-        alone = self._connections() == 0 or self._pulse.hidden or not self._loaded or is_silent
+        sockets = connections()
+        if sockets != self._sockets:
+            # What was on its way in a socket that broke is lost, and nobody says so.
+            self._sockets = sockets
+            send_without_delay(sockets)
+            self.session.ask(afresh=True)
+        alone = not sockets or self._pulse.hidden or not self._loaded or is_silent
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
@@ -241,10 +247,6 @@ class Dashboard:
                 self._dim()
                 self._offer_looks()
                 self.transport.show()
-
-    def _connections(self) -> int:
-        context = pn.state.curdoc.session_context if pn.state.curdoc else None
-        return int(context.session.connection_count) if context is not None else 0
 
     def _on_painted(self, event: Any) -> None:
         if event.new != self._pulse.frame:

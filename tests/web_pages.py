@@ -31,7 +31,7 @@ class WebPage:
     def __init__(self, address: str) -> None:
         self._address = address
         self._socket: WebSocketClientConnection | None = None
-        self._pulse = ""
+        self._pulse = self._token = ""
         self._count = 0
         self._text = 0
         self.began = time.monotonic()
@@ -45,17 +45,22 @@ class WebPage:
         answer = await client.fetch(self._address, request_timeout=120)
         found = re.search(r'"token":\s*"([^"]+)"', answer.body.decode())
         assert found, "no page"
-        socket = re.sub("^http", "ws", self._address.partition("?")[0]) + "/ws"
-        self._socket = await websocket_connect(
-            socket, subprotocols=["bokeh", found[1]], max_message_size=2**28
-        )
-        await self._message()
+        self._token = found[1]
+        await self.connect()
         await self._send("PULL-DOC-REQ", {})
         while not self._pulse:
             kind, content = await self._message()
             if kind == "PULL-DOC-REPLY":
                 self._pulse = _pulse_of(content)
         await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": READY})
+
+    async def connect(self) -> None:
+        """Connect, for the first time or again."""
+        socket = re.sub("^http", "ws", self._address.partition("?")[0]) + "/ws"
+        self._socket = await websocket_connect(
+            socket, subprotocols=["bokeh", self._token], max_message_size=2**28
+        )
+        await self._message()
 
     async def live(self) -> None:
         """Acknowledge pictures until the page is closed."""
