@@ -93,6 +93,10 @@ class Server:
                     found.append(int(entry.name))
         return found
 
+    def interrupt(self) -> None:
+        """Have it stop, as by Ctrl-C."""
+        os.kill(self._process.pid, signal.SIGINT)
+
     def stop(self, number: int = signal.SIGTERM) -> None:
         if self._process.poll() is None:
             os.kill(self._process.pid, number)

@@ -26,6 +26,9 @@ class WebPage:
         When pictures came.
     size
         Bytes that came with them.
+    controls
+        Of the settings that have come to the page so far: the model that has the value, and what it
+        is made of, by the setting's name.
     """
 
     def __init__(self, address: str) -> None:
@@ -33,10 +36,12 @@ class WebPage:
         self._socket: WebSocketClientConnection | None = None
         self._pulse = self._token = ""
         self._count = 0
+        self._writes = asyncio.Lock()
         self._text = 0
         self.began = time.monotonic()
         self.times: list[float] = []
         self.size = 0
+        self.controls: dict[str, tuple[str, dict[str, Any]]] = {}
 
     async def open(self) -> None:
         """Ask for the page, connect, and say that it is built."""
@@ -67,6 +72,7 @@ class WebPage:
         with suppress(WebSocketClosedError):
             while (message := await self._message())[0]:
                 kind, content = message
+                self.controls.update(_controls_of(content))
                 for event in content.get("events", ()) if kind == "PATCH-DOC" else ():
                     if event.get("model", {}).get("id") == self._pulse and event["attr"] == "frame":
                         self.times.append(time.monotonic())
@@ -74,7 +80,11 @@ class WebPage:
 
     async def set(self, name: str, value: Any) -> None:
         """Set a parameter of its pulse."""
-        model = {"id": self._pulse}
+        await self.change(self._pulse, name, value)
+
+    async def change(self, model_id: str, name: str, value: Any) -> None:
+        """Set an attribute of a model."""
+        model = {"id": model_id}
         await self._patch({"kind": "ModelChanged", "model": model, "attr": name, "new": value})
 
     def close(self) -> None:
@@ -88,8 +98,10 @@ class WebPage:
         self._count += 1
         header = {"msgid": str(self._count), "msgtype": kind}
         assert self._socket is not None
-        for part in (header, {}, content):
-            await self._socket.write_message(json.dumps(part))
+        # One message after the other: each is of three parts.
+        async with self._writes:
+            for part in (header, {}, content):
+                await self._socket.write_message(json.dumps(part))
 
     async def _message(self) -> tuple[str, dict[str, Any]]:
         """Give kind and content of the next message; empty at the end."""
@@ -119,6 +131,21 @@ def _pulse_of(content: Any) -> str:
     if content.get("class_name") == "Pulse":
         return str(content["data"]["id"])
     return next((found for one in content.values() if (found := _pulse_of(one))), "")
+
+
+def _controls_of(content: Any) -> dict[str, tuple[str, dict[str, Any]]]:
+    """Find the widgets of settings."""
+    found: dict[str, tuple[str, dict[str, Any]]] = {}
+    if isinstance(content, dict):
+        for word in content.get("css_classes") or ():
+            if word.startswith("setting-"):
+                data = content["data"]
+                found[word.removeprefix("setting-")] = data["id"], data.get("attributes", {})
+        content = list(content.values())
+    if isinstance(content, list):
+        for one in content:
+            found.update(_controls_of(one))
+    return found
 
 
 async def until(condition: Any, patience: float = 120.0) -> None:
