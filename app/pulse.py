@@ -26,7 +26,7 @@ class Pulse(JSComponent):
     heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 
     _esm = """
-    const WAIT = 4000, BEAT = 2000, UNHEARD = 3
+    const WAIT = 8000, BEAT = 2000, UNHEARD = 3
     export function render({model, view}) {
       const found = new Map()
       const named = (name) => {
@@ -113,6 +113,9 @@ class Pulse(JSComponent):
         }
       }
       const timer = setInterval(() => {
+        // Bokeh, connected again, asks for all of the page and fails to read it: half a page is left.
+        const kept = Bokeh.documents.filter((one) => one.roots().length)
+        if (kept.length < Bokeh.documents.length) { Bokeh.documents.splice(0, Infinity, ...kept) }
         if (beats - Math.abs(model.heard) >= UNHEARD) { lose() }
         if (!closed) { model.beat = ++beats }
       }, BEAT)
@@ -124,9 +127,6 @@ class Pulse(JSComponent):
         if (!lost) { return }
         lost = false
         model.beat = -++beats
-        // Bokeh asks for the whole page again and fails to read it: that half of a page would stay.
-        const kept = Bokeh.documents.filter((one) => one.roots().length)
-        Bokeh.documents.splice(0, Infinity, ...kept)
       })
       model.on("frame", () => {
         closed = null

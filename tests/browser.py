@@ -80,6 +80,10 @@ class Server:
     def log(self) -> str:
         return self._log.read_text()
 
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
     def processes(self) -> list[int]:
         """Give the processes of the server's session, itself included."""
         found = []
@@ -95,7 +99,7 @@ class Server:
 
     def interrupt(self) -> None:
         """Have it stop, as by Ctrl-C."""
-        os.kill(self._process.pid, signal.SIGINT)
+        os.kill(self.pid, signal.SIGINT)
 
     def stop(self, number: int = signal.SIGTERM) -> None:
         if self._process.poll() is None:

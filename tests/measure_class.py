@@ -129,10 +129,10 @@ async def change(server: Server, count: int, seconds: float) -> None:
     while time.monotonic() < end:
         await asyncio.sleep(min(60.0, seconds))
         there = server.processes()
-        first, others = there[:1], there[1:]
+        others = [pid for pid in there if pid != server.pid]
         print(
             f"{(seconds - end + time.monotonic()) / 60:7.1f}{len(pages):14}"
-            f"{sum(len(page.times) for page in pages):10}{memory(first):11.0f}"
+            f"{sum(len(page.times) for page in pages):10}{memory([server.pid]):11.0f}"
             f"{memory(others):12.0f}{len(there):11}",
             flush=True,
         )
