@@ -113,7 +113,7 @@ class Pulse(JSComponent):
         }
       }
       const timer = setInterval(() => {
-        // Bokeh, connected again, asks for all of the page and fails to read it: half a page is left.
+        // Bokeh, connected again, asks for a whole page and fails to read it: half of one stays.
         const kept = Bokeh.documents.filter((one) => one.roots().length)
         if (kept.length < Bokeh.documents.length) { Bokeh.documents.splice(0, Infinity, ...kept) }
         if (beats - Math.abs(model.heard) >= UNHEARD) { lose() }
