@@ -1,19 +1,54 @@
-"""Settings in a page's address."""
+"""A page's address: its settings, and what of the run is looked at."""
 
 from __future__ import annotations
 
 import json
+from dataclasses import asdict, dataclass
 from textwrap import shorten
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
-from solver.definitions import SettingError, checked_value, parse
+from app.session import DEFAULT_PACE
+from app.worker.shown import Look
+from solver.definitions import SettingError, checked_value, choice, parse, quantity
 from solver.files import scene_settings
 from solver.settings import Settings
 
 DEFAULT_SCENE = "bar"
+TABS = ("Live", "Figures", "Study", "Stability")
+PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
+"""Iterations per second."""
 MOST_TOLD = 3
 LONGEST_NAME = 40
+
+
+@dataclass(frozen=True)
+class Sight:
+    """What is looked at: a tab, an instant as a share of the interval, and the pace of the run."""
+
+    tab: str = TABS[0]
+    instant: float = Look().phase
+    pace: str = "20"
+
+
+SIGHT: dict[str, Any] = {
+    "tab": choice(Sight.tab, TABS, "", group="", title=""),
+    "instant": quantity(Sight.instant, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
+    "pace": choice(Sight.pace, PACES, "", group="", title=""),
+}
+
+
+def sight_from_query(query: str) -> tuple[Sight, str]:
+    """Read from an address what is looked at; with what was refused and why, or nothing."""
+    found, refused = {}, []
+    for name, text in parse_qsl(query.lstrip("?")):
+        try:
+            if name in SIGHT:
+                value = parse(text) if name == "instant" else text
+                found[name] = checked_value(SIGHT[name], name, value)
+        except SettingError as refusal:
+            refused.append(str(refusal))
+    return Sight(**found), complaint_of(refused)
 
 
 def settings_from_query(query: str) -> tuple[Settings, str]:
@@ -35,6 +70,8 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
     definitions = kind.definitions()
     values, refused = {}, []
     for name, text in pairs.items():
+        if name in SIGHT:
+            continue
         if name not in definitions:
             refused.append(f"there is no setting {shorten(name, LONGEST_NAME)}")
             continue
@@ -79,8 +116,10 @@ def complaint_of(refused: list[str]) -> str:
     return f"From the address: {'; '.join(refused[:MOST_TOLD])}{rest}."
 
 
-def query_of(settings: Settings) -> str:
-    """Write the settings that differ from their defaults as a page's address."""
+def query_of(settings: Settings, sight: Sight | None = None) -> str:
+    """Write what differs from the defaults as a page's address."""
     pairs = [("scene", settings.scene)]
     pairs += [(name, json.dumps(value)) for name, value in settings.changed().items()]
+    looked_at = asdict(sight or Sight()).items()
+    pairs += [(name, str(value)) for name, value in looked_at if value != getattr(Sight, name)]
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 from typing import Any
@@ -9,9 +10,9 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app.address import query_of
+from app.address import PACES, Sight, query_of
 from app.cards import Cards
-from app.innards import ignore_business, send_without_delay
+from app.innards import connections, ignore_business, send_without_delay
 from app.looks import Looks
 from app.pulse import Pulse
 from app.session import Session
@@ -19,6 +20,7 @@ from app.sidebar import Sidebar
 from app.tabs import Tabs
 from app.transport import Transport
 from app.views.catalogue import VIEWS, fitting
+from solver.settings import Settings
 
 STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
@@ -27,6 +29,8 @@ CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
 """Plots that show the scene at work, and those that do not yet."""
 LOST_AFTER = 2.0
 """Seconds after which a picture that was not acknowledged is taken for lost."""
+SILENT = 30.0
+"""Seconds without a sign of life after which nobody is there, though no connection was closed."""
 REST = 0.2
 """Times what a browser needs for a picture, left to it to listen to its user."""
 
@@ -40,6 +44,8 @@ class Dashboard:
         What the page shows.
     complaint
         What was refused in the page's address; it is shown until a setting changes.
+    tab
+        The one that is looked at first.
     on_phone
         Whether the run comes first, with the settings out of the way and the tabs above it.
 
@@ -49,7 +55,14 @@ class Dashboard:
         What is served.
     """
 
-    def __init__(self, session: Session, *, complaint: str = "", on_phone: bool = False) -> None:
+    def __init__(
+        self,
+        session: Session,
+        *,
+        complaint: str = "",
+        tab: str = Sight.tab,
+        on_phone: bool = False,
+    ) -> None:
         self.session = session
         self._asked_for = session.wanted
         self._alone = True
@@ -57,6 +70,9 @@ class Dashboard:
         self._room = FIRST_ROW
         self._logged = (0, "")
         self._sent_at = 0.0
+        self._heard_at = math.inf
+        self._sockets: set[Any] = set()
+        self._stood: tuple[Settings, Sight] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
         self._style = (STATIC / "style.css").read_text(encoding="utf-8")
@@ -76,12 +92,14 @@ class Dashboard:
         )
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, self._style, self._on_tab)
+        self._first_tab = tab
         self.page = self._make_page()
         if on_phone:
             self.page.sidebar_open = False
             self._clear_the_header()
         self._sidebar.show(session.wanted)
         self._arrange()
+        self._keep_address()
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
@@ -91,14 +109,21 @@ class Dashboard:
         self._loaded = True
         self._alone = False
         self.session.start()
-        send_without_delay()
         self._on_narrow()
+        self._tabs.bar.value = self._first_tab
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
         if self._loaded and self._room < len(VIEWS):
             self._fill()
-        alone = self._connections() == 0 or self._pulse.hidden or not self._loaded
+        is_silent = time.monotonic() - self._heard_at > SILENT
+        sockets = connections()
+        if sockets != self._sockets:
+            # What was on its way in a socket that broke is lost, and nobody says so.
+            self._sockets = sockets
+            send_without_delay(sockets)
+            self.session.ask(afresh=True)
+        alone = not sockets or self._pulse.hidden or not self._loaded or is_silent
         if alone != self._alone:
             self._alone = alone
             self.session.rest(alone)
@@ -112,6 +137,7 @@ class Dashboard:
         if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
+        self._keep_address()
 
     def end(self) -> None:
         """Leave nothing behind when the page is gone."""
@@ -125,6 +151,7 @@ class Dashboard:
     def _listen(self) -> None:
         self._pulse.param.watch(self._on_painted, "painted")
         self._pulse.param.watch(self._on_key, "key")
+        self._pulse.param.watch(self._on_beat, "beat")
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
 
     def _make_live(self) -> pn.Column:
@@ -165,9 +192,20 @@ class Dashboard:
             margin=(2, 10),
         )
 
-    def _copy(self, query: str) -> None:
-        """Put a query into the address bar and the clipboard, even the same one again."""
-        self._pulse.copy = f"{query}#{time.monotonic()}"
+    def _keep_address(self) -> None:
+        """Have the address say where the page stands."""
+        if self._stood != (stands := self._stands()):
+            self._stood, self._pulse.query = stands, query_of(*stands)
+
+    def _copy(self) -> None:
+        self._keep_address()
+        self._pulse.copy += 1
+
+    def _stands(self) -> tuple[Settings, Sight]:
+        """Give what an address has to say to come back to this."""
+        session = self.session
+        pace = next(name for name, pace in PACES.items() if pace == session.pace)
+        return session.wanted, Sight(self._tabs.bar.value, round(session.look.phase, 4), pace)
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
@@ -184,7 +222,6 @@ class Dashboard:
         complaint = session.look.complaint if holds else ""
         # The worker sends what a view had already only when the choice of views changes.
         session.watch(views=tuple(view.name for view in there), complaint=complaint)
-        self._pulse.query = query_of(session.wanted)
         self._dim()
         self._offer_looks()
         self.transport.show()
@@ -236,15 +273,18 @@ class Dashboard:
             self._logged = session.ticket, came_to
             pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
 
-    def _connections(self) -> int:
-        context = pn.state.curdoc.session_context if pn.state.curdoc else None
-        return int(context.session.connection_count) if context is not None else 0
-
     def _on_painted(self, event: Any) -> None:
         if event.new != self._pulse.frame:
             return
         if self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
+
+    def _on_beat(self, event: Any) -> None:
+        """Answer a sign of life; a page that missed some is given all that it has to show."""
+        self._heard_at = time.monotonic()
+        self._pulse.heard = event.new
+        if event.new < 0:
+            self.session.ask(afresh=True)
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:

@@ -26,14 +26,19 @@ class Prompt(JSComponent):
     _debounce = 0
 
 
-def send_without_delay() -> None:
-    """Let the present session's sockets send small messages at once.
+def connections() -> set[Any]:
+    """Give the present session's sockets: one that broke and was opened again is another one."""
+    context = pn.state.curdoc.session_context if pn.state.curdoc else None
+    return set(context.session._subscribed_connections) if context is not None else set()
+
+
+def send_without_delay(sockets: set[Any]) -> None:
+    """Let sockets send small messages at once.
 
     A message of Bokeh's protocol is three small writes or more. By default (Nagle's algorithm) the
     second waits until the browser acknowledges the first, and browsers put that off for 40 ms.
     """
-    context = pn.state.curdoc.session_context if pn.state.curdoc else None
-    for connection in context.session._subscribed_connections if context is not None else ():
+    for connection in sockets:
         connection._socket.set_nodelay(True)
 
 

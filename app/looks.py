@@ -28,13 +28,20 @@ class Looks:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._showing = False
+        self._scene = ""
+        self._interfaces: list[str] = []
 
     def parts(self, *, shows_bodies: bool) -> list[Any]:
         """Give the widgets that choose anything at present, as they have to stand."""
-        facts = self._session.facts
+        facts, scene = self._session.facts, self._session.settings.scene
+        # A widget that went until the next run of the scene is shown would have the browser build
+        # all that stand beside it twice for every change.
+        if facts is not None or scene != self._scene:
+            self._scene, self._interfaces = scene, list(facts.interfaces) if facts else []
         found: list[Any] = []
-        if facts is not None and len(facts.interfaces) > 1:
-            self._show(list(facts.interfaces), facts.interface)
+        if len(self._interfaces) > 1:
+            if facts is not None:
+                self._show(self._interfaces, facts.interface)
             found.append(self._interface)
         return [*found, self._stress, self._magnification] if shows_bodies else found
 

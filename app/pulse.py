@@ -18,11 +18,13 @@ class Pulse(Prompt):
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
-    query = param.String(default="", doc="The settings that hold, as an address carries them.")
-    copy = param.String(default="", doc="A query to put into the address bar and the clipboard.")
+    query = param.String(default="", doc="What an address has to say to come back to this.")
+    copy = param.Integer(default=0, doc="Counts how often the address was to be copied.")
+    beat = param.Integer(default=0, doc="Counts signs of life; negative asks for all of a picture.")
+    heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 
     _esm = """
-    const WAIT = 8000
+    const WAIT = 8000, BEAT = 2000, UNHEARD = 3
     export function render({model, view}) {
       const found = new Map()
       const named = (name) => {
@@ -81,26 +83,51 @@ class Pulse(Prompt):
           one.setv(one.type === "ColumnDataSource" ? {data: values} : values, {sync: false})
         }
       }
-      let lost = false
+      // A socket may close, or, where a network only falls silent, stay open for minutes.
+      let lost = false, gone = false, closed = null, beats = 0
+      const reach = () => fetch(
+        location.pathname, {method: "HEAD", signal: AbortSignal.timeout(WAIT)}
+      )
       const come_back = async () => {
-        if (!lost) { return }
+        if (!lost || gone) { return }
         try {
-          await fetch(location.pathname, {method: "HEAD"})
-          // A server that still knows this page sends a picture; another one makes it anew.
-          setTimeout(() => {
-            if (lost) { location.replace(location.pathname + model.query) }
-          }, WAIT)
+          await reach()
+          // Bokeh itself tries but five times, and does not say when it has succeeded.
+          closed?.reconnect()
+          closed = null
+          await new Promise((done) => setTimeout(done, WAIT))
+          // A server that still knows this page has answered; for another one it is made anew.
+          await reach()
+          if (lost && !gone) { location.replace(model.query) }
         } catch { setTimeout(come_back, 1000) }
       }
-      view.model.document.on_event("connection_lost", () => {
-        if (lost) { return }
-        lost = true
+      const lose = () => {
+        if (gone) { return }
         const text = "&lt;b&gt;not connected&lt;/b&gt;, trying again"
         named("status").setv({text}, {sync: false})
-        come_back()
+        if (!lost) {
+          lost = true
+          come_back()
+        }
+      }
+      const timer = setInterval(() => {
+        // Bokeh, connected again, asks for a whole page and fails to read it: half of one stays.
+        const kept = Bokeh.documents.filter((one) => one.roots().length)
+        if (kept.length < Bokeh.documents.length) { Bokeh.documents.splice(0, Infinity, ...kept) }
+        if (beats - Math.abs(model.heard) >= UNHEARD) { lose() }
+        if (!closed) { model.beat = ++beats }
+      }, BEAT)
+      view.model.document.on_event("connection_lost", (_, event) => {
+        closed = event
+        lose()
+      })
+      model.on("heard", () => {
+        if (!lost) { return }
+        lost = false
+        model.beat = -++beats
       })
       model.on("frame", () => {
-        lost = false
+        closed = null
         const frame = model.frame
         paint()
         requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
@@ -110,10 +137,16 @@ class Pulse(Prompt):
       let count = 0
       if (window.innerWidth < 640) { model.phone = true }
       if (window.innerWidth < 900) { model.narrow = true }
+      // The address bar follows, so that a reload comes back; browsers refuse to do it very often.
+      let due = 0
+      const follow = () => history.replaceState(null, "", model.query)
+      model.on("query", () => {
+        clearTimeout(due)
+        due = setTimeout(follow, 300)
+      })
       model.on("copy", () => {
-        const url = location.origin + location.pathname + model.copy.split("#")[0]
-        history.replaceState(null, "", url)
-        if (navigator.clipboard) { navigator.clipboard.writeText(url).catch(() => {}) }
+        follow()
+        if (navigator.clipboard) { navigator.clipboard.writeText(location.href).catch(() => {}) }
       })
       const look = () => { model.hidden = document.visibilityState === "hidden" }
       const press = (event) => {
@@ -134,6 +167,9 @@ class Pulse(Prompt):
       document.addEventListener("visibilitychange", look)
       document.addEventListener("keydown", press)
       model.on("remove", () => {
+        gone = true
+        clearInterval(timer)
+        clearTimeout(due)
         document.removeEventListener("visibilitychange", look)
         document.removeEventListener("keydown", press)
       })

@@ -56,8 +56,10 @@ class Scrubber(Prompt):
         if (!held) { range.value = model.shown }
       }
       let held = false
-      range.addEventListener("pointerdown", () => { held = true })
-      window.addEventListener("pointerup", () => { held = false })
+      range.addEventListener("pointerdown", () => {
+        held = true
+        window.addEventListener("pointerup", () => { held = false }, {once: true})
+      })
       range.addEventListener("input", () => { model.wanted = Number(range.value) })
       for (const name of ["label", "text", "start", "end", "shown"]) { model.on(name, show) }
       show()

@@ -11,7 +11,7 @@ import panel_material_ui as pmui
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 
-from app.address import settings_from_query
+from app.address import PACES, settings_from_query, sight_from_query
 from app.dashboard import TICK_MS, Dashboard
 from app.innards import forget
 from app.lateness import Lateness
@@ -35,9 +35,14 @@ def open_page() -> pmui.Page:
     _configure()
     if PAGES.is_full:
         return _full()
-    settings, complaint = settings_from_query(pn.state.location.search if pn.state.location else "")
+    query = pn.state.location.search if pn.state.location else ""
+    settings, complaint = settings_from_query(query)
+    sight, more = sight_from_query(query)
     session = Session(PAGES, shared_bench(), settings)
-    dashboard = Dashboard(session, complaint=complaint, on_phone=is_phone(pn.state.headers))
+    session.set_pace(PACES[sight.pace])
+    session.look_at(sight.instant)
+    complaint, phone = f"{complaint} {more}".strip(), is_phone(pn.state.headers)
+    dashboard = Dashboard(session, complaint=complaint, tab=sight.tab, on_phone=phone)
     pn.state.onload(dashboard.loaded)
     document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)

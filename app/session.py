@@ -29,7 +29,7 @@ LEFT_ALONE = 180.0
 HELD_STILL = 0.5
 """Seconds after which a slider that does not move counts as let go."""
 RESTARTS = 2
-"""Times that a run is started again after its process died."""
+"""Times that a run is started again after its process died, without getting any farther."""
 AGAIN = "The worker stopped unexpectedly; the run was started again."
 GIVEN_UP = (
     "The worker stopped unexpectedly several times; the run was given up. Lower the numbers of "
@@ -93,7 +93,7 @@ class Session:
         self._follows_hand = self._pending_follows_hand = False
         self._alone = self._held = False
         self._alone_since = self._moved_at = 0.0
-        self._deaths = 0
+        self._deaths = self._died_at = 0
         self._pages = pages
         pages.add(self)
 
@@ -116,7 +116,7 @@ class Session:
             self._label = label_of(settings, changed) if changed else self._label
         self.settings = settings
         self.ticket += 1
-        self.facts, self._pending, self._deaths = None, None, 0
+        self.facts, self._pending, self._deaths, self._died_at = None, None, 0, 0
         self._follows_hand = follows_hand and self._is_free
         self._work(warm=warm)
 
@@ -165,6 +165,8 @@ class Session:
                 blocks.append(report.block)
                 if report.ticket == self.ticket:
                     self.facts = report.facts
+                    if report.facts.done > self._died_at:
+                        self._deaths = 0
         self._start_pending()
         return blocks
 
@@ -328,6 +330,7 @@ class Session:
     def _bury(self) -> bytes:
         """Follow the end of a process: start the run again, or give it up; say so."""
         self._deaths += 1
+        self._died_at = max(self._died_at, self.facts.done if self.facts else 0)
         again = self._deaths <= RESTARTS
         words = AGAIN if again else GIVEN_UP
         _log.error("A worker process ended. %s", words)

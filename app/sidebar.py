@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
 
-from app.address import query_of
 from app.form import POINTS, Form, item_of
 from app.samples import points_of
 from app.session import Session
@@ -57,7 +56,7 @@ SHARE_ITEM = {
     "kind": "share",
     "group": "Share",
     "buttons": [
-        [LINK, "Put the settings into the address bar, and copy it."],
+        [LINK, "Copy the address, which has the settings and what is looked at."],
         [SAVE, "Save the settings; the command line reads them too."],
         [DEFAULTS, "Bring all settings back to their defaults."],
     ],
@@ -83,7 +82,7 @@ class Sidebar:
     complain
         Tells the user what was refused and why.
     copy
-        Puts a query into the address bar and the clipboard.
+        Copies the page's address.
 
     Attributes
     ----------
@@ -96,7 +95,7 @@ class Sidebar:
         session: Session,
         rearrange: Callable[[], None],
         complain: Callable[[str], None],
-        copy: Callable[[str], None],
+        copy: Callable[[], None],
     ) -> None:
         self._session = session
         self._rearrange = rearrange
@@ -173,7 +172,7 @@ class Sidebar:
 
     def _on_share(self, value: Any) -> None:
         if value == LINK:
-            self._copy(query_of(self._session.settings))
+            self._copy()
         elif value == SAVE:
             self.view.file = [self._saved(), self._heard]
         elif value == DEFAULTS:

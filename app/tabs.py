@@ -8,11 +8,11 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.address import TABS
 from app.report import Report
 from app.reports import PaperFigures, StabilityReport, StudyReport
 from app.session import Session
 
-LIVE = "Live"
 IN_HEADER = {
     "& button": {
         "color": "#fff",
@@ -58,13 +58,14 @@ class Tabs:
     ) -> None:
         self._live = live
         self._changed = changed
-        self._beside: dict[str, Report] = {
-            "Figures": PaperFigures(session.figures, style),
-            "Study": StudyReport(session, style),
-            "Stability": StabilityReport(session.stability, style),
-        }
+        reports: list[Report] = [
+            PaperFigures(session.figures, style),
+            StudyReport(session, style),
+            StabilityReport(session.stability, style),
+        ]
+        self._beside = dict(zip(TABS[1:], reports, strict=True))
         self.bar = pmui.RadioButtonGroup(
-            options=[LIVE, *self._beside], value=LIVE, size="small", margin=(0, 12), sx=IN_HEADER
+            options=list(TABS), value=TABS[0], size="small", margin=(0, 12), sx=IN_HEADER
         )
         self.bar.param.watch(self._on_choice, "value")
         self.main = pn.Column(
@@ -88,7 +89,7 @@ class Tabs:
             self.main.insert(0, self.bar)
 
     def _on_choice(self, event: Any) -> None:
-        self._live.visible = event.new == LIVE
+        self._live.visible = event.new == TABS[0]
         for name, tab in self._beside.items():
             tab.view.visible = event.new == name
             if event.new == name:

@@ -7,16 +7,17 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.address import PACES
 from app.scrubber import Scrubber
-from app.session import DEFAULT_PACE, Session
+from app.session import Session
 from solver.settings import Settings
 
-PACES = {
-    "1 iteration/s": 1.0,
-    "5 iterations/s": 5.0,
-    "20 iterations/s": DEFAULT_PACE,
-    "100 iterations/s": 100.0,
-    "as fast as it can": None,
+LABELS = {
+    "1": "1 iteration/s",
+    "5": "5 iterations/s",
+    "20": "20 iterations/s",
+    "100": "100 iterations/s",
+    "fastest": "as fast as it can",
 }
 FIXED = 5
 """Buttons, pace and sliders, which always stand there."""
@@ -140,8 +141,8 @@ class Transport:
         )
         self._pace = pmui.Select(
             label="Pace",
-            options=list(PACES),
-            value="20 iterations/s",
+            options={label: name for name, label in LABELS.items()},
+            value=next(name for name, pace in PACES.items() if pace == self._session.pace),
             width=160,
             size="small",
             description="Iterations per second that are shown; the method itself is not slowed.",

@@ -50,7 +50,7 @@ def browser() -> Iterator[Browser]:
 class Server:
     """`panel serve app` in a process group of its own."""
 
-    def __init__(self, log: Path, port: int = 0) -> None:
+    def __init__(self, log: Path, port: int = 0, *options: str) -> None:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = port or free.getsockname()[1]
@@ -60,7 +60,7 @@ class Server:
         self._log = log
         # The script, as a user calls it: `python -m panel` finds modules that it does not.
         panel = str(Path(sys.executable).with_name("panel"))
-        command = [panel, "serve", "app", "--port", str(port), "--liveness"]
+        command = [panel, "serve", "app", "--port", str(port), "--liveness", *options]
         with log.open("w") as output:
             self._process = subprocess.Popen(
                 command, cwd=ROOT, stdout=output, stderr=output, start_new_session=True
@@ -96,6 +96,10 @@ class Server:
                 if fields[0] != "Z" and int(fields[3]) == self._process.pid:
                     found.append(int(entry.name))
         return found
+
+    def interrupt(self) -> None:
+        """Have it stop, as by Ctrl-C."""
+        os.kill(self.pid, signal.SIGINT)
 
     def stop(self, number: int = signal.SIGTERM) -> None:
         if self._process.poll() is None:

@@ -1,18 +1,22 @@
-"""Measure a server with many pages at a time: `python tests/measure_class.py [PAGES] [SECONDS]`.
+"""Measure a server with many pages: `python tests/measure_class.py [PAGES] [SECONDS] [--change]`.
 
 The pages are websockets that acknowledge at once, each with a run that goes on. Prints when their
 first pictures came, how many came in a second and the longest gap, how long the server took to
 answer something else meanwhile and how late its event loop was, its memory, and what is left after
 all are closed.
+
+With `--change` settings are changed at random instead, and now and then a page is closed and
+another opened; prints the memory of the server and of its workers every minute.
 """
 
 from __future__ import annotations
 
+import argparse
 import asyncio
 import json
 import os
+import random
 import statistics
-import sys
 import tempfile
 import time
 from itertools import pairwise
@@ -20,18 +24,26 @@ from pathlib import Path
 
 from browser import Server
 from tornado.httpclient import AsyncHTTPClient
+from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
+
+from app.form import POINTS
+from solver.scenes import CATALOGUE
 
 EXPIRY = 60.0
 """Seconds after which sessions without a page are gone."""
 ENDLESS = "?method=paper&tolerance=1e-30&max_iterations=100000"
+SIZES = ("elements", "elements_up", "instants", "layers", "wires", "substructures")
 
 
 def memory(pids: list[int]) -> float:
     """Give the memory that processes have for themselves, and their shares of the rest, MB."""
     total = 0.0
     for pid in pids:
-        lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+        try:
+            lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+        except OSError:  # it has just ended
+            continue
         total += sum(float(line.split()[1]) for line in lines if line.startswith("Pss:"))
     return total / 1e3
 
@@ -101,14 +113,71 @@ async def measure(server: Server, count: int, seconds: float) -> None:
     print(f"processes left: {len(left)} of {len(idle)}, {memory(left):.0f} MB")
 
 
+async def move(page: WebPage) -> None:
+    """Move one of the controls that a page has, anywhere; sizes stay small."""
+    item = random.choice([item for item in page.items if item["name"] in page.shown])
+    name, kind = item["name"], item["kind"]
+    if kind == "slider":
+        low, high = item["start"], item["end"]
+        share = random.random() * (0.1 if name in SIZES else 1.0)
+        value = low * (high / low) ** share if item["log"] else low + share * (high - low)
+        value = round(value) if item["whole"] else value
+        await page.move(name, value, hand=True)
+        await page.move(name, None)
+    elif kind in ("choice", "curve"):
+        await page.move(name, random.choice([one for _, one in item["options"] if one != POINTS]))
+    elif kind == "flip":
+        await page.move(name, random.random() < 0.5)
+
+
+async def visit(server: Server, end: float, pages: list[WebPage]) -> None:
+    """Have a page open until the end, now and then another one."""
+    while time.monotonic() < end:
+        page = WebPage(f"{server.address}?scene={random.choice(list(CATALOGUE))}")
+        await page.open()
+        pages.append(page)
+        life = asyncio.create_task(page.live())
+        leaves = time.monotonic() + random.uniform(20.0, 200.0)
+        while time.monotonic() < min(end, leaves) and not life.done():
+            await asyncio.sleep(random.uniform(0.1, 2.0))
+            try:
+                await move(page)
+            except WebSocketClosedError:
+                print("a page was closed by the server")
+        page.close()
+        await life
+
+
+async def change(server: Server, count: int, seconds: float) -> None:
+    end, pages = time.monotonic() + seconds, list[WebPage]()
+    visits = [asyncio.create_task(visit(server, end, pages)) for _ in range(count)]
+    print("minutes  pages opened  pictures  server MB  workers MB  processes")
+    while time.monotonic() < end:
+        await asyncio.sleep(min(60.0, seconds))
+        there = server.processes()
+        others = [pid for pid in there if pid != server.pid]
+        print(
+            f"{(seconds - end + time.monotonic()) / 60:7.1f}{len(pages):14}"
+            f"{sum(len(page.times) for page in pages):10}{memory([server.pid]):11.0f}"
+            f"{memory(others):12.0f}{len(there):11}",
+            flush=True,
+        )
+    await asyncio.gather(*visits)
+
+
 def main() -> None:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 10
-    seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 15.0
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("pages", type=int, nargs="?", default=10)
+    parser.add_argument("seconds", type=float, nargs="?", default=15.0)
+    parser.add_argument("--change", action="store_true")
+    asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         server = Server(Path(folder) / "log")
         try:
             server.wait()
-            asyncio.run(measure(server, count, seconds))
+            way = change if asked.change else measure
+            asyncio.run(way(server, asked.pages, asked.seconds))
+            print("errors in the log:", server.log.count("Traceback"))
         finally:
             server.stop()
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from studios import ALL, Shown
 
-from app.address import settings_from_query
+from app.address import Sight, query_of, settings_from_query, sight_from_query
 from app.serve import is_phone
 from app.worker.words import number
 
@@ -37,6 +37,28 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
     assert set(settings.changed()) <= set(kept)
     assert bool(complaint) == bool(refused)
     assert all(part in complaint for part in refused)
+
+
+@pytest.mark.parametrize(
+    ("query", "sight", "refused"),
+    [
+        ("", Sight(), []),
+        ("?instant=0.5&pace=5&tab=Study", Sight("Study", 0.5, "5"), []),
+        ("?pace=fastest&pace=100", Sight(pace="100"), []),
+        ("?instant=2&pace=7&tab=study", Sight(), ["instant = 2", 'pace = "7"', 'tab = "study"']),
+        ("?instant=nan&tab=Figures&seed=2", Sight("Figures"), ["instant"]),
+    ],
+)
+def test_an_address_says_what_is_looked_at(query: str, sight: Sight, refused: list[str]) -> None:
+    found, complaint = sight_from_query(query)
+    assert found == sight
+    assert bool(complaint) == bool(refused)
+    assert all(part in complaint for part in refused)
+    settings, other = settings_from_query(query)
+    assert other == ""
+    again = query_of(settings, found)
+    assert sight_from_query(again) == (found, "")
+    assert settings_from_query(again)[0].values() == settings.values()
 
 
 def test_a_long_address_is_answered_in_few_words() -> None:

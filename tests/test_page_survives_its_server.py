@@ -1,33 +1,116 @@
-"""A page whose server is killed says so, and comes back with its settings when there is one."""
+"""A page that has lost its server, or its network, says so, and comes back to where it stood."""
 
 from __future__ import annotations
 
+import re
 import signal
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from browser import Server
-from pages import slider, status
-from playwright.sync_api import Browser, expect
+from pages import OURS, choose, press, slider, status
+from playwright.sync_api import Browser, Page, expect
+from processes import wait_for
+from proxy import Proxy
 
 
-def test_a_page_says_that_it_is_not_connected_and_comes_back_with_its_settings(
+@contextmanager
+def behind_a_network(
+    log: Path, chrome: Browser, *options: str
+) -> Iterator[tuple[Proxy, Server, Page]]:
+    """Give a page, its server, and the network between them."""
+    with closing(Proxy()) as proxy:
+        origin = f"localhost:{proxy.port}"
+        server = Server(log, 0, "--allow-websocket-origin", origin, *options)
+        proxy.target = server.port
+        try:
+            server.wait()
+            page = chrome.new_page()
+            page.goto(f"http://{origin}/app?substructures=5")
+            expect(status(page)).to_contain_text("after")
+            slider(page, "Substructures").press("ArrowRight")
+            expect(status(page)).to_contain_text(re.compile("after .* 6 substructures"))
+            page.evaluate("window.stayed = true")
+            yield proxy, server, page
+            expect(status(page)).to_contain_text(re.compile("after .* 6 substructures"))
+            slider(page, "Substructures").press("ArrowRight")
+            expect(status(page)).to_contain_text("7 substructures")
+            # What listens on the document goes with the page that is taken from it.
+            page.evaluate("Bokeh.documents[0].clear()")
+            assert keys_heard(page) == 0
+            page.close()
+            assert not OURS.search(server.log)
+        finally:
+            server.stop()
+
+
+def keys_heard(page: Page) -> int:
+    """Count the listeners to keys on the document."""
+    session = page.context.new_cdp_session(page)
+    found = session.send("Runtime.evaluate", {"expression": "document"})["result"]["objectId"]
+    listeners = session.send("DOMDebugger.getEventListeners", {"objectId": found})["listeners"]
+    return sum(one["type"] == "keydown" for one in listeners)
+
+
+def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
     tmp_path: Path, chrome: Browser
 ) -> None:
     server = Server(tmp_path / "first")
     server.wait()
     page = chrome.new_page()
-    page.goto(server.address + "?substructures=5")
-    expect(status(page)).to_contain_text("5 substructures")
-    slider(page, "Substructures").press("ArrowRight")
-    expect(status(page)).to_contain_text("6 substructures")
+    page.goto(server.address + "?scene=strand&wires=5")
+    expect(status(page)).to_contain_text("iteration")
+    slider(page, "Instant").press("Home")
+    choose(page.get_by_role("combobox", name=re.compile("^Pace")), "5 iterations/s")
+    slider(page, "Wires").press("ArrowRight")
+    press(page, "Stability")
+    page.wait_for_url(re.compile("(?=.*wires=6)(?=.*tab=Stability)(?=.*instant=0)(?=.*pace=5)"))
     server.stop(signal.SIGKILL)
     expect(status(page)).to_contain_text("not connected")
     again = Server(tmp_path / "second", server.port)
     try:
         again.wait()
-        expect(status(page)).to_contain_text("6 substructures")
-        slider(page, "Substructures").press("ArrowRight")
-        expect(status(page)).to_contain_text("7 substructures")
+        expect(status(page)).to_contain_text("iteration")
+        expect(page.get_by_role("button", name="Stability")).to_have_attribute(
+            "aria-pressed", "true"
+        )
+        press(page, "Live")
+        expect(page.get_by_text("t = 0 s")).to_be_visible()
+        expect(page.get_by_role("combobox", name=re.compile("^Pace"))).to_have_text(
+            "5 iterations/s"
+        )
+        expect(slider(page, "Wires")).to_have_value("6")
+        assert "Traceback" not in again.log
     finally:
         page.close()
         again.stop()
+
+
+def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: Browser) -> None:
+    with behind_a_network(tmp_path / "log", chrome) as (proxy, _, page):
+        proxy.cut()
+        expect(status(page)).to_contain_text("not connected")
+        proxy.mend()
+        expect(status(page)).to_contain_text("6 substructures")
+        # Nothing is left of what Bokeh asked for, and the page hears its keys once.
+        page.wait_for_function("window.stayed && Bokeh.documents.length === 1")
+        assert keys_heard(page) == 1
+        proxy.hush()
+        expect(status(page)).to_contain_text("not connected")
+        proxy.mend()
+        expect(status(page)).to_contain_text("6 substructures")
+        # Nothing is left of what Bokeh asked for, and the page hears its keys once.
+        page.wait_for_function("window.stayed && Bokeh.documents.length === 1")
+        assert keys_heard(page) == 1
+
+
+def test_a_page_that_was_given_up_meanwhile_is_made_anew(tmp_path: Path, chrome: Browser) -> None:
+    short = ("--unused-session-lifetime", "300", "--check-unused-sessions", "100")
+    with behind_a_network(tmp_path / "log", chrome, *short) as (proxy, server, page):
+        with_page = len(server.processes())
+        proxy.cut()
+        expect(status(page)).to_contain_text("not connected")
+        wait_for(lambda: len(server.processes()) < with_page)
+        proxy.mend()
+        expect(status(page)).to_contain_text("6 substructures")

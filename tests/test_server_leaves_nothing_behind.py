@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from browser import Server
 from pages import open_report, press, status
 from playwright.sync_api import Browser, expect
 from processes import wait_for
+from web_pages import WebPage, until
 
 
 def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
@@ -31,3 +34,27 @@ def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
         server.stop()
     page.close()
     wait_for(lambda: server.processes() == [])
+
+
+def test_a_server_that_is_interrupted_leaves_no_worker_of_its_pages(tmp_path: Path) -> None:
+    async def visit() -> None:
+        pages = [WebPage(server.address) for _ in range(3)]
+        for page in pages:
+            await page.open()
+        lives = [asyncio.create_task(page.live()) for page in pages]
+        await until(lambda: all(page.times for page in pages))
+        server.interrupt()
+        await asyncio.gather(*lives)
+        for page in pages:
+            page.close()
+
+    server = Server(tmp_path / "log")
+    try:
+        server.wait()
+        # A thread of its own: that of the browser's tests has a loop at work.
+        with ThreadPoolExecutor(1) as thread:
+            thread.submit(asyncio.run, visit()).result()
+        wait_for(lambda: server.processes() == [])
+        assert "Traceback" not in server.log
+    finally:
+        server.stop()

@@ -26,17 +26,23 @@ class WebPage:
         When pictures came.
     size
         Bytes that came with them.
+    items, shown
+        What the controls of its settings are, and what they show, as `Form` has it.
     """
 
     def __init__(self, address: str) -> None:
         self._address = address
         self._socket: WebSocketClientConnection | None = None
-        self._pulse = ""
-        self._count = 0
+        self._pulse = self._token = ""
+        self._form = self._form_data = ""
+        self._count = self._told = 0
+        self._writes = asyncio.Lock()
         self._text = 0
         self.began = time.monotonic()
         self.times: list[float] = []
         self.size = 0
+        self.items: list[dict[str, Any]] = []
+        self.shown: dict[str, Any] = {}
 
     async def open(self) -> None:
         """Ask for the page, connect, and say that it is built."""
@@ -46,17 +52,24 @@ class WebPage:
         answer = await client.fetch(self._address, connect_timeout=120, request_timeout=120)
         found = re.search(r'"token":\s*"([^"]+)"', answer.body.decode())
         assert found, "no page"
-        socket = re.sub("^http", "ws", self._address.partition("?")[0]) + "/ws"
-        self._socket = await websocket_connect(
-            socket, subprotocols=["bokeh", found[1]], max_message_size=2**28
-        )
-        await self._message()
+        self._token = found[1]
+        await self.connect()
         await self._send("PULL-DOC-REQ", {})
         while not self._pulse:
             kind, content = await self._message()
             if kind == "PULL-DOC-REPLY":
-                self._pulse = _pulse_of(content)
+                _, self._pulse, _ = _component(content, "Pulse")
+                self._form, self._form_data, data = _component(content, "Form")
+                self._show(data)
         await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": READY})
+
+    async def connect(self) -> None:
+        """Connect, for the first time or again."""
+        socket = re.sub("^http", "ws", self._address.partition("?")[0]) + "/ws"
+        self._socket = await websocket_connect(
+            socket, subprotocols=["bokeh", self._token], max_message_size=2**28
+        )
+        await self._message()
 
     async def live(self) -> None:
         """Acknowledge pictures until the page is closed."""
@@ -64,7 +77,10 @@ class WebPage:
             while (message := await self._message())[0]:
                 kind, content = message
                 for event in content.get("events", ()) if kind == "PATCH-DOC" else ():
-                    if event.get("model", {}).get("id") == self._pulse and event["attr"] == "frame":
+                    model = event.get("model", {}).get("id")
+                    if model == self._form_data:
+                        self._show({event["attr"]: event["new"]})
+                    if model == self._pulse and event["attr"] == "frame":
                         self.times.append(time.monotonic())
                         await self.set("painted", event["new"])
 
@@ -73,9 +89,23 @@ class WebPage:
         model = {"id": self._pulse}
         await self._patch({"kind": "ModelChanged", "model": model, "attr": name, "new": value})
 
+    async def move(self, name: str, value: Any, *, hand: bool = False) -> None:
+        """Have the control of a setting say that it was moved."""
+        self._told += 1
+        data = {"name": name, "value": value, "hand": hand, "count": self._told}
+        values = _mapped({"model": {"id": self._form}, "data": _mapped(data)})
+        event = {"type": "event", "name": "data_event", "values": values}
+        await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": event})
+
     def close(self) -> None:
         if self._socket is not None:
             self._socket.close()
+
+    def _show(self, data: dict[str, Any]) -> None:
+        if "items" in data:
+            self.items = _plain(data["items"])
+        if "shown" in data:
+            self.shown = _plain(data["shown"])
 
     async def _patch(self, event: dict[str, Any]) -> None:
         await self._send("PATCH-DOC", {"events": [event]})
@@ -84,8 +114,10 @@ class WebPage:
         self._count += 1
         header = {"msgid": str(self._count), "msgtype": kind}
         assert self._socket is not None
-        for part in (header, {}, content):
-            await self._socket.write_message(json.dumps(part))
+        # One message after the other: each is of three parts.
+        async with self._writes:
+            for part in (header, {}, content):
+                await self._socket.write_message(json.dumps(part))
 
     async def _message(self) -> tuple[str, dict[str, Any]]:
         """Give kind and content of the next message; empty at the end."""
@@ -106,15 +138,28 @@ class WebPage:
         return part
 
 
-def _pulse_of(content: Any) -> str:
-    """Find the model of the component that acknowledges pictures."""
+def _component(content: Any, name: str) -> tuple[str, str, dict[str, Any]]:
+    """Find a component: its model, the model of its parameters, and these."""
+    if isinstance(content, dict):
+        made = content.get("attributes")
+        if isinstance(made, dict) and made.get("class_name") == name:
+            return content["id"], made["data"]["id"], made["data"].get("attributes", {})
+        content = list(content.values())
+    found = (_component(one, name) for one in content) if isinstance(content, list) else ()
+    return next((one for one in found if one[0]), ("", "", {}))
+
+
+def _mapped(values: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "map", "entries": list(values.items())}
+
+
+def _plain(content: Any) -> Any:
+    """Give what Bokeh has written as maps as dictionaries."""
     if isinstance(content, list):
-        return next((found for one in content if (found := _pulse_of(one))), "")
-    if not isinstance(content, dict):
-        return ""
-    if content.get("class_name") == "Pulse":
-        return str(content["data"]["id"])
-    return next((found for one in content.values() if (found := _pulse_of(one))), "")
+        return [_plain(one) for one in content]
+    if isinstance(content, dict) and content.get("type") == "map":
+        return {name: _plain(value) for name, value in content.get("entries", ())}
+    return content
 
 
 async def until(condition: Any, patience: float = 120.0) -> None:

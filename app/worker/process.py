@@ -13,6 +13,7 @@ import os
 import signal
 import threading
 import time
+import traceback
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -123,19 +124,27 @@ class Inbox:
         return act
 
     def _read(self) -> None:
-        urgent_since = 0.0
-        with contextlib.suppress(EOFError, OSError):
-            while True:
-                if self._connection.poll(POLITE if self.urgent() else None):
-                    order = self._connection.recv()
-                    with self._changed:
-                        self._orders.append(order)
-                        self._changed.notify()
-                now = time.monotonic()
-                urgent_since = (urgent_since or now) if self.urgent() else 0.0
-                if urgent_since:
-                    self._hasten(now - urgent_since)
+        try:
+            self._hear()
+        except (EOFError, OSError):
+            pass
+        except BaseException:
+            # Without memory, say: a process that is deaf is of no use to anybody.
+            traceback.print_exc()
         os._exit(0)
+
+    def _hear(self) -> None:
+        urgent_since = 0.0
+        while True:
+            if self._connection.poll(POLITE if self.urgent() else None):
+                order = self._connection.recv()
+                with self._changed:
+                    self._orders.append(order)
+                    self._changed.notify()
+            now = time.monotonic()
+            urgent_since = (urgent_since or now) if self.urgent() else 0.0
+            if urgent_since:
+                self._hasten(now - urgent_since)
 
     def _hasten(self, waited: float) -> None:
         """Interrupt what is at work, or give up the process where it cannot be."""

@@ -1,0 +1,111 @@
+"""A hundred kills of its worker, and a hundred drops of its connection, leave a page as it was."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from pathlib import Path
+
+import panel as pn
+import pytest
+from panel.io.server import get_server
+from processes import is_alive, wait_for
+from web_pages import WebPage, until
+
+from app import serve
+from app.pages import Pages
+from app.session import Session
+from app.worker.bench import Bench
+from app.worker.link import warm_up
+from solver.scenes.bar import BarSettings
+
+TIMES = 100
+ROW = 10
+"""Kills of one run: a process has to get farther than the one before it."""
+
+
+def open_files() -> int:
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def workers() -> int:
+    return sum(thread.name.startswith("worker-") for thread in threading.enumerate())
+
+
+def test_a_hundred_kills_in_a_row_leave_nothing_and_the_run_goes_on() -> None:
+    warm_up()
+    endless = {"method": "paper", "tolerance": 1e-30, "elements": 10, "instants": 11}
+    settings = BarSettings.checked({**endless, "max_iterations": 100_000, "substructures": 2})
+    files, threads = open_files(), workers()
+    killed = []
+    with closing(Session(Pages(1), Bench(), settings)) as session:
+        session.set_pace(None)
+        session.start()
+
+        def gets_beyond(done: int) -> bool:
+            if session.collect():
+                session.ask()
+            return session.facts is not None and session.facts.done > done
+
+        for time in range(TIMES):
+            if time % ROW == 0:
+                session.change("friction", round(0.2 + 1e-3 * time, 3))
+                done = 0
+            wait_for(lambda done=done: gets_beyond(done))
+            assert session.facts is not None
+            done = session.facts.done
+            link = session.keeper.link
+            assert link is not None
+            assert link.pid is not None
+            killed.append(link.pid)
+            os.kill(link.pid, signal.SIGKILL)
+            wait_for(lambda link=link: session.collect() and session.keeper.link is not link)
+        wait_for(lambda: gets_beyond(done))
+        assert session.settings.changed() == {**settings.changed(), "friction": 0.29}
+        assert session.goes_on
+        assert len(set(killed)) == TIMES
+        # Its pipes live as long as it does.
+        del link
+    wait_for(lambda: workers() == threads)
+    wait_for(lambda: open_files() <= files)
+    assert not any(map(is_alive, killed))
+
+
+# Panel hands its download button both names of one parameter.
+@pytest.mark.filterwarnings("ignore")
+def test_a_hundred_drops_in_a_row_leave_nothing_and_pictures_come() -> None:
+    async def drops() -> None:
+        pn.extension(notifications=True)
+        server = get_server(
+            {"/app": lambda: serve.open_page()},
+            port=0,
+            show=False,
+            start=True,
+            unused_session_lifetime_milliseconds=5000,
+            check_unused_sessions_milliseconds=500,
+        )
+        page = WebPage(f"http://localhost:{server.port}/app?method=paper&tolerance=1e-30")
+        await page.open()
+        for _ in range(TIMES):
+            life = asyncio.create_task(page.live())
+            came = len(page.times)
+            await until(lambda came=came: len(page.times) > came)
+            page.close()
+            await life
+            await page.connect()
+        (session,) = server.get_sessions("/app")
+        assert session.connection_count <= 2
+        page.close()
+        await until(lambda: not server.get_sessions("/app"))
+        await until(lambda: len(serve.PAGES) == 0)
+        server.stop()
+
+    threads = workers()
+    # A thread of its own: that of the browser's tests has a loop at work.
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(asyncio.run, drops()).result()
+    wait_for(lambda: workers() == threads)
