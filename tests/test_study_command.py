@@ -19,7 +19,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings
 from solver.study import peers
-from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, Course, Study
+from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
 from solver.study.figure_data import HUES
 from solver.study.growth import Growth, Size, growth
 from solver.study.machine import LIMITS
@@ -57,7 +57,7 @@ def measured(tmp_path_factory):
 
 def course(method, kind, seconds, errors):
     steps = np.arange(1.0, len(seconds) + 1.0)
-    return Course(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
+    return ErrorCurve(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
 
 
 def study_of(*courses):

@@ -70,7 +70,7 @@ Kind = Literal["latin", "incremental", "peer"]
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class ErrorCurve:
     """What a method reaches, and when.
 
     Attributes
@@ -131,7 +131,7 @@ class Study:
     settings: Settings
     repeats: int
     machine: str
-    courses: tuple[Course, ...]
+    courses: tuple[ErrorCurve, ...]
     absent: tuple[str, ...]
     troubles: tuple[str, ...]
 
@@ -272,9 +272,9 @@ def _by_peer(peer: Peer, settings: Settings, tolerance: float) -> float:
     return time.perf_counter() - start
 
 
-def _course(entry: _Entry, times: list[list[float]]) -> Course:
+def _course(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
     displacement, force = np.array(entry.errors).T
-    return Course(
+    return ErrorCurve(
         method=entry.method,
         kind=entry.kind,
         steps=np.array(entry.steps),
@@ -284,7 +284,7 @@ def _course(entry: _Entry, times: list[list[float]]) -> Course:
     )
 
 
-def course_of(method: str, settings: Settings, distance: Distance, goal: float) -> Course:
+def course_of(method: str, settings: Settings, distance: Distance, goal: float) -> ErrorCurve:
     """Measure one form of LATIN alone, in one timed pass up to a goal."""
     entry = _latin_entry(method, settings, distance, goal, most=300, least=12)
     return _course(entry, [entry.timed()])
