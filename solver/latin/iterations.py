@@ -11,7 +11,6 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete import coarser_problems
 from solver.discrete.problem import Problem
 from solver.latin.acceleration import Anderson, anderson
 from solver.latin.blocks import Blocks
@@ -24,6 +23,7 @@ from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import ReducedLocalStage
 from solver.reduction.basis import Reduction, References
+from solver.scenes import coarser_problems
 from solver.settings import Settings
 
 
