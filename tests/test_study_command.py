@@ -14,9 +14,9 @@ import pytest
 
 from solver import cli
 from solver.cli import main
-from solver.discrete import discretise
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.study import peers
 from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
@@ -231,9 +231,8 @@ def test_the_exponent_is_the_slope_and_needs_two_sizes():
 
 
 def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
-    monkeypatch.setattr(
-        "solver.study.growth.SIZES", {"elements": (2, 8, 16), "substructures": (1, 4)}
-    )
+    sizes = {"elements": (2, 8, 16), "substructures": (1, 4)}
+    monkeypatch.setitem(CATALOGUE, "bar", replace(CATALOGUE["bar"], sizes=sizes))
     found = growth(
         BarSettings.checked({"method": "paper", "elements": 8, "instants": 5, "substructures": 3})
     )

@@ -14,8 +14,7 @@ from app.views.scales import held
 from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.orders import Watch
 from app.worker.shown import STATUS_OPEN, Look, Mesh, has_reference
-from solver.discrete import discretise
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.plane import PlaneSettings
 
 SIZES: dict[str, dict[str, Any]] = {

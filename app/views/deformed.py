@@ -8,7 +8,7 @@ from app.views.drawing import GREY, Bodies, Colors, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, round_up
 from app.worker.shown import Mesh
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import kind_of
 from solver.settings import Settings
 
 SHOWN = 0.06
@@ -18,7 +18,7 @@ CIVIDIS = ("#00224e", "#1a386f", "#434e6c", "#61656f", "#7d7c78", "#9b9476", "#b
 
 def applies(settings: Settings) -> bool:
     """Tell whether there are plane bodies to draw."""
-    return isinstance(settings, PlaneSettings)
+    return kind_of(settings) == "plane"
 
 
 def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | None:

@@ -24,13 +24,13 @@ from app.views.drawing import (
 from app.views.legend import Key
 from app.views.scales import decimal_scale
 from app.worker.shown import instant_of
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import kind_of
 from solver.settings import Settings
 
 
 def applies(settings: Settings) -> bool:
     """Plane bodies have no bound that is known beforehand, and tractions instead."""
-    return not isinstance(settings, PlaneSettings)
+    return kind_of(settings) != "plane"
 
 
 def draw(scene: Scene, kept: Any) -> Drawing | None:

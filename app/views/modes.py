@@ -25,7 +25,7 @@ from app.views.drawing import (
 from app.views.legend import Key
 from app.views.scales import decimal_scale
 from app.worker.shown import ShownModes
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import kind_of
 from solver.settings import Settings
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
@@ -34,7 +34,7 @@ UP = Axis(-1.12, 1.12)
 
 def applies_in_space(settings: Settings) -> bool:
     """Only separated bases have modes, and only those of wires are curves."""
-    return settings.is_reduced and not isinstance(settings, PlaneSettings)
+    return settings.is_reduced and kind_of(settings) != "plane"
 
 
 def applies_in_time(settings: Settings) -> bool:

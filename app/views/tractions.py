@@ -22,7 +22,7 @@ from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held
 from app.worker.frames import Frame, Reference
 from app.worker.shown import instant_of
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import kind_of
 from solver.settings import Settings
 
 KEYS = (
@@ -34,7 +34,7 @@ KEYS = (
 
 def applies(settings: Settings) -> bool:
     """Plane bodies press on each other as they deform."""
-    return isinstance(settings, PlaneSettings)
+    return kind_of(settings) == "plane"
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
