@@ -24,10 +24,10 @@ def discretise_rods(scene: Rods) -> Problem:
     """Cut all rods at the same nodes and write the laws of their interfaces.
 
     Lengths are scaled by L, forces by ES of one rod (solver/README.md, 1). Degrees of freedom run
-    along rod after rod; a broken one has two at its break, and no boundary row there. On the support the
-    interface is "friction"; "contact 1-2" lies between rods 1 and 2, the second being the body
-    above. Its points run along the rods; at the break of either there are two, one for each of the
-    parts that have come apart.
+    along rod after rod; a broken one has two at its break, and no boundary row there. On the
+    support the interface is "friction"; "contact 1-2" lies between rods 1 and 2, the second being
+    the body above. Its points run along the rods; at the break of either there are two, one for
+    each of the parts that have come apart.
 
     The search direction of the cuts and ends is ES/l_sub, with ES the harmonic mean over the
     substructure. On the friction points it is that of a density ES/l_sub^2 over one element's
