@@ -189,33 +189,6 @@ class Settings(param.Parameterized):
         title="PGD pairs per iteration",
         applies=_is_reduced,
     )
-    pgd_solver = choice(
-        "fixed_point",
-        ["fixed_point", "singular_pair"],
-        "How a pair is found: the alternating fixed point of the paper, or the leading singular "
-        "pair of the residual at once.",
-        group="Method",
-        title="PGD pair",
-        applies=_is_reduced,
-    )
-    pgd_fixed_point_steps = count(
-        4,
-        (1, 1000),
-        (1, 20),
-        "Most steps of the alternating fixed point.",
-        group="Method",
-        title="Fixed-point steps",
-        applies=lambda settings: _is_reduced(settings) and settings.pgd_solver == "fixed_point",
-    )
-    pgd_stagnation = quantity(
-        0.01,
-        (0.0, 1.0),
-        (0.0, 0.1),
-        "The fixed point stops when a step changes the size of the pair by less than this share.",
-        group="Method",
-        title="Fixed-point stagnation",
-        applies=lambda settings: _is_reduced(settings) and settings.pgd_solver == "fixed_point",
-    )
     pgd_sharing = quantity(
         0.0,
         (0.0, 1.0),
@@ -253,15 +226,6 @@ class Settings(param.Parameterized):
         title="Reference instants",
         applies=_is_sampled,
     )
-    local_refresh = count(
-        5,
-        (1, 1000),
-        (1, 20),
-        "Every so many iterations the laws are evaluated everywhere, and new references chosen.",
-        group="Method",
-        title="Full local stage every",
-        applies=_is_sampled,
-    )
     acceleration = choice(
         "anderson",
         ["none", "anderson"],
@@ -271,15 +235,6 @@ class Settings(param.Parameterized):
         applies=lambda settings: not _is_reduced(settings),
         essential=True,
     )
-    anderson_memory = count(
-        15,
-        (1, 100),
-        (2, 30),
-        "Iterates that Anderson acceleration remembers.",
-        group="Method",
-        title="Anderson memory",
-        applies=lambda settings: not _is_reduced(settings) and settings.acceleration == "anderson",
-    )
     start = choice(
         "nested",
         ["zero", "nested"],
@@ -288,15 +243,6 @@ class Settings(param.Parameterized):
         group="Method",
         title="Start",
         essential=True,
-    )
-    nested_iterations = count(
-        40,
-        (1, 10_000),
-        (5, 100),
-        "Most iterations on every coarser mesh; it gets fewer once it has given what it can.",
-        group="Method",
-        title="Iterations per coarser mesh",
-        applies=lambda settings: settings.start == "nested",
     )
     k_update = choice(
         "none",
@@ -360,6 +306,11 @@ class Settings(param.Parameterized):
     def n_substructures(self) -> int:
         """Number of substructures in all."""
         return self.substructures
+
+    @property
+    def k_factors(self) -> tuple[float, float]:
+        """Give further factors on k of contacts, along and across them."""
+        return self.k_friction_scale, 1.0
 
     @classmethod
     def definitions(cls) -> dict[str, Parameter]:

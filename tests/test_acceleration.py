@@ -7,7 +7,6 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, iterations, solve
 from solver.latin.acceleration import Anderson
 from solver.latin.direction import search_direction, sliding_share
@@ -16,6 +15,7 @@ from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
@@ -84,7 +84,6 @@ def test_the_limit_is_the_same(change):
         {"elements": 53, "body_force": 700.0, "peak": 300.0},
         {"support_displacement": 1e-4},
         {"pressure_profile": "gap"},
-        {"anderson_memory": 1},
         {"linear_stage": "pgd"},
     ],
     ids=str,
@@ -97,8 +96,9 @@ def test_on_every_kind_of_input_it_ends_well(change):
         assert solution.records[-1].error_displacement < 1e-3
 
 
-def test_a_run_goes_on_from_a_checkpoint_to_the_bit():
-    chosen = options(anderson_memory=4)
+def test_a_run_goes_on_from_a_checkpoint_to_the_bit(monkeypatch):
+    monkeypatch.setattr("solver.latin.acceleration.MEMORY", 4)
+    chosen = options()
     problem = discretise(chosen)
     straight = list(islice(iterations(problem, chosen), 30))
     for place in (1, 3, 12, 20):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from solver.discrete import discretise
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.study.survey import ALLOWED, Verdict, judge, run
 
 BLOCK = (
@@ -96,7 +95,7 @@ def test_a_step_that_needs_more_systems_gets_them_in_time(command):
 
 def test_a_few_small_changes_after_a_nested_start_are_no_convergence():
     settings = from_words(
-        "strand substructures=10 search_direction=paper nested_iterations=83 "
+        "strand substructures=10 search_direction=paper "
         "tolerance=0.06794181529902267 "
         "instants=4 wires=8 break_position=0.18720674155082684 elements=332 max_iterations=12 "
         "load=[[0.10762277265272469,5.829812280248028],[0.37488092644833393,19.189573831159976],"

@@ -7,12 +7,12 @@ from itertools import groupby, islice, pairwise, takewhile
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, direction_update, iterations, solve
 from solver.latin.direction_update import CALM, TRIAL
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
@@ -103,7 +103,8 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_run_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, acceleration, harm):
     monkeypatch.setattr(direction_update, "SLIDING", harm * direction_update.SLIDING)
-    chosen = options(**{**FAST, "acceleration": acceleration}, anderson_memory=4)
+    monkeypatch.setattr("solver.latin.acceleration.MEMORY", 4)
+    chosen = options(**{**FAST, "acceleration": acceleration})
     problem = discretise(chosen)
     straight = sample(chosen, CALM + TRIAL + 20)
     for place in (2, CALM - 1, CALM, CALM + 1, CALM + 2, CALM + TRIAL, CALM + TRIAL + 3):

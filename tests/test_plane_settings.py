@@ -11,13 +11,12 @@ from plane import solved
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.discrete import discretise
+from solver.discrete.equilibrium import wrench
 from solver.latin import iterations
 from solver.latin.direction import search_direction
 from solver.loads import PRESETS, PULLS, load_path
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings, block
-from solver.scenes.equilibrium import wrench
 from solver.scenes.layers import LayersSettings, layers
 from solver.scenes.sides import PRESCRIBED
 
@@ -72,7 +71,7 @@ def test_only_what_a_side_uses_applies():
     assert {"left_normal_displacement", "left_tangential_traction"} <= applies
     assert not {"left_normal_traction", "left_tangential_displacement"} & applies
     assert not [name for name in applies if name.startswith("right_")]
-    assert not {"start", "local_stage", "nested_iterations"} & applies
+    assert not {"start", "local_stage"} & applies
 
 
 def test_a_table_has_its_own_size():

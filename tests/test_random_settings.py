@@ -15,10 +15,10 @@ from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import Curve, SettingError
-from solver.discrete import discretise
 from solver.latin import Ending, solve
+from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 RUNS = os.environ.get("SLIPFRONT_RANDOM_RUNS")
@@ -38,11 +38,8 @@ SMALL = {
     "instants": 30,
     "substructures": 30,
     "max_iterations": 60,
-    "nested_iterations": 20,
     "pgd_modes": 20,
     "pgd_pairs": 5,
-    "pgd_fixed_point_steps": 10,
-    "anderson_memory": 30,
 }
 """Upper bounds that keep a run short; all other settings go over their whole range."""
 SECTION = (1e-4, 1e4)
@@ -129,7 +126,7 @@ def values(draw):
 
 def run(chosen):
     problem = discretise(chosen)
-    reference = incremental(problem)
+    reference = reference_of(problem)
     return reference, solve(problem, chosen, distance=distance_to(reference, problem))
 
 

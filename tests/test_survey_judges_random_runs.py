@@ -11,11 +11,10 @@ from types import SimpleNamespace
 import pytest
 
 from solver.cli import main
-from solver.discrete import discretise
 from solver.files import settings_from_command
 from solver.latin import Ending
 from solver.reference.choice import reference_of
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.study.survey import AT_ROUNDING, BROKEN, REFUSED, Outcome, Row, Verdict, judge
 from solver.study.survey_draw import KEPT, LARGEST_FIELD, draw, is_foolish
 from solver.study.survey_report import summary, wrong_lines
@@ -50,7 +49,7 @@ def test_every_setting_that_can_do_anything_is_drawn_sooner_or_later(scene):
     if len(definitions["local_stage"].objects) == 1:
         never |= {name for name in definitions if name.startswith("local_")}
     if len(definitions["start"].objects) == 1:
-        never |= {"start", "nested_iterations"}
+        never |= {"start"}
     assert set(definitions) - drawn == never
 
 

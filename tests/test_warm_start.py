@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, iterations
 from solver.latin.indicators import behaviour_indicator
 from solver.latin.warm import CLEARLY, StartChoice, carry, choose_start, iterations_from
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 
@@ -21,7 +21,7 @@ SIZE = {"elements": 20, "substructures": 4, "instants": 41}
 FORMS: dict[str, dict[str, Any]] = {
     "paper": {},
     "anderson": {"search_direction": "auto", "acceleration": "anderson"},
-    "nested": {"start": "nested", "nested_iterations": 3},
+    "nested": {"start": "nested"},
     "pgd": {"linear_stage": "pgd"},
 }
 

@@ -14,6 +14,10 @@ MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
 A block of 768 x 384 elements and 51 instants keeps 8 differences and stays below 2 GB; on 384 x 192
 1e-4 of the contact force takes 38 iterations with 15 differences, 39 with 8, 41 with 5."""
+MEMORY = 15
+"""Differences that are remembered at most. From 5 to 50, 1 % of the contact force takes the same
+number of iterations but for two on bar, strand, block and layers, and 1e-4 from 55 to 63 on layers,
+39 to 45 on strands (measured)."""
 SAMPLE = 300_000
 """Values of a residual that the weights of the mixture are found from; all, if it has no more. On
 384 x 192 elements, a fourth of all: 38 iterations to 1e-4 of the contact force, and 67 with
@@ -30,9 +34,7 @@ force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1; layers 100
 wander for hundreds with 2 before they come within 1 % (25 with 1.1; measured)."""
 
 
-def anderson(
-    problem: Problem, stage: FullLinearStage, memory: int, blocks: Blocks | None = None
-) -> Anderson:
+def anderson(problem: Problem, stage: FullLinearStage, blocks: Blocks | None = None) -> Anderson:
     """Prepare the acceleration of a linear stage, with the norm of k over boundary and time."""
     weights = [
         np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
@@ -42,7 +44,7 @@ def anderson(
     if problem.opens:
         is_held = any(law.is_on_support for law in problem.rubbing.values())
         growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-    return Anderson(weights, memory, growth, blocks)
+    return Anderson(weights, MEMORY, growth, blocks)
 
 
 class Anderson:

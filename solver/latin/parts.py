@@ -8,7 +8,6 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete import coarser_problems
 from solver.discrete.problem import Problem
 from solver.latin.acceleration import anderson
 from solver.latin.blocks import Blocks
@@ -22,6 +21,7 @@ from solver.latin.local import LocalStage
 from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import AtReferences, ReducedLocalStage
+from solver.scenes import coarser_problems
 from solver.settings import Settings
 
 
@@ -69,7 +69,7 @@ def _plugged(problem: Problem, settings: Settings, k: Array, clock: Clock) -> Pa
         linear = full = FullLinearStage(problem, k, multiscale=settings.multiscale, blocks=blocks)
         local = Everywhere(stage, linear)
         if settings.acceleration == "anderson":
-            acceleration = anderson(problem, full, settings.anderson_memory, blocks)
+            acceleration = anderson(problem, full, blocks)
     return Parts(k, local, linear, acceleration, float(settings.relaxation))
 
 
@@ -89,5 +89,5 @@ def start_of(problem: Problem, settings: Settings, k: Array) -> Checkpoint | Non
     if problem.rest is not None:
         return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
     if settings.start == "nested":
-        return nested_start(coarser_problems(settings), settings, problem, k)
+        return nested_start(coarser_problems(settings), problem, k)
     return None
