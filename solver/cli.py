@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from solver.definitions import SettingError, about, allowed
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.files import (
     remarks,
@@ -28,7 +28,7 @@ from solver.latin import Ending, Solution, solve
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 from solver.study import survey_report
 from solver.study.error_against_time import error_against_time

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from solver.definitions import Curve, SettingError, parse, resolve
-from solver.discrete.problem import Inside
+from solver.discrete.inside import Inside
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from app.worker.rivals import References
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.fingerprint import fingerprint
 from solver.reference.incremental import Reference
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 
 SIZES: dict[str, dict[str, Any]] = {

@@ -8,9 +8,8 @@ import pytest
 from studios import Shown
 
 from app.views import deformed, loop
-from solver.discrete import discretise
 from solver.discrete.idle import nothing_acts
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 IDLE: dict[str, dict[str, Any]] = {
     "bar": {"peak": 0.0},

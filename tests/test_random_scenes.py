@@ -14,12 +14,11 @@ from hypothesis import strategies as st
 from test_random_settings import RANDOM, RUNS, WRONG, values_of
 
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 FEW = settings(RANDOM, max_examples=int(RUNS or 30))
 SIZES = {

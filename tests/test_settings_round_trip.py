@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from solver.definitions import Curve, SettingError, allowed, parse, resolve
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
-from solver.scenes.bar import LARGEST_FIELD, BarSettings
+from solver.scenes.bar import BarSettings
+from solver.scenes.base import LARGEST_FIELD
 from solver.settings import dump
 
 ANY = settings(

@@ -12,11 +12,10 @@ import pytest
 
 from solver import cli
 from solver.cli import main
-from solver.discrete import discretise
 from solver.latin import Ending
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.incremental import incremental
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.study.stability import (

@@ -11,11 +11,10 @@ from types import SimpleNamespace
 import pytest
 
 from solver.cli import main
-from solver.discrete import discretise
 from solver.files import settings_from_command
 from solver.latin import Ending
 from solver.reference.choice import reference_of
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.study.survey import AT_ROUNDING, BROKEN, REFUSED, Outcome, Row, Verdict, judge
 from solver.study.survey_draw import KEPT, LARGEST_FIELD, draw, is_foolish
 from solver.study.survey_report import summary, wrong_lines

@@ -16,8 +16,7 @@ from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.orders import Watch
 from app.worker.sampler import Sampler
 from app.worker.shown import STATUS_OPEN, Look, Mesh, has_reference
-from solver.discrete import discretise
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.plane import PlaneSettings
 
 SIZES: dict[str, dict[str, Any]] = {

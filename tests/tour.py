@@ -9,13 +9,11 @@ from typing import Any
 import param
 
 from app.form import item_of
-from app.samples import points_of
 from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError
-from solver.discrete import discretise
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise, points_of
 from solver.settings import Settings
 
 SIZES: dict[str, dict[str, Any]] = {

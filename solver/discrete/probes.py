@@ -12,7 +12,8 @@ import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices
-from solver.discrete.problem import Inside, Problem
+from solver.discrete.inside import Inside
+from solver.discrete.problem import Problem
 from solver.laws import Dirichlet
 
 AXES = {"left": 0, "right": 0, "bottom": 1, "top": 1}

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import ROUNDING, Array
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.laws.play import play
@@ -43,7 +43,6 @@ PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
 TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
-ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:

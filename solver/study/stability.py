@@ -15,7 +15,6 @@ from scipy.linalg import eigvals_banded, eigvalsh
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import Ending, Solution, iterations, solve
 from solver.latin.direction import search_direction
@@ -23,7 +22,7 @@ from solver.reference.assembly import assembled_stiffness
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, TOLD, UNCLEAR, Case, cases
 from solver.study.stability_plane import plane_cases

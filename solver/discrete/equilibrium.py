@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.scenes.stack import Given, Stack
+from solver.discrete.stack import Given, Stack
 
 SLACK = 1e-9
 """Share of the loads that rounding may add to them."""
