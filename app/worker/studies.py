@@ -15,8 +15,9 @@ from solver.study.figure_data import PaperFigure
 from solver.study.growth import Growth, growth
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
-from solver.study.stability import METHODS, Row, cases_of, invariance, stability
+from solver.study.stability import METHODS, Row, cases_of, stability
 from solver.study.stability_report import write_report
+from solver.study.stability_units import invariance
 from solver.study.study_files import write_study
 
 SHARE_OF_GROWTH = 0.8
