@@ -231,7 +231,7 @@ def test_one_scene_alone_can_be_asked(tmp_path, capsys):
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
     assert "Invariance" not in capsys.readouterr().out
     assert main(["stability", "rope", "--out", str(tmp_path)]) == 2
-    assert "bar, block, layers, strand" in capsys.readouterr().err
+    assert ", ".join(CATALOGUE) in capsys.readouterr().err
 
 
 def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):

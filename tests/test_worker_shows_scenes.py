@@ -22,6 +22,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 20, "instants": 21},
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 3, "instants": 13},
+    "incline": {"elements": 12, "elements_up": 6, "instants": 13},
 }
 
 
@@ -72,12 +73,12 @@ def test_a_block_that_lifts_off_is_open_there() -> None:
     assert (status != STATUS_OPEN).any()
 
 
-@pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers"])
+@pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_frames_carry_only_what_is_watched(scene: str) -> None:
     shown = told(scene)
     bare, full = shown.frame(Look()), shown.frame()
     assert bare.mesh is bare.axial is bare.spectra is bare.bases is None
-    assert (full.mesh is not None) == (scene in ("block", "layers"))
+    assert (full.mesh is not None) == (scene in ("block", "layers", "incline"))
     assert (full.axial is not None) == (scene == "strand")
     assert (bare.load is None) == (scene in ("bar", "strand"))
 

@@ -47,7 +47,8 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     size = max(
         float(np.abs(part).max(initial=0.0)) for part in (ELASTIC * elastic, ELASTIC * outer, force)
     )
-    broken = _broken_laws(problem, stiffness, all_jumps @ displacement, force)
+    jump = all_jumps @ displacement + rules_of(problem).compliance[:, None] * force
+    broken = _broken_laws(problem, stiffness, jump, force)
     largest = max(float(np.abs(part).max(initial=0.0)) for part in (unbalanced, broken))
     return largest / size if size > 0.0 else largest
 
