@@ -1,4 +1,7 @@
-"""A block on a slope sticks, slides into its spring, comes back late, and tips (theory.md, 9)."""
+"""A block on a slope sticks, slides into its spring, comes back late, and tips.
+
+Closed forms: solver/README.md, 9.
+"""
 
 from __future__ import annotations
 

@@ -18,6 +18,7 @@ from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
+from solver.study.conditioning import condition_of_structure, condition_of_substructures
 from solver.study.stability import (
     METHODS,
     SAME_UP_TO,
@@ -25,15 +26,13 @@ from solver.study.stability import (
     Row,
     Verdict,
     cases_of,
-    condition_of_structure,
-    condition_of_substructures,
-    invariance,
     judge,
     stability,
 )
 from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR, Case, graded
 from solver.study.stability_plane import PRESSED
 from solver.study.stability_report import COLOURS, COLUMNS, notes, passes, summary, values
+from solver.study.stability_units import invariance
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
