@@ -16,6 +16,7 @@ IDLE: dict[str, dict[str, Any]] = {
     "strand": {"peak": 0.0},
     "block": {"top": "traction"},
     "layers": {"pressure": 0.0, "deflection": 0.0},
+    "incline": {"weight": 0.0},
 }
 
 

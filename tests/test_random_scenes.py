@@ -1,4 +1,4 @@
-"""Whatever the settings of strand, block and layers: a run ends finite, with a known status.
+"""Whatever the settings of any scene but the bar: a run ends finite, with a known status.
 
 SLIPFRONT_RANDOM_RUNS=500 makes that many runs of each scene, other ones each time.
 """
@@ -25,6 +25,7 @@ SIZES = {
     "strand": {"elements": (2, 12), "wires": (2, 5), "instants": (1, 10)},
     "block": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "layers": {"elements": (1, 8), "elements_up": (1, 2), "layers": (2, 3), "instants": (1, 8)},
+    "incline": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
 }
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
 TIGHT = {"max_iterations": 200, "linear_stage": "full"}

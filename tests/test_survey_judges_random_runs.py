@@ -25,6 +25,7 @@ SMALL = {
     "strand": {"elements": 12, "instants": 9},
     "block": {"elements": 12, "elements_up": 6, "instants": 9},
     "layers": {"elements": 12, "elements_up": 1, "instants": 9},
+    "incline": {"elements": 12, "elements_up": 6, "instants": 9},
 }
 GOOD = Outcome(Ending.CONVERGED, "It is.", error_displacement=1e-3, error_force=5e-3)
 

@@ -21,6 +21,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
     "layers": {"elements": 12, "instants": 11, "layers": 2, "substructures": 2},
+    "incline": {"elements": 12, "elements_up": 4, "instants": 11},
 }
 """Of every scene, so small that hundreds of runs take seconds."""
 NEVER = {
@@ -28,6 +29,7 @@ NEVER = {
     "strand": set[str](),
     "block": {"local_stage", "start"},
     "layers": {"local_stage", "start"},
+    "incline": {"local_stage", "start"},
 }
 """Settings of a scene that nothing makes apply, with those that depend on them."""
 DEPENDENT = {

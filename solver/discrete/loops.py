@@ -30,12 +30,14 @@ class Fields(Protocol):
 class Loop:
     """A force over the displacement that it works on; what is inside the loop is dissipated.
 
+    Or over whatever drives it: then the loop shows how it lags behind.
+
     Attributes
     ----------
     across, up
         Title and unit of both.
     displacement
-        Of m, or 1 for a rotation.
+        Of m, or 1 for a rotation; or what drives.
     force
         Over time, N, shape (n_instants,), where it is given; else what finds it.
     """

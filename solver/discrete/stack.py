@@ -51,6 +51,22 @@ class Support:
     friction: float
 
 
+@dataclass(frozen=True)
+class Spring:
+    """A spring along x at the foot of the right side of the lowest body, slack at first.
+
+    Attributes
+    ----------
+    slack
+        How far the foot may move to the left before it is pulled back, m.
+    stiffness
+        N/m.
+    """
+
+    slack: float
+    stiffness: float
+
+
 @dataclass(frozen=True, eq=False)
 class Stack:
     """Equal rectangular bodies on each other; one metre thick.
@@ -82,6 +98,8 @@ class Stack:
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
     instants, duration
         s.
+    spring
+        At the right side, of which nothing is prescribed then; or None.
     """
 
     length: float
@@ -101,3 +119,4 @@ class Stack:
     body_force: Array | None
     instants: Array
     duration: float
+    spring: Spring | None = None

@@ -10,9 +10,17 @@ from scipy import sparse
 from solver.arrays import Array
 from solver.discrete.macro import side_basis
 from solver.discrete.sides import Place, along, neighbour
-from solver.discrete.stack import Side, Stack
+from solver.discrete.stack import Side, Spring, Stack
 from solver.discrete.stack_parts import Part
-from solver.laws import Bodies, Component, Dirichlet, Friction, Interface, Perfect
+from solver.laws import (
+    Bodies,
+    Component,
+    Dirichlet,
+    Friction,
+    Interface,
+    Perfect,
+    SlackSpring,
+)
 
 OPPOSITE = {"right": "left", "top": "bottom"}
 
@@ -20,6 +28,8 @@ OPPOSITE = {"right": "left", "top": "bottom"}
 def interfaces_of(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Interface]]:
     """Give all interfaces by name: contacts, then cuts, then prescribed sides."""
     yield from _contacts(scene, parts)
+    if scene.spring is not None:
+        yield "spring", _spring(scene, scene.spring, parts[scene.substructures[0] - 1, 0, 0])
     for place, part in parts.items():
         for side, opposite in OPPOSITE.items():
             beyond = neighbour(scene, place, side)
@@ -32,7 +42,8 @@ def interfaces_of(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str,
                 Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
             )
     for side, given in scene.sides.items():
-        yield from _prescribed(scene, parts, side, given)
+        if given.x.prescribed or given.y.prescribed:
+            yield from _prescribed(scene, parts, side, given)
 
 
 def _name(place: Place) -> str:
@@ -86,6 +97,22 @@ def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Fri
                 macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
             ),
         )
+
+
+def _spring(scene: Stack, spring: Spring, part: Part) -> SlackSpring:
+    """Give the law of a spring: it pushes to the right, as if from the left."""
+    rows = part.rows["right"]
+    return SlackSpring.of_contact(
+        normal=Component(rows[:, 0]),
+        tangent=Component(rows[:, 1]),
+        friction=np.zeros(1),
+        points=np.zeros(1, dtype=np.intp),
+        positions=np.array([scene.length]),
+        weights=scene.length * part.rectangle.edge_weights("right")[:1],
+        gap=np.array([spring.slack / scene.length]),
+        around=Bodies(depth=scene.height),
+        softness=np.array([scene.young / spring.stiffness]),
+    )
 
 
 def _prescribed(

@@ -117,6 +117,8 @@ def _kept(condensed: Condensed, held: dict[str, Held]) -> Kept:
 def _held(scene: Stack, place: Place, side: str) -> Held:
     """Tell which rows a side has: all at an interface, or those of prescribed components.
 
+    A spring has those of one node.
+
     A contact has none at an end where the left or right side prescribes the normal displacement:
     any pressing force would be a solution there, and so would any friction up to it.
     """
@@ -127,5 +129,7 @@ def _held(scene: Stack, place: Place, side: str) -> Held:
         return Held((0, 1), 1 if first else 0, -1 if last else None)
     if not isinstance(beyond, str):
         return Held((0, 1))
+    if beyond == "right" and scene.spring is not None:
+        return Held((0, 1), 0, 1) if place[1:] == (0, 0) else Held(())
     given = scene.sides[beyond]
     return Held(tuple(place for place, one in enumerate((given.x, given.y)) if one.prescribed))

@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
-from solver.discrete.rest import rigid_rest
+from solver.discrete.rest import rigid_rest, rigid_slide
 from solver.discrete.sides import neighbour
 from solver.discrete.stack import Stack
 from solver.discrete.stack_inside import StackInside
@@ -51,7 +51,10 @@ def _rest(scene: Stack, positions: Array, components: Indices) -> Array | None:
         return None
     x, y = positions.T
     modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
-    return np.asarray(modes @ (rigid / np.array([[scene.length], [1.0]])))
+    found = np.asarray(modes @ (rigid / np.array([[scene.length], [1.0]])))
+    if scene.spring is not None:
+        found += np.outer(components == 0, rigid_slide(scene, scene.spring) / scene.length)
+    return found
 
 
 def _substructure(

@@ -108,7 +108,7 @@ class Condensation:
         self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
         compliance, alone = own @ self._answers, own @ self._alone
         in_series = self.compliance[self.moving]
-        self.stresses: Array = np.zeros((n_own, 0)) if np.all(in_series) else self_stresses(own)
+        self.stresses: Array = self_stresses(own, in_series == 0.0)
         self.tie = TIE * float(self.springs.max(initial=0.0))
         compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
         if in_series.any():

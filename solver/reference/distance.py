@@ -145,6 +145,7 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
     slips &= (moves | ~rules.normal)[rules.partner][:, None]
     moves &= (moves | ~rules.normal)[rules.partner]
     own = np.flatnonzero(moves)
-    ring = np.any(self_stresses((all_jumps @ sparse.diags_array(free))[own]) != 0.0, axis=1)
+    free_jumps = (all_jumps @ sparse.diags_array(free))[own]
+    ring = np.any(self_stresses(free_jumps, rules.compliance[own] == 0.0) != 0.0, axis=1)
     moves[own[ring]] = False
     return np.asarray(moves[:, None] | slips)

@@ -14,6 +14,7 @@ from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK
 from solver.scenes.entry import Entry, Kind
 from solver.scenes.friction_law import with_friction_law
+from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
 from solver.scenes.strand import STRAND
 from solver.settings import Settings
@@ -21,6 +22,7 @@ from solver.settings import Settings
 CATALOGUE: dict[str, Entry[Any]] = {
     "bar": BAR,
     "block": BLOCK,
+    "incline": INCLINE,
     "layers": LAYERS,
     "strand": STRAND,
 }

@@ -11,13 +11,13 @@ from solver.settings import Settings
 
 
 def with_friction_law(problem: Problem, settings: Settings) -> Problem:
-    """Give all friction the law of the settings."""
+    """Give all plain friction the law of the settings."""
     if settings.friction_law == "coulomb":
         return problem
     length = problem.scales.displacement
     laws = {
         name: CompliantFriction.of(law, settings.contact_stiffness, length)
-        if isinstance(law, Friction)
+        if type(law) is Friction
         else law
         for name, law in problem.interfaces.items()
     }

@@ -73,12 +73,14 @@ def size(
     )
 
 
-def young(group: str) -> param.Number[float]:
+def young(
+    group: str, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
+) -> param.Number[float]:
     """Define Young's modulus, that of steel by default."""
     return quantity(
-        210e9,
+        default,
         (1.0, 1e18),
-        (1e8, 1e12),
+        slider,
         "Young's modulus.",
         group=group,
         title="Young's modulus E",
