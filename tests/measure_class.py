@@ -119,7 +119,8 @@ async def visit(server: Server, end: float, pages: list[WebPage]) -> None:
             except WebSocketClosedError:
                 print("a page was closed by the server")
         page.close()
-        await life
+        # What it was about to send would wait for ever.
+        life.cancel()
 
 
 async def change(server: Server, count: int, seconds: float) -> None:
