@@ -20,6 +20,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from browser import Server
+from pages import OURS
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
@@ -152,7 +153,7 @@ def main() -> None:
             server.wait()
             way = change if asked.change else measure
             asyncio.run(way(server, asked.pages, asked.seconds))
-            print("errors in the log:", server.log.count("Traceback"))
+            print("errors of ours in the log:", len(OURS.findall(server.log)))
         finally:
             server.stop()
 
