@@ -7,12 +7,11 @@ from functools import cache
 from typing import Any
 
 from app.form import POINTS, Form, item_of
-from app.samples import points_of
 from app.session import Session
 from app.uploads import load_in
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, points_of
 from solver.settings import Settings, dump
 
 METHOD = "Method"

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from solver.definitions import Curve, SettingError, read_table
+from solver.definitions import Curve, SettingError
 from solver.settings import Settings
+from solver.tables import read_table
 
 
 def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[float]]]:

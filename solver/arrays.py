@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""Share of the largest of some dozens of numbers that rounding leaves of their sum."""
 
 
 def space_time(n_rows: int, n_instants: int) -> Array:

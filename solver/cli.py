@@ -11,11 +11,12 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from solver.definitions import SettingError, about, allowed
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.files import (
     remarks,
@@ -28,7 +29,7 @@ from solver.latin import Ending, Solution, solve
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 from solver.study import survey_report
 from solver.study.error_against_time import error_against_time
@@ -37,9 +38,10 @@ from solver.study.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
 from solver.study.row_report import prepare
-from solver.study.stability import cases_of, invariance, stability
+from solver.study.stability import cases_of, stability
 from solver.study.stability_report import HEAD, line, notes, passes, write_report
 from solver.study.stability_report import summary as summary_of
+from solver.study.stability_units import invariance
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
 from solver.study.survey import Row, Verdict, survey
@@ -86,6 +88,12 @@ def _parser() -> argparse.ArgumentParser:
     settings = commands.add_parser("settings", help="list the settings of a scene")
     settings.add_argument("scene")
     settings.set_defaults(command=_settings)
+    _add_reports(commands)
+    return parser
+
+
+def _add_reports(commands: Any) -> None:
+    """Add the commands that measure and write reports."""
     cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
     cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
     cost.add_argument(
@@ -119,7 +127,6 @@ def _parser() -> argparse.ArgumentParser:
     random.add_argument("--row", type=int, help="this row of one scene alone")
     random.add_argument("--out", type=Path, default=Path("survey"), metavar="DIR")
     random.set_defaults(command=_survey)
-    return parser
 
 
 def _run(chosen: argparse.Namespace) -> int:

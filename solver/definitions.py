@@ -6,7 +6,6 @@ Widgets, address, command line and saved files all derive from these definitions
 from __future__ import annotations
 
 import copy
-import csv
 import difflib
 import json
 import math
@@ -14,7 +13,6 @@ import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import param
@@ -256,53 +254,6 @@ def _checked_curve(
     return tuple(pairs)
 
 
-def read_table(text: str, definition: Curve, name: str, source: str) -> list[list[float]]:
-    """Read a table of two columns for a curve setting.
-
-    Parameters
-    ----------
-    text
-        CSV whose rows are abscissa, value; empty lines are passed over, and a first row of their
-        names, of which the second may be the setting's.
-    definition, name, source
-        The setting it is for, and where the text comes from, used in messages.
-
-    Raises
-    ------
-    SettingError
-        For a row without exactly two numbers.
-    """
-    rows: list[list[float]] = []
-    lines = text.splitlines()
-    try:
-        table = list(csv.reader(lines))
-    except csv.Error as problem:
-        raise SettingError(name, source, allowed(definition), str(problem)) from None
-    for number, cells in enumerate(table, start=1):
-        names = [cell.strip().lower() for cell in cells]
-        is_head = names in [[definition.abscissa, other] for other in (definition.ordinate, name)]
-        if not any(names) or (not rows and is_head):
-            continue
-        try:
-            first, second = cells
-            rows.append([float(first), float(second)])
-        except ValueError:
-            remedy = f"line {number} is {lines[number - 1]!r}, not two numbers"
-            raise SettingError(name, source, allowed(definition), remedy) from None
-    if not rows:
-        raise SettingError(name, source, allowed(definition), "it has no points")
-    return rows
-
-
-def _read_file(path: Path, definition: Curve, name: str) -> list[list[float]]:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, ValueError) as problem:  # no text, or no path at all
-        remedy = f"it is no preset, and no readable CSV file ({type(problem).__name__})"
-        raise SettingError(name, str(path), allowed(definition), remedy) from None
-    return read_table(text, definition, name, str(path))
-
-
 def parse(text: str) -> object:
     """Read a setting's value from text, as typed on a command line or in an address."""
     try:
@@ -310,13 +261,3 @@ def parse(text: str) -> object:
     except (ValueError, RecursionError):  # no TOML, digits beyond Python's limit, deep nesting
         return text
     return found["value"] if len(found) == 1 else text
-
-
-def resolve(definition: Parameter, name: str, value: object, folder: Path) -> object:
-    """Replace the name of a CSV file, sought in a folder, by its points.
-
-    Reading files is for fronts whose user owns the machine, so nothing else does it.
-    """
-    if not isinstance(definition, Curve) or not isinstance(value, str) or not value:
-        return value
-    return value if value in definition.presets else _read_file(folder / value, definition, name)

@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from solver.definitions import Curve, SettingError, parse, resolve
-from solver.discrete.problem import Inside
+from solver.definitions import Curve, SettingError, parse
+from solver.discrete.inside import Inside
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
+from solver.tables import resolve
 
 
 def settings_from_toml(

@@ -10,7 +10,7 @@ from solver.arrays import Array
 from solver.definitions import Pairs
 
 RANDOM_POINTS = 12
-ROUNDING = 1e-14
+NO_LOAD = 1e-14
 """What rounding makes of a whole number of half waves, where a load vanishes."""
 DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
 HELD = 0.25
@@ -40,7 +40,7 @@ def _random_walk(phase: Array, seed: int) -> Array:
 
 def _sine(phase: Array) -> Array:
     found = np.sin(2.0 * np.pi * phase)
-    return np.where(np.abs(found) < ROUNDING, 0.0, found)
+    return np.where(np.abs(found) < NO_LOAD, 0.0, found)
 
 
 def _delayed(phase: Array, seed: int) -> Array:

@@ -307,6 +307,11 @@ class Settings(param.Parameterized):
         """Number of substructures in all."""
         return self.substructures
 
+    @property
+    def k_factors(self) -> tuple[float, float]:
+        """Give further factors on k of contacts, along and across them."""
+        return self.k_friction_scale, 1.0
+
     @classmethod
     def definitions(cls) -> dict[str, Parameter]:
         """Give the definition of every setting, by name, in the order of their groups."""

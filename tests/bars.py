@@ -6,8 +6,8 @@ from itertools import islice
 
 import numpy as np
 
-from solver.discrete import discretise
 from solver.latin import iterations
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 SMALL = {"elements": 30, "instants": 41, "substructures": 6}

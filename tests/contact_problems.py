@@ -3,8 +3,8 @@
 import numpy as np
 
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
+from solver.discrete.stack import Given, Side, Stack, Support
 from solver.laws import Bodies, Component, Dirichlet, Friction
-from solver.scenes.stack import Given, Side, Stack, Support
 
 COURSES = ("random", "reversal", "open and close", "wander")
 

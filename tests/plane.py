@@ -4,10 +4,9 @@ from itertools import islice
 
 import numpy as np
 
-from solver.discrete import discretise
 from solver.latin import iterations
 from solver.latin.indicators import behaviour_indicator
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 LOOK = 10
 

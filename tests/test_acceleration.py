@@ -7,7 +7,6 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, iterations, solve
 from solver.latin.acceleration import Anderson
 from solver.latin.direction import search_direction, sliding_share
@@ -16,6 +15,7 @@ from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}

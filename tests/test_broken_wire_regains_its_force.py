@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.reference.broken_wire import broken_wire
+from solver.scenes import discretise
 from solver.scenes.strand import StrandSettings, strand
 
 FAST = {
@@ -118,13 +118,13 @@ def test_without_friction_it_carries_nothing_and_the_others_what_the_grip_asks_f
     found = axial_forces(scene, iterate.displacement)
     np.testing.assert_allclose(found[1], 0.0, atol=1e-3)
     for whole in (0, 2, 3):
-        np.testing.assert_allclose(found[whole], scene.tension + 0.0 * found[whole], atol=1e-3)
+        np.testing.assert_allclose(found[whole], scene.load + 0.0 * found[whole], atol=1e-3)
 
 
 def test_with_endless_friction_nothing_slips_but_the_break_opens_by_an_element():
     scene, iterate = solved(friction=1e5)
     found = axial_forces(scene, iterate.displacement)
-    np.testing.assert_allclose(found, scene.tension + 0.0 * found, atol=1e-2)
+    np.testing.assert_allclose(found, scene.load + 0.0 * found, atol=1e-2)
     assert not iterate.contact("contact 1-2").status.any()
 
 
@@ -141,7 +141,7 @@ def test_the_break_mirrored_mirrors_everything():
 def test_equal_wires_without_a_break_never_slip(wires, grip):
     scene, iterate = solved(wires=wires, broken=0, grip=grip, elements=30)
     found = axial_forces(scene, iterate.displacement)
-    assert relative(found, scene.tension + 0.0 * found) < 1e-7
+    assert relative(found, scene.load + 0.0 * found) < 1e-7
     for number in range(1, wires):
         contact = iterate.contact(f"contact {number}-{number + 1}")
         assert np.abs(contact.tangential_force).max() < 1e-4
@@ -154,7 +154,7 @@ def test_every_section_carries_what_the_grip_gives_whatever_the_number_of_wires(
         wires=wires, elements=24, substructures=4, instants=9, peak=400.0, load="triangle"
     )
     whole = axial_forces(scene, iterate.displacement).sum(axis=0)
-    assert relative(whole, wires * scene.tension + 0.0 * whole) < 1e-6
+    assert relative(whole, wires * scene.load + 0.0 * whole) < 1e-6
 
 
 def test_an_edge_wire_regains_its_force_at_the_bound_of_its_one_neighbour():
@@ -208,6 +208,6 @@ def test_a_cycle_dissipates_what_friction_bars_do():
     """Twice 2 T^3 / (3 K q) over cycles of +-T, with K = ES / 2; an eighth of it from 0 to T."""
     settings = {**PAIR, "peak": 600.0, "elements": 120, "instants": 21}
     scene, iterate = solved(**settings, tolerance=1e-14)
-    expected = 2.0 * 2.0 * 600.0**3 / (3.0 * 0.5 * scene.stiffness * scene.bound) / 8.0
+    expected = 2.0 * 2.0 * 600.0**3 / (3.0 * 0.5 * scene.stiffness * scene.bound[0]) / 8.0
     measured = dissipation(iterate)[5:13].sum()
     assert measured == pytest.approx(expected, rel=0.02)

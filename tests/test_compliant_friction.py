@@ -8,14 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.laws import Component, Friction
 from solver.laws.compliant import CompliantFriction
 from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
@@ -90,7 +89,7 @@ def test_unloading_and_reloading_follow_masings_rule():
     assert loop == pytest.approx(exact, rel=0.02)
 
 
-@pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers"])
+@pytest.mark.parametrize("scene", list(CATALOGUE))
 @pytest.mark.parametrize("stiffness", [1.0, 300.0])
 def test_every_scene_ends_with_a_certified_solution(scene, stiffness):
     found = run(scene, contact_stiffness=stiffness)
@@ -105,7 +104,7 @@ def test_the_paper_method_reaches_it_too(scene):
     assert found.records[-1].error_force < 2e-3
 
 
-@pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers"])
+@pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_a_contact_that_hardly_gives_way_is_coulombs(scene):
     stiff = run(scene, contact_stiffness=1e9).iterate.friction_force
     rigid = run(scene, friction_law="coulomb").iterate.friction_force

@@ -16,9 +16,8 @@ from contact_problems import (
     two_bodies,
 )
 
-from solver.discrete import discretise
-from solver.discrete.bar import discretise_bar
-from solver.discrete.stack import discretise_stack
+from solver.discrete.rods_problem import discretise_rods
+from solver.discrete.stack_problem import discretise_stack
 from solver.laws import Component, Dirichlet
 from solver.reference import contact as module
 from solver.reference.assembly import assembled_stiffness, external_force
@@ -26,6 +25,7 @@ from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import determinate_forces
 from solver.reference.incremental import Interrupted, incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.strand import StrandSettings
 
@@ -203,7 +203,7 @@ def test_a_stuck_point_does_not_move_and_a_slipping_one_says_where():
 
 
 def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_support():
-    of = discretise_bar(
+    of = discretise_rods(
         bar(BarSettings.checked({"method": "paper", "instants": 41, "peak": 1200.0}))
     )
     law, size = of.friction, len(of.friction.points)
@@ -229,7 +229,7 @@ def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_suppor
 
 
 def test_the_bar_keeps_its_own_solver():
-    of = discretise_bar(bar(BarSettings.checked({"method": "paper", "instants": 21})))
+    of = discretise_rods(bar(BarSettings.checked({"method": "paper", "instants": 21})))
     found, plain = reference_of(of), incremental(of)
     assert found.steps == plain.steps
     assert np.array_equal(found.displacement, plain.displacement)

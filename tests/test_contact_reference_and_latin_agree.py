@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from contact_problems import block
 
-from solver.discrete.stack import discretise_stack
+from solver.discrete.stack import Given, Side
+from solver.discrete.stack_problem import discretise_stack
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
 from solver.scenes.bar import BarSettings
-from solver.scenes.stack import Given, Side
 
 HERE = np.linspace(0.0, 1.0, 17)
 LEANING = Side(Given(True, 1e-4 * HERE, 0.0 * HERE), Given(False, 0.0 * HERE, 0.0 * HERE))

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 ACCURACY = 0.01
 FEW = {"instants": 21}

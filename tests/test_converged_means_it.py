@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from solver.discrete import discretise
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.study.survey import ALLOWED, Verdict, judge, run
 
 BLOCK = (

@@ -7,12 +7,12 @@ from itertools import groupby, islice, pairwise, takewhile
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, direction_update, iterations, solve
 from solver.latin.direction_update import CALM, TRIAL
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}

@@ -10,15 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.discrete import discretise
-from solver.discrete.bar import substructure_sizes
-from solver.discrete.rod import rod_stiffness, tributary
+from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
 from solver.latin import iterations
 from solver.latin.coarse import CoarseProblem
 from solver.latin.direction import search_direction
 from solver.latin.indicators import latin_indicator
 from solver.latin.linear import FullLinearStage
 from solver.latin.response import DenseResponse, SparseResponse
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 
 ANY = settings(derandomize=True, deadline=None, max_examples=60)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from bars import SMALL, options, relative, sample, table
 
-from solver.discrete import discretise
 from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import latin_indicator
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 
 LOOK = 20
 

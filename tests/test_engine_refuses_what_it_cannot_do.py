@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.latin import coarse, iterations, response
 from solver.latin.direction import search_direction
 from solver.latin.linear import FullGroup
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 SMALL = {"elements": 20, "instants": 11, "substructures": 4, "search_direction": "paper"}

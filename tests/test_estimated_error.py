@@ -13,11 +13,10 @@ import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.discrete import discretise
 from solver.latin import Ending, StopRules, iterations, judged, solve, stop
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 
 SMALL: dict[str, dict[str, Any]] = {

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.discrete.bar import discretise_bar
 from solver.discrete.problem import Problem
+from solver.discrete.rods_problem import discretise_rods
 from solver.laws import Neumann
 from solver.reference import incremental as module
 from solver.reference.incremental import Interrupted, Reference, incremental
@@ -23,7 +23,7 @@ SHARES = st.floats(-1.0, 1.0).map(lambda share: share if abs(share) > 1e-200 els
 
 
 def problem(**values: object) -> Problem:
-    return discretise_bar(bar(BarSettings.checked({"method": "paper", **values})))
+    return discretise_rods(bar(BarSettings.checked({"method": "paper", **values})))
 
 
 def table(values: list[float]) -> list[list[float]]:
@@ -152,7 +152,7 @@ def test_without_load_nothing_moves():
 
 def test_without_friction_the_bar_is_elastic():
     scene = bar(BarSettings.checked({"method": "paper", "friction": 0.0}))
-    found = incremental(discretise_bar(scene))
+    found = incremental(discretise_rods(scene))
     elastic = scene.nodes[:, None] * scene.load / scene.stiffness
     np.testing.assert_allclose(found.displacement, elastic, rtol=0.0, atol=1e-15)
     assert not found.friction_force.any()

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options, sample
 
-from solver.discrete import discretise
 from solver.latin import Iterate, solve
 from solver.latin.direction import search_direction
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Dirichlet, Friction, Neumann
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 
 
 def iterate_of(problem, k, displacement, force):

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from app.worker.rivals import References
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.fingerprint import fingerprint
 from solver.reference.incremental import Reference
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
 
 SIZES: dict[str, dict[str, Any]] = {
@@ -23,6 +23,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
     "layers": {"elements": 12, "layers": 3, "instants": 11},
+    "incline": {"elements": 12, "elements_up": 4, "instants": 11},
 }
 OF_THE_METHOD = {"k_scale": 3.0, "multiscale": False, "tolerance": 1e-3, "linear_stage": "pgd"}
 OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
@@ -52,6 +53,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "substructures_up": 1,
     },
     "layers": {"contrast": 2.0, "pull": 1e6, "substructures": 2, "friction": 0.31},
+    "incline": {"slope": 41.0, "weight": 1001.0, "slack": 1e-4, "spring": 1e6, "height": 0.06},
 }
 
 

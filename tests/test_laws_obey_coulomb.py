@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from solver.discrete import discretise
 from solver.latin.direction import search_direction
 from solver.latin.local import LocalStage
 from solver.laws import Neumann
 from solver.laws.interface import Region
 from solver.laws.perfect import perfect
 from solver.laws.play import WALK_FROM_POINTS, _Scan, _Walk, play
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 ANY = settings(derandomize=True, deadline=None, max_examples=100)

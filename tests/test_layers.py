@@ -14,13 +14,14 @@ ROOT = Path(__file__).resolve().parents[1]
 TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
     ["definitions"],
+    ["tables"],
     ["settings"],
     ["arrays"],
     ["loads"],
     ["laws"],
-    ["scenes"],
     ["discrete"],
     ["reference"],
+    ["scenes"],
     ["reduction"],
     ["latin"],
     ["files", "study"],

@@ -9,10 +9,9 @@ import pytest
 
 from app.address import query_of, settings_from_query
 from solver.cli import main
-from solver.discrete import discretise
 from solver.files import settings_from_command, settings_from_toml
 from solver.latin import iterations
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings, dump
 

@@ -8,15 +8,15 @@ import pytest
 from studios import Shown
 
 from app.views import deformed, loop
-from solver.discrete import discretise
 from solver.discrete.idle import nothing_acts
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 IDLE: dict[str, dict[str, Any]] = {
     "bar": {"peak": 0.0},
     "strand": {"peak": 0.0},
     "block": {"top": "traction"},
     "layers": {"pressure": 0.0, "deflection": 0.0},
+    "incline": {"weight": 0.0},
 }
 
 

@@ -1,4 +1,4 @@
-"""Every control of block and layers moves to both ends and back, and the page lives with it."""
+"""Every control of the plane scenes moves to both ends and back, and the page lives with it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from page_tour import Tour
 from pages import Visit
 
 
-@pytest.mark.parametrize("scene", ["block", "layers"])
+@pytest.mark.parametrize("scene", ["block", "layers", "incline"])
 def test_every_control_moves_and_errors_come_back(open_page: Visit, scene: str) -> None:
     tour = Tour(open_page, scene)
     tour.go()

@@ -17,9 +17,9 @@ from app.worker.reports import Facts
 from app.worker.sampler import Sampler
 from app.worker.shown import Look
 from app.worker.words import start_line
-from solver.discrete import discretise
 from solver.files import settings_from_toml
 from solver.latin.warm import StartChoice
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 NEARER, FARTHER = StartChoice(0.01, 1.0), StartChoice(0.5, 1.0)

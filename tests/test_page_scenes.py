@@ -7,16 +7,17 @@ import re
 from pages import Visit, bodies_drawn, choose, slider, status
 from playwright.sync_api import expect
 
-CARDS = {"bar": 6, "strand": 7, "block": 7, "layers": 7}
-PARTS = {"bar": 10, "strand": 18, "block": 8, "layers": 16}
+CARDS = {"bar": 6, "strand": 7, "block": 7, "layers": 7, "incline": 7}
+PARTS = {"bar": 10, "strand": 18, "block": 8, "layers": 16, "incline": 8}
 TITLES = {
     "bar": "Clamped bar",
     "strand": "Parallel wires",
     "block": "Block pressed",
     "layers": "Stack of layers",
+    "incline": "Block on an inclined",
 }
-WITH_SEVERAL_INTERFACES = {"strand", "layers"}
-WITH_STRESSES = {"block", "layers"}
+WITH_SEVERAL_INTERFACES = {"strand", "layers", "incline"}
+WITH_STRESSES = {"block", "layers", "incline"}
 
 
 def test_scenes_are_chosen_and_keep_their_settings(open_page: Visit) -> None:
@@ -26,7 +27,7 @@ def test_scenes_are_chosen_and_keep_their_settings(open_page: Visit) -> None:
     }
     expect(status(page)).to_contain_text("5 substructures")
     expect(slider(page, "Substructures")).to_be_visible()
-    for scene in ("layers", "strand", "block"):
+    for scene in ("layers", "strand", "incline", "block"):
         choose(box["Scene"], TITLES[scene])
         expect(status(page)).to_contain_text(f"{PARTS[scene]} substructures")
         expect(status(page)).to_contain_text(re.compile("iteration [1-9]|after"))

@@ -11,10 +11,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import Ending, iterations, solve
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 BENCHMARK = {"load": "sine", "peak": 900.0, "substructures": 10, "relaxation": 0.8}

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import solve
 from solver.reduction.svd import InterfaceField, decompositions
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study import paper_runs
 from solver.study.paper_figures import figure_5, figure_6, figure_7, figure_8, paper_figures

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver.discrete import discretise
 from solver.files import result_arrays, summary
 from solver.latin import Ending, iterations, solve
 from solver.latin.direction import search_direction
@@ -17,6 +16,7 @@ from solver.reduction.basis import SeparatedBasis
 from solver.reduction.enrichment import Enrichment
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 GENEROUS = {"pgd_modes": 100, "pgd_pairs": 100, "pgd_tolerance": 1e-12, "pgd_enrichment": 0.0}

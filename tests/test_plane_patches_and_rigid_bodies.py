@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved, stress
 
-from solver.discrete import discretise
+from solver.discrete.rest import rigid_rest
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
+from solver.scenes import discretise
 from solver.scenes.block import BlockSettings, block
-from solver.scenes.rest import rigid_rest
 
 PRESSURE, SHEAR = 1e6, 4e5
 DECOMPOSITIONS = [(1, 1), (3, 2), (10, 7)]

@@ -8,11 +8,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import iterations
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 SMALL = {"elements": 32, "elements_up": 16, "instants": 41}
 

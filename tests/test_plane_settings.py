@@ -11,13 +11,12 @@ from plane import solved
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.discrete import discretise
+from solver.discrete.equilibrium import wrench
 from solver.latin import iterations
 from solver.latin.direction import search_direction
 from solver.loads import PRESETS, PULLS, load_path
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings, block
-from solver.scenes.equilibrium import wrench
 from solver.scenes.layers import LayersSettings, layers
 from solver.scenes.sides import PRESCRIBED
 

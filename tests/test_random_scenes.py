@@ -1,4 +1,4 @@
-"""Whatever the settings of strand, block and layers: a run ends finite, with a known status.
+"""Whatever the settings of any scene but the bar: a run ends finite, with a known status.
 
 SLIPFRONT_RANDOM_RUNS=500 makes that many runs of each scene, other ones each time.
 """
@@ -14,18 +14,18 @@ from hypothesis import strategies as st
 from test_random_settings import RANDOM, RUNS, WRONG, values_of
 
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 FEW = settings(RANDOM, max_examples=int(RUNS or 30))
 SIZES = {
     "strand": {"elements": (2, 12), "wires": (2, 5), "instants": (1, 10)},
     "block": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "layers": {"elements": (1, 8), "elements_up": (1, 2), "layers": (2, 3), "instants": (1, 8)},
+    "incline": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
 }
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
 TIGHT = {"max_iterations": 200, "linear_stage": "full"}

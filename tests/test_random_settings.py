@@ -15,10 +15,10 @@ from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import Curve, SettingError
-from solver.discrete import discretise
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 RUNS = os.environ.get("SLIPFRONT_RANDOM_RUNS")

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from solver.arrays import space_time
-from solver.discrete import discretise
 from solver.latin.direction import search_direction
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.response import DenseResponse
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.reduction_cost import half_plane, reduction_cost, whole_iterations
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from bars import SMALL, boundary_of, options, sample
 
-from solver.discrete import discretise
 from solver.latin import Checkpoint, Ending, iterations, solve
 from solver.latin.direction import search_direction
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 
 
 @pytest.mark.parametrize("multiscale", [True, False])

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.latin import solve
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.closed_form import closed_form
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 31}

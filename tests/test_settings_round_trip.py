@@ -11,11 +11,13 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from solver.definitions import Curve, SettingError, allowed, parse, resolve
+from solver.definitions import Curve, SettingError, allowed, parse
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
-from solver.scenes.bar import LARGEST_FIELD, BarSettings
+from solver.scenes.bar import BarSettings
+from solver.scenes.base import LARGEST_FIELD
 from solver.settings import dump
+from solver.tables import resolve
 
 ANY = settings(
     derandomize=True, deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow]

@@ -7,7 +7,6 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.macro import HIGHEST_DEGREE, side_basis
 from solver.discrete.plane import Rectangle
@@ -15,7 +14,7 @@ from solver.latin import iterations
 from solver.latin.direction import automatic
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 
 def problem_of(scene, **values):

@@ -12,13 +12,13 @@ import pytest
 
 from solver import cli
 from solver.cli import main
-from solver.discrete import discretise
 from solver.latin import Ending
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.incremental import incremental
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
+from solver.study.conditioning import condition_of_structure, condition_of_substructures
 from solver.study.stability import (
     METHODS,
     SAME_UP_TO,
@@ -26,15 +26,13 @@ from solver.study.stability import (
     Row,
     Verdict,
     cases_of,
-    condition_of_structure,
-    condition_of_substructures,
-    invariance,
     judge,
     stability,
 )
 from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR, Case, graded
 from solver.study.stability_plane import PRESSED
 from solver.study.stability_report import COLOURS, COLUMNS, notes, passes, summary, values
+from solver.study.stability_units import invariance
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -232,7 +230,7 @@ def test_one_scene_alone_can_be_asked(tmp_path, capsys):
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
     assert "Invariance" not in capsys.readouterr().out
     assert main(["stability", "rope", "--out", str(tmp_path)]) == 2
-    assert "bar, block, layers, strand" in capsys.readouterr().err
+    assert ", ".join(CATALOGUE) in capsys.readouterr().err
 
 
 def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):

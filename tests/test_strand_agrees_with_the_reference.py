@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from solver.cli import main
-from solver.discrete import discretise
 from solver.latin import solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
@@ -66,7 +66,7 @@ def test_at_an_edge_or_without_a_break_every_force_counts(change):
 @pytest.mark.parametrize("grip", ["force", "displacement"])
 def test_where_nothing_rubs_the_force_error_is_relative_to_what_pulls(grip):
     settings = options(broken=0, wires=4, grip=grip)
-    problem, pull = discretise(settings), strand(settings).tension
+    problem, pull = discretise(settings), strand(settings).load
     reference = reference_of(problem)
     assert np.abs(reference.contact_force).max() < 1e-10
     wrong = replace(reference, contact_force=reference.contact_force + 0.01 * pull)

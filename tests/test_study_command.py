@@ -14,12 +14,12 @@ import pytest
 
 from solver import cli
 from solver.cli import main
-from solver.discrete import discretise
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.study import peers
-from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, Course, Study
+from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
 from solver.study.figure_data import HUES
 from solver.study.growth import Growth, Size, growth
 from solver.study.machine import LIMITS
@@ -57,7 +57,7 @@ def measured(tmp_path_factory):
 
 def course(method, kind, seconds, errors):
     steps = np.arange(1.0, len(seconds) + 1.0)
-    return Course(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
+    return ErrorCurve(method, kind, steps, np.array(seconds), np.array(errors), np.array(errors))
 
 
 def study_of(*courses):
@@ -231,9 +231,8 @@ def test_the_exponent_is_the_slope_and_needs_two_sizes():
 
 
 def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
-    monkeypatch.setattr(
-        "solver.study.growth.SIZES", {"elements": (2, 8, 16), "substructures": (1, 4)}
-    )
+    sizes = {"elements": (2, 8, 16), "substructures": (1, 4)}
+    monkeypatch.setitem(CATALOGUE, "bar", replace(CATALOGUE["bar"], sizes=sizes))
     found = growth(
         BarSettings.checked({"method": "paper", "elements": 8, "instants": 5, "substructures": 3})
     )

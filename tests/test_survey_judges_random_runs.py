@@ -11,11 +11,10 @@ from types import SimpleNamespace
 import pytest
 
 from solver.cli import main
-from solver.discrete import discretise
 from solver.files import settings_from_command
 from solver.latin import Ending
 from solver.reference.choice import reference_of
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.study.survey import AT_ROUNDING, BROKEN, REFUSED, Outcome, Row, Verdict, judge
 from solver.study.survey_draw import KEPT, LARGEST_FIELD, draw, is_foolish
 from solver.study.survey_report import summary, wrong_lines
@@ -26,6 +25,7 @@ SMALL = {
     "strand": {"elements": 12, "instants": 9},
     "block": {"elements": 12, "elements_up": 6, "instants": 9},
     "layers": {"elements": 12, "elements_up": 1, "instants": 9},
+    "incline": {"elements": 12, "elements_up": 6, "instants": 9},
 }
 GOOD = Outcome(Ending.CONVERGED, "It is.", error_displacement=1e-3, error_force=5e-3)
 

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from solver.discrete import discretise
 from solver.latin import iterations
 from solver.reduction.svd import (
     InterfaceField,
@@ -22,6 +21,7 @@ from solver.reduction.svd import (
     front_decay,
 )
 from solver.reference.closed_form import closed_form
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 
 DEGENERATE = {

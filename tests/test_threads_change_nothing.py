@@ -7,11 +7,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.latin import iterations
 from solver.latin.acceleration import SAMPLE, Anderson
 from solver.latin.blocks import MOST, VALUES, Blocks
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 
 LARGE = {
     "block": {"elements": 192, "elements_up": 96, "substructures": 8, "substructures_up": 4},

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, iterations
 from solver.latin.indicators import behaviour_indicator
 from solver.latin.warm import CLEARLY, StartChoice, carry, choose_start, iterations_from
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 

@@ -16,8 +16,7 @@ from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.orders import Watch
 from app.worker.sampler import Sampler
 from app.worker.shown import STATUS_OPEN, Look, Mesh, has_reference
-from solver.discrete import discretise
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.plane import PlaneSettings
 
 SIZES: dict[str, dict[str, Any]] = {
@@ -25,6 +24,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 20, "instants": 21},
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 3, "instants": 13},
+    "incline": {"elements": 12, "elements_up": 6, "instants": 13},
 }
 
 
@@ -75,13 +75,13 @@ def test_a_block_that_lifts_off_is_open_there() -> None:
     assert (status != STATUS_OPEN).any()
 
 
-@pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers"])
+@pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_what_few_views_show_is_computed_when_one_looks(
     scene: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     frame, asked = told(scene).frame(), []
     assert not {"mesh", "axial", "spectra", "bases"} & set(vars(frame))
-    assert (frame.mesh is not None) == (scene in ("block", "layers"))
+    assert (frame.mesh is not None) == (scene in ("block", "layers", "incline"))
     assert (frame.axial is not None) == (scene == "strand")
     assert (frame.load is None) == (scene in ("bar", "strand"))
     monkeypatch.setattr("app.worker.sampler.friction_spectra", asked.append)

@@ -12,11 +12,11 @@ from worker_line import STALLING
 
 from app.worker.orders import Run, Seek
 from app.worker.sampler import Sampler
-from solver.discrete import discretise
 from solver.latin import Iterate, Record, StopRules, record
 from solver.latin.warm import choose_start
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 NEAR = {**STALLING, "friction": 0.3001}

@@ -9,13 +9,11 @@ from typing import Any
 import param
 
 from app.form import item_of
-from app.samples import points_of
 from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError
-from solver.discrete import discretise
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise, points_of
 from solver.settings import Settings
 
 SIZES: dict[str, dict[str, Any]] = {
@@ -23,6 +21,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
     "layers": {"elements": 12, "instants": 11, "layers": 2, "substructures": 2},
+    "incline": {"elements": 12, "elements_up": 4, "instants": 11},
 }
 """Of every scene, so small that hundreds of runs take seconds."""
 NEVER = {
@@ -30,6 +29,7 @@ NEVER = {
     "strand": set[str](),
     "block": {"local_stage", "start"},
     "layers": {"local_stage", "start"},
+    "incline": {"local_stage", "start"},
 }
 """Settings of a scene that nothing makes apply, with those that depend on them."""
 DEPENDENT = {

@@ -9,7 +9,7 @@ from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, length_of, spanned
 from app.worker.shown import Wires
-from solver.scenes.strand import StrandSettings
+from solver.scenes import kind_of
 from solver.settings import Settings
 
 SHARED = 1.5
@@ -19,7 +19,7 @@ WIRE_COLORS = (BLUE, ORANGE, PURPLE, SKY, GREY)
 
 def applies(settings: Settings) -> bool:
     """Tell whether there are wires."""
-    return isinstance(settings, StrandSettings)
+    return kind_of(settings) == "wires"
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:

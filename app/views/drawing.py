@@ -17,7 +17,7 @@ from app.views.legend import Key
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
 from app.worker.shown import Look
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import kind_of
 from solver.settings import Settings
 
 
@@ -180,7 +180,7 @@ class Plot:
 
 def is_plane(settings: Settings) -> bool:
     """Tell whether there are plane bodies, which press on each other as they deform."""
-    return isinstance(settings, PlaneSettings)
+    return kind_of(settings) == "plane"
 
 
 def has_instants(settings: Settings) -> bool:

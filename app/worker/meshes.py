@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from app.worker.shown import STRESSES, Mesh
 from solver.arrays import Array
 from solver.discrete.elements import von_mises
-from solver.discrete.problem import Inside
-from solver.scenes.plane import PlaneSettings
+from solver.discrete.inside import Inside
+from solver.settings import Settings
 
 MOST_QUADS = 1500
 """Quadrilaterals that are sent at most, or one for each body."""
@@ -26,9 +26,10 @@ class Thinned:
         Say what the stress across the plane is.
     """
 
-    def __init__(self, inside: Inside, settings: PlaneSettings) -> None:
+    def __init__(self, inside: Inside, settings: Settings) -> None:
         self._inside = inside
-        self._settings = settings
+        values = settings.values()
+        self._poisson, self._state = values["poisson"], values["plane"]
         bodies = int(inside.bodies.max()) + 1
         columns = len(np.unique(inside.nodes[:, 0])) - 1
         rows = len(inside.nodes) // (bodies * (columns + 1)) - 1
@@ -58,7 +59,7 @@ class Thinned:
         whole = self._inside.displacement(skeleton, [instant])[:, :, 0]
         stress = self._inside.stress(whole)
         if component == STRESSES[0]:
-            values = von_mises(stress, self._settings.poisson, self._settings.plane)
+            values = von_mises(stress, self._poisson, self._state)
         else:
             values = stress[:, STRESSES.index(component) - 1]
         mean = np.bincount(self._quad, weights=values) / self._counts

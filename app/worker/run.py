@@ -18,7 +18,7 @@ from app.worker.sampler import Frame, Sampler
 from app.worker.seeking import Found, Seeking
 from app.worker.shown import Look
 from app.worker.tempo import Tempo
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.files import scene_settings
 from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
 from solver.latin.indicators import latin_indicator
@@ -26,6 +26,7 @@ from solver.latin.warm import Start, choose_start, iterations_from
 from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
 from solver.reference.incremental import Interrupted
+from solver.scenes import discretise
 
 IN_A_HURRY = 0.1
 """Seconds that a run which follows a hand has to come to its end before it is shown."""

@@ -28,15 +28,11 @@ from app.worker.shown import (
 from app.worker.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
-from solver.discrete.loops import Fields, loop_of
+from solver.discrete.loops import Fields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
 from solver.reference import incremental
-from solver.reference.broken_wire import broken_wire
-from solver.reference.closed_form import closed_form
-from solver.scenes.bar import BarSettings, bar
-from solver.scenes.plane import PlaneSettings
-from solver.scenes.strand import StrandSettings, strand
+from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of
 from solver.settings import Settings
 
 
@@ -72,10 +68,10 @@ class Sampler:
         self._loop = loop_of(settings, problem)
         self._mesh: Thinned | None = None
         self._wires: ShownWires | None = None
-        if isinstance(settings, PlaneSettings) and problem.inside is not None:
+        if problem.inside is not None:
             self._mesh = Thinned(problem.inside, settings)
-        elif isinstance(settings, StrandSettings):
-            self._wires = ShownWires(problem, settings)
+        elif kind_of(settings) == "wires":
+            self._wires = ShownWires(problem, settings.values()["broken"])
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""
@@ -107,19 +103,16 @@ class Sampler:
 
     def completed(self, stand: Stand) -> Stand:
         """Add the closed form, where there is one."""
-        settings = self._settings
-        if isinstance(settings, BarSettings) and self._law.is_plain:
-            closed = closed_form(bar(settings))
-            if closed is not None:
-                return replace(
-                    stand,
-                    closed_form=self._density(closed.friction_force),
-                    closed_form_end=_floats(closed.end_displacement[self._curve]),
-                )
-        if isinstance(settings, StrandSettings) and self._wires is not None:
-            exact = broken_wire(strand(settings))
-            if exact is not None:
-                return replace(stand, wires=self._wires.completed(exact, self._columns))
+        closed = closed_form_of(self._settings)
+        if closed is not None:
+            return replace(
+                stand,
+                closed_form=self._density(closed.friction_force),
+                closed_form_end=_floats(closed.end_displacement[self._curve]),
+            )
+        exact = broken_wire_of(self._settings)
+        if exact is not None and self._wires is not None:
+            return replace(stand, wires=self._wires.completed(exact, self._columns))
         return stand
 
     def reference(self, found: incremental.Reference) -> Reference:

@@ -15,8 +15,9 @@ from solver.study.growth import growth
 from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
-from solver.study.stability import METHODS, Row, cases_of, invariance, stability
+from solver.study.stability import METHODS, Row, cases_of, stability
 from solver.study.stability_report import stability_sections, write_report
+from solver.study.stability_units import invariance
 from solver.study.study_files import write_study
 from solver.study.study_page import study_sections
 

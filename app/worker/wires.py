@@ -12,7 +12,6 @@ from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
 from solver.latin import Iterate
 from solver.reference.broken_wire import BrokenWire
-from solver.scenes.strand import StrandSettings
 
 MOST_WIRES = 12
 
@@ -20,25 +19,33 @@ MOST_WIRES = 12
 class ShownWires:
     """The axial forces of a strand, thinned; the broken wire is always shown.
 
+    Parameters
+    ----------
+    problem
+        One of wires.
+    broken
+        Number of the broken one, from 1; 0 for none.
+
     Attributes
     ----------
     base
         What the forces stand on, without the closed form.
     """
 
-    def __init__(self, problem: Problem, settings: StrandSettings) -> None:
+    def __init__(self, problem: Problem, broken: int) -> None:
         self._force = AxialForce(problem)
-        self._shape = settings.wires, settings.elements
-        wires = {int(wire) for wire in thinned(settings.wires, MOST_WIRES)}
-        if settings.broken:
-            wires.add(settings.broken - 1)
-        elements = thinned(settings.elements)
+        count = int(self._force.wires.max()) + 1
+        self._shape = count, len(self._force.wires) // count
+        wires = {int(wire) for wire in thinned(count, MOST_WIRES)}
+        if broken:
+            wires.add(broken - 1)
+        elements = thinned(self._shape[1])
         self._chosen = np.ix_(sorted(wires), elements)
-        self._length = settings.length
+        self._length = problem.scales.displacement
         self.base = Wires(
             numbers=tuple(wire + 1 for wire in sorted(wires)),
-            positions=self._force.positions[: settings.elements][elements].astype(np.float32),
-            broken=settings.broken,
+            positions=self._force.positions[: self._shape[1]][elements].astype(np.float32),
+            broken=broken,
         )
 
     def completed(self, exact: BrokenWire, columns: NDArray[np.intp]) -> Wires:

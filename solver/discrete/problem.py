@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
+from solver.discrete.inside import Inside
 from solver.laws import Dirichlet, Friction, Interface, Perfect
 
 Law = TypeVar("Law", bound=Interface)
@@ -78,59 +79,6 @@ class Substructure:
     dofs: Indices
     rows: Indices
     body_force: Array | None
-
-
-class Inside(Protocol):
-    """What lies inside condensed substructures, found when somebody looks.
-
-    Attributes
-    ----------
-    nodes
-        Coordinates of all nodes, shape (n_nodes, 2), m.
-    elements
-        Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
-        as its four quarters.
-    bodies
-        Body of every element, shape (n_elements,).
-    components
-        Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
-    """
-
-    nodes: Array
-    elements: Indices
-    bodies: Indices
-    components: Indices
-
-    def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:
-        """Give the displacement of all nodes, shape (n_nodes, 2, n), m.
-
-        Parameters
-        ----------
-        skeleton
-            Displacement of the problem's degrees of freedom, (n_dofs, n_instants), m.
-        instants
-            Which of them.
-        """
-
-    def adjoint(self, weights: Array) -> tuple[Array, Array]:
-        """Bring a weighted sum of all nodes' displacements onto the degrees of freedom.
-
-        Parameters
-        ----------
-        weights
-            Shape (n_nodes, 2).
-
-        Returns
-        -------
-        Weights of the problem's degrees of freedom, shape (n_dofs,), and what loads inside add,
-        shape (n_instants,), m.
-        """
-
-    def stress(self, displacement: Array) -> Array:
-        """Give stresses (xx, yy, xy) at element centres, shape (n_elements, 3), Pa.
-
-        `displacement` is that of all nodes at one instant, shape (n_nodes, 2), m.
-        """
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Linear elements of an elastic rod."""
+"""Linear elements in a row: of an elastic rod, or of any side that is cut."""
 
 from __future__ import annotations
 
@@ -42,3 +42,9 @@ def tributary(elements: int, element_length: float) -> Array:
     weights = np.full(elements + 1, element_length)
     weights[[0, -1]] = 0.5 * element_length
     return weights
+
+
+def substructure_sizes(elements: int, substructures: int) -> list[int]:
+    """Deal elements to substructures; sizes differ by at most one, the larger ones come first."""
+    size, extra = divmod(elements, substructures)
+    return [size + 1] * extra + [size] * (substructures - extra)

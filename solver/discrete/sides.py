@@ -7,7 +7,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.elements import edge_mass
 from solver.discrete.plane import Rectangle
-from solver.scenes.stack import Given, Stack
+from solver.discrete.stack import Given, Stack
 
 Place = tuple[int, int, int]
 """Column and row of a substructure in its body, and the body."""

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import ROUNDING, Array
 from solver.latin.iterate import Iterate
+from solver.reference.distance import VANISHING
 
 LOOK_BACK = 0.7
 """A change of the contact force is that since the iterate at this share of the iterations."""
@@ -31,10 +32,6 @@ SPACING = 1.1
 RARELY = 2.0
 """Ratio of the iterations at which it is asked anew which forces count as none: a matter of orders
 of magnitude, and dear beside a small iteration."""
-VANISHING = 1e-8
-"""Share of all forces at interfaces below which contact forces count as none, as in distances."""
-ROUNDING = 64.0 * float(np.finfo(float).eps)
-"""Share of what a force is the difference of that rounding leaves of it."""
 _NOTHING: Array = np.zeros(0)
 
 

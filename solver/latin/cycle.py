@@ -12,7 +12,7 @@ from solver.discrete.problem import Problem
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import LinearStage
 from solver.latin.local import LocalStage
-from solver.reduction.basis import References
+from solver.reduction.basis import ReferencePoints
 
 State = list[Any]
 """What a linear stage holds, group by group."""
@@ -30,7 +30,7 @@ class LocalPart(Protocol):
     stage: LocalStage
 
     @property
-    def references(self) -> References | None:
+    def references(self) -> ReferencePoints | None:
         """Reference points and instants, if any."""
 
     def obey(self, number: int, incoming: Array, state: State) -> float:
@@ -58,7 +58,7 @@ class LocalPart(Protocol):
 class Everywhere:
     """The laws at all points and instants."""
 
-    references: References | None = None
+    references: ReferencePoints | None = None
 
     def __init__(self, stage: LocalStage, linear: LinearStage[Any]) -> None:
         self.stage, self._linear = stage, linear

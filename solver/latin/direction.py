@@ -8,7 +8,6 @@ from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.laws import Dirichlet, Neumann, Perfect
-from solver.scenes.plane import PlaneSettings
 from solver.settings import Settings
 
 
@@ -18,12 +17,13 @@ def search_direction(problem: Problem, settings: Settings) -> Array:
     It is the paper's, or the automatic one, times the settings' factors.
     """
     k: Array = settings.k_scale * _by_rule(problem, settings.search_direction)
+    along, across = settings.k_factors
     for law in problem.rubbing.values():
         for rows in law.tangent.sides:
-            k[rows] *= settings.k_friction_scale
-        if law.normal is not None and isinstance(settings, PlaneSettings):
+            k[rows] *= along
+        if law.normal is not None:
             for rows in law.normal.sides:
-                k[rows] *= settings.k_normal_scale
+                k[rows] *= across
     return np.ascontiguousarray(k)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import ROUNDING, Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.laws.interface import beyond, squared
@@ -30,9 +30,6 @@ def latin_indicator(iterate: Iterate) -> float:
     size += weighted(local_outgoing) + weighted(iterate.local_incoming)
     return ratio(2.0 * distance, size)
 
-
-ROUNDING = 64.0 * float(np.finfo(float).eps)
-"""Share of the largest displacement, or of that under the largest force, that rounding blurs."""
 
 SMALL_CONTACT = 1e3
 """A contact force this many times smaller than the largest force still counts as one as large."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
-from solver.reduction.basis import Modes, Reduction, References
+from solver.reduction.basis import Modes, Reduction, ReferencePoints
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class Checkpoint:
     seconds: float
     outgoing: Array
     reduction: Reduction | None = None
-    references: References | None = None
+    references: ReferencePoints | None = None
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
     course: Course | None = None
@@ -127,7 +127,7 @@ class Iterate:
     local_displacement: Array
     local_incoming: Array
     reduction: Reduction | None = None
-    references: References | None = None
+    references: ReferencePoints | None = None
     local_error: float = 0.0
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None

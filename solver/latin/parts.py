@@ -8,7 +8,6 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete import coarser_problems
 from solver.discrete.problem import Problem
 from solver.latin.acceleration import anderson
 from solver.latin.blocks import Blocks
@@ -22,6 +21,7 @@ from solver.latin.local import LocalStage
 from solver.latin.nested import nested_start
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.reduced_local import AtReferences, ReducedLocalStage
+from solver.scenes import coarser_problems
 from solver.settings import Settings
 
 

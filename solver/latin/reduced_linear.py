@@ -22,7 +22,7 @@ from solver.settings import Settings
 
 SHARE_EVERY = 10
 """Iterations between two looks for bases that can be shared."""
-ROUNDING = 1e-13
+NOTHING_LEFT = 1e-13
 """Share of the field's squared norm below which a difference of squares is only rounding."""
 
 
@@ -193,7 +193,7 @@ class ReducedGroup(Group[list[Family]]):
         updated = basis.squared_of(change)
         basis.time_functions += relaxation * change
         left = whole - inside
-        if left < ROUNDING * whole:
+        if left < NOTHING_LEFT * whole:
             left = 0.0
         residual = left + updated
         enough = max(rule.threshold**2 * residual, rule.tolerance**2 * whole)

@@ -14,7 +14,7 @@ from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group
 from solver.latin.local import LocalStage
 from solver.latin.reduced_linear import Family, ReducedLinearStage
-from solver.reduction.basis import References
+from solver.reduction.basis import ReferencePoints
 from solver.settings import Settings
 
 REFRESH = 5
@@ -54,7 +54,7 @@ class ReducedLocalStage:
             if below is not None:
                 self._partner[above], self._partner[below] = below, above
         self._laws: LocalStage | None = None
-        self.references: References | None = None
+        self.references: ReferencePoints | None = None
 
     def is_reduced(self, number: int) -> bool:
         """Tell whether this iteration's laws are evaluated at the references alone."""
@@ -91,7 +91,7 @@ class ReducedLocalStage:
         wanted = round(self._instants * n_instants)
         instants = _pivots(leading, np.arange(n_instants), wanted)
         self.adopt(
-            References(
+            ReferencePoints(
                 np.union1d(instants, [0, n_instants - 1]),
                 self._with_partners(
                     [
@@ -104,7 +104,7 @@ class ReducedLocalStage:
             state,
         )
 
-    def adopt(self, chosen: References, state: list[list[Family]]) -> None:
+    def adopt(self, chosen: ReferencePoints, state: list[list[Family]]) -> None:
         """Use references that were chosen for the families of a state."""
         self.references = chosen
         at = chosen.instants
@@ -202,7 +202,7 @@ class AtReferences:
         self.stage, self._linear, self.few, self._clock = stage, linear, few, clock
 
     @property
-    def references(self) -> References | None:
+    def references(self) -> ReferencePoints | None:
         """Those at use, or None before they are chosen."""
         return self.few.references
 

@@ -19,12 +19,17 @@ from solver.latin.status_step import Certificate
 from solver.settings import Settings
 
 STALL_WINDOW = 200
+"""Iterations without a lower indicator after which a run is called stalled."""
 STALL_FACTOR = 0.99
+"""A lower indicator is one below this part of the lowest so far."""
 SELDOM = 16
 """Every so many iterations the LATIN indicator is computed, for nothing but to see a stall."""
-ROUNDING = 1e-24
+LOWEST = 1e-24
+"""LATIN indicator, a ratio of squares, that rounding leaves of fields that agree."""
 LARGEST_VIOLATION = 1e-2
+"""Of the k-free indicator at the end, however loose the tolerance."""
 SMALLEST_VIOLATION = 1e-12
+"""The same however tight it is."""
 VIOLATION = 1.0
 """Times the root of the tolerance on eta, which is a ratio of squares: what the k-free indicator
 may be at the end, between the two bounds above. Measured at the default tolerance: the friction
@@ -239,9 +244,9 @@ class StopRules:
         return behaviour.total <= enough or self._estimate.is_proven_within(enough, iterate)
 
     def _stall_advice(self, agreed: bool) -> str:
-        if self._best < ROUNDING and agreed:
+        if self._best < LOWEST and agreed:
             return "The indicator is down to rounding: this is as near as it gets."
-        if self._best < ROUNDING:
+        if self._best < LOWEST:
             return (
                 "The LATIN indicator is down to rounding, but the interface laws do not hold: the "
                 "friction force is too small beside the load, or k too far from the stiffness, "

@@ -5,6 +5,7 @@ from solver.laws.boundary import Dirichlet, Neumann
 from solver.laws.friction import OPEN, Friction
 from solver.laws.interface import Component, Interface
 from solver.laws.perfect import Perfect
+from solver.laws.slack_spring import SlackSpring
 
 __all__ = [
     "OPEN",
@@ -16,4 +17,5 @@ __all__ = [
     "Neumann",
     "Perfect",
     "Rod",
+    "SlackSpring",
 ]

@@ -30,9 +30,6 @@ local then is stiffer than the body as a whole, so a constant k finds it ever la
 and 104 with a constant k, 18 and 47 with three times as much; flat, 17 and 53, instead of 29 and
 62. With the power 1/2, of the geometric mean of global and local stiffness, 1 % takes 21 if k grows
 from 48 elements on; and 96 x 96 need more than 15 without acceleration (measured). Layers, where k
-
-from solver.arrays import Array
-from solver.laws.interface import Component
 is of their sliding, gain nothing."""
 SLIDING_BETWEEN_BODIES = 1.0 / 7.0
 """The tangential k between two bodies over the normal one: layers slide on each other along their

@@ -185,7 +185,12 @@ class Friction(Interface):
         friction = own.friction_rule(region)
         if own.normal is None:
             return friction
-        return ContactRule(own.normal, own.gap, friction, region)
+        return own.contact_rule(friction, region)
+
+    def contact_rule(self, friction: FrictionRule, region: Region) -> ContactRule:
+        """Prepare the normal part of the law for a region, which tells friction what presses."""
+        assert self.normal is not None
+        return ContactRule(self.normal, self.gap, friction, region)
 
     def friction_rule(self, region: Region) -> FrictionRule:
         """Prepare the tangential part of the law for a region."""
@@ -235,12 +240,17 @@ class Friction(Interface):
         """
         return self.tangent.jump(displacement)
 
+    def opening(self, displacement: Array, force: Array) -> Array:
+        """Give the distance of the two sides where it may open, shape (n_pairs, n_instants)."""
+        assert self.normal is not None
+        return np.asarray(self.normal.jump(displacement) + self.gap[:, None])
+
     def behaviour(self, displacement: Array, force: Array, noise: float) -> Behaviour:
         """Prepare the check of W and F against the law; parameters as of `gaps`."""
         opening = pressing = None
         if self.normal is not None:
             pressing = beyond(force[self.normal.above], noise)
-            opening = beyond(self.normal.jump(displacement) + self.gap[:, None], 2.0 * noise)
+            opening = beyond(self.opening(displacement, force), 2.0 * noise)
         slip = np.diff(self.slider(displacement, force), axis=1, prepend=0.0)
         bound = self.bound[:, None]
         if pressing is not None:

@@ -112,6 +112,10 @@ class ContactRule:
     def __call__(self, incoming: Array, displacement: Array, some: slice) -> None:
         """Press where the sides would overlap."""
         jump = self._springs.jump(incoming)
-        held = np.maximum(jump, self._closed)
+        held = self.held(jump)
         self._springs.close(incoming, jump, held, displacement)
         self._friction(incoming, displacement, some, (held - jump) / self._springs.soft)
+
+    def held(self, jump: Array) -> Array:
+        """Give the jump that the law allows, (n_pairs, n_instants)."""
+        return np.asarray(np.maximum(jump, self._closed))

@@ -232,7 +232,7 @@ class Reduction:
 
 
 @dataclass(frozen=True, eq=False)
-class References:
+class ReferencePoints:
     """Where the laws are evaluated.
 
     Attributes

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.rods import Rods
 from solver.reference.closed_form import ClosedForm, closed_form
-from solver.scenes.bar import Bar
-from solver.scenes.strand import Strand
 
 STEPS = 100
 PRECISION = 1e-13
@@ -49,7 +48,7 @@ class BrokenWire:
     slip: Array
 
 
-def broken_wire(scene: Strand) -> BrokenWire | None:
+def broken_wire(scene: Rods) -> BrokenWire | None:
     """Solve a strand with a broken wire in closed form.
 
     Returns
@@ -59,7 +58,7 @@ def broken_wire(scene: Strand) -> BrokenWire | None:
     """
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None
-    tension = _tension(scene) if scene.rigid_grip else scene.tension
+    tension = _tension(scene) if scene.rigid_grip else scene.load
     left, right = _sides(scene, tension)
     lost = np.concatenate([left.normal_force, right.normal_force[-2::-1]])
     return BrokenWire(
@@ -71,13 +70,13 @@ def broken_wire(scene: Strand) -> BrokenWire | None:
     )
 
 
-def _sides(scene: Strand, tension: Array) -> tuple[ClosedForm, ClosedForm]:
+def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm]:
     """Give the bars left and right of the break, from their far ends to the break."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
     found = []
     for elements in (node, scene.elements - node):
-        side = Bar(
+        side = Rods(
             length=scene.length * elements / scene.elements,
             stiffness=scene.stiffness * sides / (sides + 1),
             elements=elements,
@@ -85,10 +84,7 @@ def _sides(scene: Strand, tension: Array) -> tuple[ClosedForm, ClosedForm]:
             instants=scene.instants,
             duration=scene.duration,
             load=tension,
-            bound=np.full(elements + 1, sides * scene.bound),
-            support=None,
-            body_force=None,
-            section=None,
+            bound=sides * scene.bound[: elements + 1],
         )
         solved = closed_form(side)
         assert solved is not None
@@ -96,18 +92,18 @@ def _sides(scene: Strand, tension: Array) -> tuple[ClosedForm, ClosedForm]:
     return found[0], found[1]
 
 
-def _tension(scene: Strand) -> Array:
+def _tension(scene: Rods) -> Array:
     """Find T under a rigid grip: a neighbour's elongation is given.
 
     It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second
     part grows with T, and no faster than the first, so halved steps halve the error at least.
     """
-    tension = scene.tension
+    tension = scene.load
     largest = float(np.abs(tension).max())
     for _ in range(STEPS):
         slipped = sum(side.end_displacement for side in _sides(scene, tension))
         softer = scene.stiffness / scene.length * slipped / (scene.rubbing_sides + 1)
-        change = 0.5 * (scene.tension - tension - softer)
+        change = 0.5 * (scene.load - tension - softer)
         tension = tension + change
         if float(np.abs(change).max()) <= PRECISION * largest:
             break

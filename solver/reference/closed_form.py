@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.rods import Rods
 from solver.laws.play import play
-from solver.scenes.bar import Bar
 
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""
@@ -51,7 +51,7 @@ class ClosedForm:
         return found
 
 
-def closed_form(scene: Bar) -> ClosedForm | None:
+def closed_form(scene: Rods) -> ClosedForm | None:
     """Solve the friction bar in closed form (solver/README.md, 6).
 
     Parameters
@@ -75,7 +75,7 @@ def closed_form(scene: Bar) -> ClosedForm | None:
     return ClosedForm(nodal, -np.diff(sections, axis=0), displacement)
 
 
-def _grip_beyond(scene: Bar, share: float, *, with_end: bool = False) -> Array:
+def _grip_beyond(scene: Rods, share: float, *, with_end: bool = False) -> Array:
     """Give R at a share of every element's length, shape (n_elements,), N; then at L if wanted."""
     size = scene.length / scene.elements
     left, right = scene.bound[:-1], scene.bound[1:]
@@ -86,11 +86,11 @@ def _grip_beyond(scene: Bar, share: float, *, with_end: bool = False) -> Array:
     return np.append(found, 0.0) if with_end else found
 
 
-def _normal_force(scene: Bar, reach: Array) -> Array:
+def _normal_force(scene: Rods, reach: Array) -> Array:
     return play(np.broadcast_to(scene.load, (len(reach), len(scene.load))), reach)
 
 
-def _mean_normal_force(scene: Bar, nodal: Array) -> Array:
+def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
     """Average over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])

@@ -20,7 +20,7 @@ from scipy import sparse
 from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
-from solver.arrays import Array, Indices
+from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.self_stress import self_stresses
@@ -32,7 +32,7 @@ LOOSE = 1e-14
 SOFTEST = 1e-8
 """Spring at a pair, at least, as a share of the stiffest degree of freedom."""
 
-ROUNDING = 256.0 * float(np.finfo(float).eps)
+LEFT_INSIDE = 4.0 * ROUNDING
 """Share of the forces that displacements make inside elements that rounding leaves of them."""
 
 TIE = 1e3
@@ -108,7 +108,7 @@ class Condensation:
         self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
         compliance, alone = own @ self._answers, own @ self._alone
         in_series = self.compliance[self.moving]
-        self.stresses: Array = np.zeros((n_own, 0)) if np.all(in_series) else self_stresses(own)
+        self.stresses: Array = self_stresses(own, in_series == 0.0)
         self.tie = TIE * float(self.springs.max(initial=0.0))
         compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
         if in_series.any():
@@ -169,7 +169,7 @@ class Condensation:
         once stays in the places where its contacts stick.
         """
         inside = abs(self._whole) @ np.abs(displacement)
-        return ROUNDING * float(inside.max(initial=0.0))
+        return LEFT_INSIDE * float(inside.max(initial=0.0))
 
     @cached_property
     def largest_force(self) -> float:

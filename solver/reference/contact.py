@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import ROUNDING, Array
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
 from solver.laws.play import play
@@ -43,7 +43,6 @@ PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
 TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
-ROUNDING = 64.0 * float(np.finfo(float).eps)
 
 
 def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
@@ -178,9 +177,9 @@ class _Newton:
         self._guesses = guesses
         if guesses is not None:
             guesses[rules.smooth] = OPEN
-        self._overlap: Array | None = None
+        self._at_rest: States | None = None
         if rest is not None:
-            self._overlap = condensed.jump(rest)[condensed.moving] + rules.gap[:, None]
+            self._at_rest = _states_at(condensed.jump(rest)[condensed.moving], rules)
         self._largest = float(np.abs(condensed.load).max(initial=0.0))
 
     def __call__(self, instant: int) -> tuple[Array, Array]:
@@ -223,10 +222,10 @@ class _Newton:
         guesses = [self._states]
         if self._guesses is not None:
             guesses.insert(0, self._guesses[:, instant])
-        if self._overlap is not None:
-            # A body that falls or rolls a long way touches elsewhere than one instant before.
-            closed = (self._overlap[:, instant] < 0.0)[self._rules.partner]
-            guesses.append(np.where(closed, HELD, OPEN).astype(np.int8))
+        if self._at_rest is not None:
+            # A body that falls, rolls or slides a long way touches elsewhere than one instant
+            # before, or slips as a whole.
+            guesses.append(self._at_rest[:, instant])
         for guess in guesses:
             found = self._iterate(guess, sides)
             if found is not None:
@@ -266,6 +265,14 @@ class _Newton:
         found = np.where(rules.normal, np.where(closed, HELD, OPEN), found)
         found[(rules.friction > 0.0) & (found[rules.partner] == OPEN)] = OPEN
         return found.astype(np.int8)
+
+
+def _states_at(jumps: Array, rules: Rules) -> States:
+    """Give the states of a body that is where it would be if it were rigid, (n, n_instants)."""
+    closed = (jumps + rules.gap[:, None] < 0.0)[rules.partner]
+    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
+    slip[rules.normal] = HELD
+    return np.where(closed, slip, OPEN).astype(np.int8)
 
 
 def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:

@@ -16,7 +16,7 @@ from solver.reference.condensation import jumps
 from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 
-ROUNDING = 1e-8
+VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
 
 
@@ -80,7 +80,7 @@ class Distance:
         force_size, load_size = self._norm(self._force), self._norm(load)
         allowed = self._norm(np.outer(bound, np.ones(len(time_weights))))
         # Without a known bound it is the load alone that contact forces can vanish beside.
-        vanishes = force_size <= ROUNDING * (min(load_size, allowed) or load_size)
+        vanishes = force_size <= VANISHING * (min(load_size, allowed) or load_size)
         self.force_size = (load_size if vanishes else force_size) or 1.0
 
     def of_displacement(self, fields: Fields) -> float:
@@ -115,7 +115,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
         moved = stiffness[dofs[prescribed.any(axis=1)]]
         forces = [moved @ reference.displacement / problem.scales.displacement]
         elements = abs(stiffness[:, dofs]) @ np.abs(prescribed)
-        if np.abs(forces[0]).max(initial=0.0) <= ROUNDING * elements.max(initial=0.0):
+        if np.abs(forces[0]).max(initial=0.0) <= VANISHING * elements.max(initial=0.0):
             forces = [elements]
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])
     return Distance(
@@ -145,6 +145,7 @@ def determinate_forces(problem: Problem) -> NDArray[np.bool_]:
     slips &= (moves | ~rules.normal)[rules.partner][:, None]
     moves &= (moves | ~rules.normal)[rules.partner]
     own = np.flatnonzero(moves)
-    ring = np.any(self_stresses((all_jumps @ sparse.diags_array(free))[own]) != 0.0, axis=1)
+    free_jumps = (all_jumps @ sparse.diags_array(free))[own]
+    ring = np.any(self_stresses(free_jumps, rules.compliance[own] == 0.0) != 0.0, axis=1)
     moves[own[ring]] = False
     return np.asarray(moves[:, None] | slips)

@@ -20,15 +20,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import ROUNDING, Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.band import Band, pairs
 from solver.reference.solution import Interrupted, Reference, States
 
-NEWTON_LIMIT = 8  # steps from one guess of the statuses before a better one is sought
-COARSEST = 8  # degrees of freedom below which no coarser mesh is asked for a guess
-ROUNDING = 32.0 * float(np.finfo(float).eps)
+NEWTON_LIMIT = 8
+"""Steps from one guess of the statuses before a better one is sought."""
+COARSEST = 8
+"""Degrees of freedom below which no coarser mesh is asked for a guess."""
 
 
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:

@@ -7,6 +7,7 @@ four points. Then the jumps depend on each other, and their forces are not all d
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
@@ -16,14 +17,23 @@ NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
 
 
-def self_stresses(jumps: sparse.csr_array) -> Array:
+def self_stresses(jumps: sparse.csr_array, rigid: NDArray[np.bool_]) -> Array:
     """Give forces that move nothing, an orthonormal basis of shape (n_jumps, n_stresses).
 
     Parameters
     ----------
     jumps
         Each of one degree of freedom, or of one minus another, shape (n_jumps, n_dofs).
+    rigid
+        Jumps with nothing in series, shape (n_jumps,): what has tells its own force.
     """
+    found = _of_rigid(jumps[np.flatnonzero(rigid)])
+    whole = np.zeros((len(rigid), found.shape[1]))
+    whole[rigid] = found
+    return whole
+
+
+def _of_rigid(jumps: sparse.csr_array) -> Array:
     size, ground = jumps.shape
     first = jumps.indices[jumps.indptr[:-1]]
     last = np.where(np.diff(jumps.indptr) == 2, jumps.indices[jumps.indptr[1:] - 1], ground)

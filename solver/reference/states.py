@@ -22,7 +22,7 @@ States = NDArray[np.int8]
 HELD = 0
 SINGULAR = 1e-12
 """Pivot, as a share of the largest, below which a system of free jumps is singular."""
-ROUNDING = 1e-14
+LOOSE = 1e-14
 """The same as a share of the largest stiffness of all jumps."""
 
 
@@ -123,7 +123,7 @@ class Response:
         swaps = np.count_nonzero(self._pivots != np.arange(len(free)))
         self.turned = bool((np.count_nonzero(diagonal < 0.0) + swaps) % 2)
         sizes = np.abs(diagonal)
-        least = max(SINGULAR * sizes.max(initial=0.0), ROUNDING * self.unit.max(initial=0.0))
+        least = max(SINGULAR * sizes.max(initial=0.0), LOOSE * self.unit.max(initial=0.0))
         self.singular = bool(sizes.min(initial=np.inf) <= least)
 
     def _solve(self, right: Array) -> Array:

@@ -1,44 +1,81 @@
-"""The catalogue of scenes: a name, its settings, and the function that makes its data."""
+"""The catalogue of scenes, and what is asked of a scene by its settings alone."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
-from solver.scenes.bar import BarSettings
-from solver.scenes.block import BlockSettings
-from solver.scenes.layers import LayersSettings
-from solver.scenes.strand import StrandSettings
+from solver.definitions import Pairs
+from solver.discrete.loops import Loop
+from solver.discrete.problem import Problem
+from solver.reference.broken_wire import BrokenWire
+from solver.reference.closed_form import ClosedForm
+from solver.scenes.bar import BAR
+from solver.scenes.base import SceneSettings
+from solver.scenes.block import BLOCK
+from solver.scenes.entry import Entry, Kind
+from solver.scenes.friction_law import with_friction_law
+from solver.scenes.incline import INCLINE
+from solver.scenes.layers import LAYERS
+from solver.scenes.strand import STRAND
 from solver.settings import Settings
 
-
-@dataclass(frozen=True)
-class Entry:
-    """One scene of the catalogue."""
-
-    title: str
-    source: str
-    settings: type[Settings]
-
-
-CATALOGUE = {
-    "bar": Entry(
-        "Clamped bar on a rough support",
-        "paper, section 3, Table 1",
-        BarSettings,
-    ),
-    "block": Entry(
-        "Block pressed and sheared",
-        "Johnson, Contact Mechanics, 1985, ch. 4 and 7",
-        BlockSettings,
-    ),
-    "layers": Entry(
-        "Stack of layers, bent",
-        "a leaf spring, or the section of a cable laid flat",
-        LayersSettings,
-    ),
-    "strand": Entry(
-        "Parallel wires, one broken",
-        "closed form: force regained over T / (mu p)",
-        StrandSettings,
-    ),
+CATALOGUE: dict[str, Entry[Any]] = {
+    "bar": BAR,
+    "block": BLOCK,
+    "incline": INCLINE,
+    "layers": LAYERS,
+    "strand": STRAND,
 }
+
+
+def entry_of(settings: Settings) -> Entry[Any]:
+    """Give the entry of the scene that settings belong to."""
+    return CATALOGUE[settings.scene]
+
+
+def kind_of(settings: Settings) -> Kind:
+    """Tell what there is to see of a scene."""
+    return entry_of(settings).kind
+
+
+def discretise(settings: Settings) -> Problem:
+    """Make the discrete problem that checked settings describe."""
+    return with_friction_law(entry_of(settings).discretise(settings), settings)
+
+
+def coarser_problems(settings: Settings) -> list[Problem]:
+    """Make the discrete problems of the same scene, uncut, on ever coarser meshes.
+
+    Returns
+    -------
+    The finest first; none where the scene's own mesh is as coarse as makes sense.
+    """
+    coarser = entry_of(settings).coarser
+    found = () if coarser is None else coarser(settings)
+    return [with_friction_law(problem, settings) for problem in found]
+
+
+def loop_of(settings: Settings, problem: Problem) -> Loop:
+    """Give the loop of a scene; forces of plane bodies are those on a metre of thickness."""
+    return entry_of(settings).loop(settings, problem)
+
+
+def closed_form_of(settings: Settings) -> ClosedForm | None:
+    """Solve a rod on its support without discretisation in space, where that is known."""
+    solve = entry_of(settings).closed_form
+    return None if solve is None or settings.friction_law != "coulomb" else solve(settings)
+
+
+def broken_wire_of(settings: Settings) -> BrokenWire | None:
+    """Solve a broken wire without discretisation in space, where that is known."""
+    solve = entry_of(settings).broken_wire
+    return None if solve is None or settings.friction_law != "coulomb" else solve(settings)
+
+
+def points_of(settings: Settings, name: str) -> Pairs:
+    """Give points that stand for the preset of a curve setting: where a table of one's own begins.
+
+    They are linear in between.
+    """
+    assert isinstance(settings, SceneSettings)
+    return settings.points(name)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
 
 import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.loads import PRESETS, instants_of, interpolate, load_path
-from solver.settings import Settings
+from solver.definitions import Pairs, SettingError, choice, count, curve, quantity
+from solver.discrete.loops import loop_of_ends
+from solver.discrete.problem import Problem
+from solver.discrete.rods import Rods
+from solver.discrete.rods_problem import discretise_rods
+from solver.loads import PRESETS, interpolate
+from solver.reference.closed_form import closed_form
+from solver.scenes.base import SceneSettings
+from solver.scenes.entry import Entry
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -22,14 +28,11 @@ SECTIONS = ("uniform", "rising", "falling")
 """Of `PROFILES`, those that leave no element without a section."""
 FACTORS = 1e-8, 1e8
 LARGEST_CONTRAST = 1e8
-LARGEST_FIELD = 25_000_000
 SLACK = 1e-9
 """Share by which rounding may exceed the largest contrast."""
-COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
 
 
-class BarSettings(Settings):
+class BarSettings(SceneSettings):
     """Settings of the friction bar; the defaults are Table 1 under a sine of 900 N."""
 
     scene = "bar"
@@ -156,29 +159,29 @@ class BarSettings(Settings):
         title="S along the bar",
     )
 
-    def with_change(self, name: str, value: object) -> BarSettings:
-        """Change one setting; fewer elements than substructures take these down with them."""
-        if name == "elements" and isinstance(value, int) and value < self.substructures:
-            return self.replace(elements=value, substructures=max(value, 1))
-        return self.replace(**{name: value})
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes."""
+        return self.elements + 1
+
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset of a path over time reaches."""
+        sizes = {
+            "load": self.peak,
+            "support_load": self.support_displacement,
+            "body_load": self.body_force,
+        }
+        return sizes[path]
+
+    def points(self, name: str) -> Pairs:
+        """Give points of the preset that a curve setting has at present."""
+        if not name.endswith("_profile"):
+            return super().points(name)
+        return tuple((x * self.length, factor) for x, factor in PROFILES[getattr(self, name)])
 
     def check_together(self) -> None:
-        """Refuse more substructures than elements, negative factors, and fields beyond memory."""
-        if self.substructures > self.elements:
-            raise SettingError(
-                "substructures",
-                self.substructures,
-                f"1 to elements ({self.elements})",
-                "give fewer substructures or more elements",
-            )
-        fields = (self.elements + 1) * self.instants
-        if fields > LARGEST_FIELD:
-            raise SettingError(
-                "instants",
-                self.instants,
-                f"at most {LARGEST_FIELD // (self.elements + 1)} with {self.elements} elements",
-                "give fewer instants or fewer elements",
-            )
+        """Refuse negative factors too."""
+        super().check_together()
         for name in ("friction_profile", "pressure_profile"):
             table = getattr(self, name)
             if not isinstance(table, str) and min(factor for _, factor in table) < 0.0:
@@ -210,97 +213,27 @@ class BarSettings(Settings):
             )
 
 
-@dataclass(frozen=True)
-class Bar:
-    """A friction bar as plain data; absent parts are None.
-
-    Attributes
-    ----------
-    length, stiffness
-        Length L, m, and axial stiffness ES, N; where that varies, of the uniform bar that the same
-        force at both ends stretches by as much.
-    elements, substructures
-        Numbers of equal linear elements, and of parts that they are dealt to.
-    instants, duration
-        Instants, shape (n_instants,), and length of the interval, s.
-    load
-        Axial force at the free end, shape (n_instants,), N.
-    bound
-        Friction bound mu p at the nodes, shape (n_nodes,), N/m.
-    support
-        Displacement of the clamped end, shape (n_instants,), m.
-    body_force
-        Axial force per length, uniform along the bar, shape (n_instants,), N/m.
-    section
-        Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
-        of the inverse is 1.
-    """
-
-    length: float
-    stiffness: float
-    elements: int
-    substructures: int
-    instants: Array
-    duration: float
-    load: Array
-    bound: Array
-    support: Array | None
-    body_force: Array | None
-    section: Array | None
-
-    @property
-    def nodes(self) -> Array:
-        """Positions of the nodes, shape (n_nodes,), m."""
-        return np.linspace(0.0, self.length, self.elements + 1)
-
-    def coarser(self) -> Bar | None:
-        """Give the same bar uncut on half the elements, or None where a front could not be seen."""
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        nodes = np.linspace(0.0, self.length, elements + 1)
-        bound = np.interp(nodes, self.nodes, self.bound)
-        section = self._section_between(nodes)
-        return replace(self, elements=elements, substructures=1, bound=bound, section=section)
-
-    def _section_between(self, nodes: Array) -> Array | None:
-        """Give the stiffness between other nodes, in series what the elements have there."""
-        if self.section is None:
-            return None
-        compliance = np.concatenate([[0.0], np.cumsum(1.0 / self.section)])
-        own = np.diff(np.interp(nodes, self.nodes, compliance))
-        return np.asarray(np.mean(own) / own)
-
-
-def bar(settings: BarSettings) -> Bar:
+def bar(settings: BarSettings) -> Rods:
     """Make the friction bar that the settings describe (paper, section 3 and Table 1).
 
     One instant stands at the end of the interval; more are spread evenly from 0 on, and the bar
     is at rest and free of stress before the first.
     """
-    duration = settings.duration
-    instants = instants_of(duration, settings.instants)
-
-    def path(curve: str | tuple[tuple[float, float], ...], peak: float) -> Array:
-        return load_path(curve, instants, duration, peak, settings.seed)
-
     nodes = np.linspace(0.0, settings.length, settings.elements + 1)
     mu = settings.friction * _profile(settings.friction_profile, nodes, settings.length)
     pressure = settings.pressure * _profile(settings.pressure_profile, nodes, settings.length)
     mean, section = _section(settings)
-    return Bar(
+    return Rods(
         length=settings.length,
         stiffness=settings.young * settings.section * mean,
         elements=settings.elements,
         substructures=settings.substructures,
-        instants=instants,
-        duration=duration,
-        load=path(settings.load, settings.peak),
         bound=mu * pressure,
-        support=path(settings.support_load, settings.support_displacement)
-        if settings.support_displacement
-        else None,
-        body_force=path(settings.body_load, settings.body_force) if settings.body_force else None,
+        load=settings.path("load"),
+        instants=settings.times(),
+        duration=settings.duration,
+        support=settings.path("support_load") if settings.support_displacement else None,
+        body_force=settings.path("body_load") if settings.body_force else None,
         section=section,
     )
 
@@ -320,3 +253,23 @@ def _profile(profile: str | tuple[tuple[float, float], ...], nodes: Array, lengt
     if isinstance(profile, str):
         return interpolate(PROFILES[profile], nodes / length)
     return interpolate(profile, nodes)
+
+
+def _coarser(settings: BarSettings) -> Iterator[Problem]:
+    scene = bar(settings).coarser()
+    while scene is not None:
+        yield discretise_rods(scene)
+        scene = scene.coarser()
+
+
+BAR = Entry(
+    title="Clamped bar on a rough support",
+    source="paper, section 3, Table 1",
+    settings=BarSettings,
+    kind="rod",
+    discretise=lambda settings: discretise_rods(bar(settings)),
+    loop=lambda settings, problem: loop_of_ends(problem, "Force"),
+    sizes=shared.ROD_SIZES,
+    coarser=_coarser,
+    closed_form=lambda settings: closed_form(bar(settings)),
+)

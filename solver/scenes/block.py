@@ -6,11 +6,17 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import SettingError, choice, curve, quantity, redefined
+from solver.definitions import Pairs, SettingError, choice, curve, quantity, redefined
+from solver.discrete.equilibrium import loss_of_equilibrium
+from solver.discrete.loops import Loop
+from solver.discrete.probes import side_mean
+from solver.discrete.problem import Problem
+from solver.discrete.stack import Given, Side, Stack, Support
+from solver.discrete.stack_problem import discretise_stack
 from solver.loads import PRESETS, interpolate
-from solver.scenes.equilibrium import loss_of_equilibrium
-from solver.scenes.sides import SideSettings
-from solver.scenes.stack import Given, Side, Stack, Support
+from solver.scenes.base import POINTS, as_points
+from solver.scenes.entry import Entry
+from solver.scenes.sides import AT_REST, SideSettings
 
 GAPS = ("flat", "parabola")
 
@@ -75,6 +81,17 @@ class BlockSettings(SideSettings):
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
 
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset reaches; that of the body force is a factor."""
+        return 1.0 if path == "body_load" else super().size_of(path)
+
+    def points(self, name: str) -> Pairs:
+        """Give points of the preset that a curve setting has at present."""
+        if name != "gap":
+            return super().points(name)
+        x = np.linspace(0.0, self.length, POINTS)
+        return as_points(x, _gap(self, x))
+
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""
         super().check_together()
@@ -94,6 +111,7 @@ def block(settings: BlockSettings) -> Stack:
     rest = np.zeros(settings.instants)
     free = Given(False, rest, rest)
     sides = {side: settings.side(side) for side in ("left", "right", "top")}
+    gap = _gap(settings, np.linspace(0.0, settings.length, settings.nodes[0]))
     return Stack(
         length=settings.length,
         height=settings.height,
@@ -107,7 +125,7 @@ def block(settings: BlockSettings) -> Stack:
         state=settings.plane,
         stiffness=np.ones(1),
         friction=settings.friction,
-        support=Support(_gap(settings), settings.friction),
+        support=Support(gap, settings.friction),
         sides={**sides, "bottom": Side(free, free)},
         body_force=_body_force(settings),
         instants=settings.times(),
@@ -115,9 +133,8 @@ def block(settings: BlockSettings) -> Stack:
     )
 
 
-def _gap(settings: BlockSettings) -> Array:
-    """Give the gap at the nodes of the lowest side, m."""
-    x = np.linspace(0.0, settings.length, settings.nodes[0])
+def _gap(settings: BlockSettings, x: Array) -> Array:
+    """Give the gap at places along the lowest side, m."""
     if not isinstance(settings.gap, str):
         return interpolate(settings.gap, x)
     if settings.gap == "flat":
@@ -127,4 +144,27 @@ def _gap(settings: BlockSettings) -> Array:
 
 def _body_force(settings: BlockSettings) -> Array | None:
     sizes = np.array([settings.body_force_x, settings.body_force_y])
-    return sizes[:, None] * settings.path("body_load", 1.0) if sizes.any() else None
+    return sizes[:, None] * settings.path("body_load") if sizes.any() else None
+
+
+def _loop(settings: BlockSettings, problem: Problem) -> Loop:
+    """Give the shear force on the support over the horizontal displacement of the moved side."""
+    moved = [side for side in ("top", "left", "right") if getattr(settings, side) not in AT_REST]
+    side = moved[0] if moved else "top"
+    return Loop(
+        (f"Displacement of the {side}", "m"),
+        ("Shear force", "N"),
+        side_mean(problem, side, 0),
+        lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
+    )
+
+
+BLOCK = Entry(
+    title="Block pressed and sheared",
+    source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
+    settings=BlockSettings,
+    kind="plane",
+    discretise=lambda settings: discretise_stack(block(settings)),
+    loop=_loop,
+    sizes=shared.PLANE_SIZES,
+)

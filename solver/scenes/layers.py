@@ -6,9 +6,14 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import choice, count, curve, quantity, redefined
+from solver.discrete.loops import Loop
+from solver.discrete.probes import end_rotation, reaction, side_mean
+from solver.discrete.problem import Problem
+from solver.discrete.stack import Given, Side, Stack
+from solver.discrete.stack_problem import discretise_stack
 from solver.loads import PRESETS
+from solver.scenes.entry import Entry
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.stack import Given, Side, Stack
 
 
 class LayersSettings(PlaneSettings):
@@ -130,19 +135,24 @@ class LayersSettings(PlaneSettings):
         """Number of bodies."""
         return self.layers
 
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset of a path over time reaches."""
+        sizes = {"pressure_load": "pressure", "pull_load": "pull", "bend_load": self.bending}
+        return float(getattr(self, sizes[path]))
+
 
 def layers(settings: LayersSettings) -> Stack:
     """Make the stack that the settings describe; its left end is clamped; one metre thick."""
     rest = np.zeros(settings.instants)
     held, free = Given(True, rest, rest), Given(False, rest, rest)
-    pressing = settings.path("pressure_load", settings.pressure)
-    pull = settings.path("pull_load", settings.pull)
+    pressing = settings.path("pressure_load")
+    pull = settings.path("pull_load")
     if settings.bending == "deflection":
-        bent = Given(True, settings.path("bend_load", settings.deflection), rest)
+        bent = Given(True, settings.path("bend_load"), rest)
         right = Side(Given(False, pull, rest), bent)
     else:
         # A linear traction of this extreme over one layer has the moment extreme * thickness^2 / 6.
-        moment = settings.path("bend_load", settings.moment)
+        moment = settings.path("bend_load")
         extreme = -6.0 * moment / (settings.layers * settings.thickness**2)
         right = Side(Given(False, pull, extreme, each_body=True), free)
     return Stack(
@@ -169,3 +179,27 @@ def layers(settings: LayersSettings) -> Stack:
         instants=settings.times(),
         duration=settings.duration,
     )
+
+
+def _loop(settings: LayersSettings, problem: Problem) -> Loop:
+    if settings.bending == "moment":
+        moment = settings.path("bend_load")
+        return Loop(("Rotation of the end", ""), ("Moment", "N m"), end_rotation(problem), moment)
+    held = reaction(problem, "right")
+    return Loop(
+        ("Deflection of the end", "m"),
+        ("Transverse force", "N"),
+        side_mean(problem, "right", 1),
+        lambda fields: held(fields.displacement),
+    )
+
+
+LAYERS = Entry(
+    title="Stack of layers, bent",
+    source="a leaf spring, or the section of a cable laid flat",
+    settings=LayersSettings,
+    kind="plane",
+    discretise=lambda settings: discretise_stack(layers(settings)),
+    loop=_loop,
+    sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
+)

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 import param
 
 import solver.scenes.shared as shared
-from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, count, quantity, redefined
-from solver.loads import instants_of, load_path
+from solver.definitions import SettingError, choice, count, quantity, redefined
+from solver.scenes.base import SceneSettings
 from solver.settings import Settings
 
-LARGEST_FIELD = 50_000_000
-"""Numbers in one field over all degrees of freedom and instants; a run keeps about ten such."""
 LARGEST_MATRIX = 30_000_000
 """Numbers in one dense matrix of a substructure, from its inside to its outline."""
 
@@ -22,10 +20,11 @@ FLATTEST = 1e4
 3e9 no digit of a substructure's is left, at 1e5 none beside a k of a millionth (measured)."""
 
 
-class PlaneSettings(Settings):
+class PlaneSettings(SceneSettings):
     """Settings of elastic rectangles with frictional contact; one metre thick."""
 
     across = "height"
+    PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
 
     duration = shared.duration()
     instants = shared.instants(81)
@@ -132,6 +131,11 @@ class PlaneSettings(Settings):
     )
 
     @property
+    def k_factors(self) -> tuple[float, float]:
+        """Give further factors on k of contacts, along and across them."""
+        return self.k_friction_scale, self.k_normal_scale
+
+    @property
     def n_bodies(self) -> int:
         """Number of bodies."""
         return 1
@@ -145,6 +149,11 @@ class PlaneSettings(Settings):
     def nodes(self) -> tuple[int, int]:
         """Number of nodes of one body, along and up."""
         return self.order * self.elements + 1, self.order * self.elements_up + 1
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all bodies."""
+        return self.n_bodies * math.prod(self.nodes)
 
     @property
     def n_jumps(self) -> int:
@@ -168,22 +177,6 @@ class PlaneSettings(Settings):
         """Whether any load path is random."""
         return any(getattr(self, name) == "random" for name in self.paths)
 
-    def times(self) -> Array:
-        """Give the instants, shape (n_instants,), s; a single one stands at the end."""
-        return instants_of(self.duration, self.instants)
-
-    def path(self, name: str, peak: float) -> Array:
-        """Give a quantity over time from the setting of its path; a table has its own size."""
-        curve: str | Pairs = getattr(self, name)
-        return load_path(curve, self.times(), self.duration, peak, self.seed)
-
-    def with_change(self, name: str, value: object) -> PlaneSettings:
-        """Change one setting; fewer elements than substructures take these down with them."""
-        cut = {"elements": "substructures", "elements_up": "substructures_up"}.get(name)
-        if cut is not None and isinstance(value, int) and value < getattr(self, cut):
-            return self.replace(**{name: value, cut: max(value, 1)})
-        return self.replace(**{name: value})
-
     def _check_shape(self) -> None:
         """Refuse elements so flat that their stiffness has no digits left."""
         length: float = getattr(self, "length", 1.0)
@@ -198,24 +191,9 @@ class PlaneSettings(Settings):
             )
 
     def check_together(self) -> None:
-        """Refuse flat elements, too many substructures, and fields or matrices beyond memory."""
-        for cut, elements in (("substructures", "elements"), ("substructures_up", "elements_up")):
-            if getattr(self, cut) > getattr(self, elements):
-                raise SettingError(
-                    cut,
-                    getattr(self, cut),
-                    f"1 to {elements} ({getattr(self, elements)})",
-                    f"give fewer substructures or raise {elements}",
-                )
+        """Refuse flat elements too, and matrices beyond memory."""
         self._check_shape()
-        unknowns = 2 * self.n_bodies * math.prod(self.nodes)
-        if unknowns * self.instants > LARGEST_FIELD:
-            raise SettingError(
-                "instants",
-                self.instants,
-                f"at most {LARGEST_FIELD // unknowns} with {unknowns} degrees of freedom",
-                "give fewer instants or fewer elements",
-            )
+        super().check_together()
         columns = -(-self.elements // self.substructures)
         rows = -(-self.elements_up // self.substructures_up)
         if 8 * self.order**3 * columns * rows * (columns + rows) > LARGEST_MATRIX:

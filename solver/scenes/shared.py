@@ -9,6 +9,19 @@ import param
 
 from solver.definitions import count, quantity
 
+ROD_SIZES = {
+    "elements": (50, 100, 200, 400, 800),
+    "instants": (51, 101, 201, 401),
+    "substructures": (1, 2, 5, 10, 25, 50),
+}
+"""Numbers of a rod over which costs are measured; each changes alone."""
+PLANE_SIZES = {
+    "elements": (24, 48, 96),
+    "instants": (41, 81, 161),
+    "substructures": (1, 2, 4, 8),
+}
+"""The same of plane bodies."""
+
 
 def seed(applies: Callable[[Any], bool], *, essential: bool) -> param.Integer[int]:
     """Define the seed of random load paths."""
@@ -60,12 +73,14 @@ def size(
     )
 
 
-def young(group: str) -> param.Number[float]:
+def young(
+    group: str, default: float = 210e9, slider: tuple[float, float] = (1e8, 1e12)
+) -> param.Number[float]:
     """Define Young's modulus, that of steel by default."""
     return quantity(
-        210e9,
+        default,
         (1.0, 1e18),
-        (1e8, 1e12),
+        slider,
         "Young's modulus.",
         group=group,
         title="Young's modulus E",

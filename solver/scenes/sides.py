@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from solver.definitions import Parameter, choice, curve, quantity
+from solver.discrete.stack import Given, Side
 from solver.loads import PRESETS
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.stack import Given, Side
 
 LOADED_SIDES = ("left", "right", "top")
 COMPONENTS = ("normal", "tangential")
@@ -110,11 +110,16 @@ class SideSettings(PlaneSettings):
         if kind in AT_REST:
             rest = np.zeros(self.instants)
             return Given(prescribed, rest, rest)
-        name = f"{side}_{component}"
-        size = getattr(self, f"{name}_{'displacement' if prescribed else 'traction'}")
         sign = OUTWARD[side] if component == "normal" else 1.0
-        mean = sign * self.path(f"{name}_load", size)
-        return Given(prescribed, mean, mean * getattr(self, f"{name}_slope"))
+        mean = sign * self.path(f"{side}_{component}_load")
+        return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
+
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset of a path over time reaches."""
+        side, component, _ = path.split("_")
+        prescribed = PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
+        kind = "displacement" if prescribed else "traction"
+        return float(getattr(self, f"{side}_{component}_{kind}"))
 
 
 def _define(side: str) -> None:

@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from typing import ClassVar
 
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.loads import PULLS, instants_of, load_path
-from solver.settings import Settings
+from solver.discrete.loops import loop_of_ends
+from solver.discrete.problem import Problem
+from solver.discrete.rods import COARSEST, Rods, neighbours
+from solver.discrete.rods_problem import discretise_rods
+from solver.loads import PULLS
+from solver.reference.broken_wire import broken_wire
+from solver.scenes.base import SceneSettings
+from solver.scenes.entry import Entry
 
-LARGEST_FIELD = 25_000_000
-COARSEST = 6
-"""Elements below which a mesh is not coarsened."""
 
-
-class StrandSettings(Settings):
+class StrandSettings(SceneSettings):
     """Settings of the strand; by default the wire in the middle is broken, and pulled to and fro.
 
     The broken wire then regains its force over 0.2 m on either side of the break.
     """
 
     scene = "strand"
+    PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
+    SHAPES: ClassVar = PULLS
 
     load = curve(
         "cycle",
@@ -139,13 +143,14 @@ class StrandSettings(Settings):
         """Points of all contacts, which a reference condenses."""
         return int((self.wires - 1) * (self.elements + 1))
 
-    def with_change(self, name: str, value: object) -> StrandSettings:
-        """Change one setting; fewer elements or wires take down what could not stand beside."""
-        if name == "elements" and isinstance(value, int) and value < self.substructures:
-            return self.replace(elements=value, substructures=max(value, 1))
-        if name == "wires" and isinstance(value, int) and value < self.broken:
-            return self.replace(wires=value, broken=max(value, 0))
-        return self.replace(**{name: value})
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all wires."""
+        return self.wires * (self.elements + 1)
+
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset of a path over time reaches."""
+        return float(self.peak)
 
     def coarser(self) -> StrandSettings | None:
         """Give the same strand uncut with half the elements.
@@ -162,8 +167,8 @@ class StrandSettings(Settings):
 
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
-        self._check_sizes()
-        tension = _tension(self, instants_of(self.duration, self.instants))
+        super().check_together()
+        tension = self.path("load")
         if tension.min() < 0.0:
             raise SettingError(
                 "load",
@@ -173,105 +178,25 @@ class StrandSettings(Settings):
             )
         _check_equilibrium(self, float(tension.max()))
 
-    def _check_sizes(self) -> None:
-        if self.substructures > self.elements:
-            raise SettingError(
-                "substructures",
-                self.substructures,
-                f"1 to elements ({self.elements})",
-                "give fewer substructures or more elements",
-            )
-        if self.broken > self.wires:
-            raise SettingError(
-                "broken",
-                self.broken,
-                f"0 to wires ({self.wires})",
-                "choose one of the wires, or 0 for none",
-            )
-        points = self.wires * (self.elements + 1)
-        if points * self.instants > LARGEST_FIELD:
-            raise SettingError(
-                "instants",
-                self.instants,
-                f"at most {LARGEST_FIELD // points} with {self.wires} wires of {self.elements} "
-                "elements",
-                "give fewer instants, wires or elements",
-            )
 
-
-@dataclass(frozen=True, eq=False)
-class Strand:
-    """Equal parallel wires as plain data.
-
-    Attributes
-    ----------
-    length, stiffness
-        Length L, m, and axial stiffness ES of one wire, N.
-    wires
-        Their number; they are numbered from 1, and each rubs on its neighbours.
-    elements, substructures
-        Of one wire: numbers of equal linear elements, and of parts that they are dealt to.
-    broken
-        Number of the broken wire and of the node where it is broken, or None.
-    bound
-        Friction bound mu p between neighbours, N/m.
-    tension
-        Force at the right end of every wire, or with a rigid grip that of a wire which carries
-        nothing but its share, shape (n_instants,), N.
-    rigid_grip
-        Whether the right ends are displaced by tension times L / ES instead.
-    instants, duration
-        Instants, shape (n_instants,), and length of the interval, s.
-    """
-
-    length: float
-    stiffness: float
-    wires: int
-    elements: int
-    substructures: int
-    broken: tuple[int, int] | None
-    bound: float
-    tension: Array
-    rigid_grip: bool
-    instants: Array
-    duration: float
-
-    @property
-    def nodes(self) -> Array:
-        """Positions of the nodes of a wire, shape (n_nodes,), m."""
-        return np.linspace(0.0, self.length, self.elements + 1)
-
-    @property
-    def rubbing_sides(self) -> int:
-        """Neighbours of the broken wire."""
-        return 0 if self.broken is None else _neighbours(self.broken[0], self.wires)
-
-
-def strand(settings: StrandSettings) -> Strand:
+def strand(settings: StrandSettings) -> Rods:
     """Make the strand that the settings describe.
 
     One instant stands at the end of the interval; more are spread evenly from 0 on, and the wires
     are at rest and free of stress before the first.
     """
-    instants = instants_of(settings.duration, settings.instants)
-    return Strand(
+    return Rods(
         length=settings.length,
         stiffness=settings.young * settings.section,
-        wires=settings.wires,
         elements=settings.elements,
         substructures=settings.substructures,
-        broken=(settings.broken, _break_node(settings)) if settings.broken else None,
-        bound=settings.friction * settings.pressure,
-        tension=_tension(settings, instants),
-        rigid_grip=settings.grip == "displacement",
-        instants=instants,
+        bound=np.full(settings.elements + 1, settings.friction * settings.pressure),
+        load=settings.path("load"),
+        instants=settings.times(),
         duration=settings.duration,
-    )
-
-
-def _tension(settings: StrandSettings, instants: Array) -> Array:
-    return load_path(
-        settings.load, instants, settings.duration, settings.peak, settings.seed, PULLS
+        wires=settings.wires,
+        broken=(settings.broken, _break_node(settings)) if settings.broken else None,
+        rigid_grip=settings.grip == "displacement",
     )
 
 
@@ -280,16 +205,12 @@ def _break_node(settings: StrandSettings) -> int:
     return min(max(node, 1), settings.elements - 1)
 
 
-def _neighbours(wire: int, wires: int) -> int:
-    return (wire > 1) + (wire < wires)
-
-
 def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
     """Refuse forces that pull the end of the broken wire out: friction alone holds it."""
     if settings.grip != "force" or not settings.broken:
         return
     share = 1.0 - _break_node(settings) / settings.elements
-    sides = _neighbours(settings.broken, settings.wires)
+    sides = neighbours(settings.broken, settings.wires)
     capacity = sides * settings.friction * settings.pressure * share * settings.length
     if largest > capacity or largest == capacity > 0.0:
         name = "peak" if isinstance(settings.load, str) else "load"
@@ -303,3 +224,23 @@ def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
             "pull less, raise friction or pressure, move the break to the left, or take the grip "
             "of given displacement",
         )
+
+
+def _coarser(settings: StrandSettings) -> Iterator[Problem]:
+    coarse = settings.coarser()
+    while coarse is not None:
+        yield discretise_rods(strand(coarse))
+        coarse = coarse.coarser()
+
+
+STRAND = Entry(
+    title="Parallel wires, one broken",
+    source="closed form: force regained over T / (mu p)",
+    settings=StrandSettings,
+    kind="wires",
+    discretise=lambda settings: discretise_rods(strand(settings)),
+    loop=lambda settings, problem: loop_of_ends(problem, "Tension"),
+    sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
+    coarser=_coarser,
+    broken_wire=lambda settings: broken_wire(strand(settings)),
+)

@@ -17,12 +17,11 @@ from typing import Any, Literal
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import judged
 from solver.reference.choice import is_alone, reference_of
 from solver.reference.distance import Distance, distance_to
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import discretise, entry_of
 from solver.settings import Settings
 from solver.study.machine import machine
 from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
@@ -55,7 +54,7 @@ FORMS: dict[str, dict[str, Any]] = {
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
 """Settings that make the forms of LATIN; all others are those of the run."""
-PLANE_FORMS: dict[str, dict[str, Any]] = {
+FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
     "LATIN monoscale": {**PLAIN, "multiscale": False},
     "LATIN multiscale": PLAIN,
     "LATIN auto k": AUTO,
@@ -64,13 +63,13 @@ PLANE_FORMS: dict[str, dict[str, Any]] = {
     "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "status"},
     "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
 }
-"""The same in the plane, where no run starts from coarser meshes."""
+"""The same of scenes where no run starts from coarser meshes."""
 INCREMENTAL = "incremental solver"
 Kind = Literal["latin", "incremental", "peer"]
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class ErrorCurve:
     """What a method reaches, and when.
 
     Attributes
@@ -131,7 +130,7 @@ class Study:
     settings: Settings
     repeats: int
     machine: str
-    courses: tuple[Course, ...]
+    courses: tuple[ErrorCurve, ...]
     absent: tuple[str, ...]
     troubles: tuple[str, ...]
 
@@ -195,7 +194,7 @@ def _entries(settings: Settings, troubles: list[str], tell: Tell) -> list[_Entry
 
 def forms_of(settings: Settings) -> dict[str, Settings]:
     """Give the settings of every form of LATIN that a scene has, by name."""
-    forms = PLANE_FORMS if isinstance(settings, PlaneSettings) else FORMS
+    forms = FORMS if entry_of(settings).coarser is not None else FORMS_FROM_ZERO
     return {method: settings.replace(**form) for method, form in forms.items()}
 
 
@@ -272,9 +271,9 @@ def _by_peer(peer: Peer, settings: Settings, tolerance: float) -> float:
     return time.perf_counter() - start
 
 
-def _course(entry: _Entry, times: list[list[float]]) -> Course:
+def _course(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
     displacement, force = np.array(entry.errors).T
-    return Course(
+    return ErrorCurve(
         method=entry.method,
         kind=entry.kind,
         steps=np.array(entry.steps),
@@ -284,7 +283,7 @@ def _course(entry: _Entry, times: list[list[float]]) -> Course:
     )
 
 
-def course_of(method: str, settings: Settings, distance: Distance, goal: float) -> Course:
+def course_of(method: str, settings: Settings, distance: Distance, goal: float) -> ErrorCurve:
     """Measure one form of LATIN alone, in one timed pass up to a goal."""
     entry = _latin_entry(method, settings, distance, goal, most=300, least=12)
     return _course(entry, [entry.timed()])

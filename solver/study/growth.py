@@ -8,28 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-from solver.scenes.plane import PlaneSettings
+from solver.scenes import discretise, entry_of
 from solver.settings import Settings
 from solver.study.error_against_time import INCREMENTAL, by_increments, course_of, forms_of
 from solver.study.progress import Tell, silent
 
-SIZES = {
-    "elements": (50, 100, 200, 400, 800),
-    "instants": (51, 101, 201, 401),
-    "substructures": (1, 2, 5, 10, 25, 50),
-    "wires": (2, 4, 8, 16),
-}
-"""Sizes by the setting that changes; the others stay as they are."""
-PLANE_SIZES = {
-    "elements": (24, 48, 96),
-    "instants": (41, 81, 161),
-    "substructures": (1, 2, 4, 8),
-    "layers": (2, 4, 8, 16),
-}
-"""The same in the plane."""
 MEASURED = (
     "LATIN multiscale",
     "LATIN auto k, nested, Anderson",
@@ -76,10 +61,10 @@ class Growth:
 
 
 def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
-    """Measure all sizes; those that the scene cannot have, or has no setting for, are left out."""
+    """Measure all sizes; those that the scene cannot have are left out."""
     found: dict[tuple[str, str], list[Size]] = {}
-    chosen = PLANE_SIZES if isinstance(settings, PlaneSettings) else SIZES
-    every = [(setting, size) for setting, sizes in chosen.items() for size in sizes]
+    sizes_of = entry_of(settings).sizes
+    every = [(setting, size) for setting, sizes in sizes_of.items() for size in sizes]
     for number, (setting, size) in enumerate(every):
         tell(f"Growth: {size} {setting}", number / len(every))
         try:

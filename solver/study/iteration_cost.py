@@ -11,7 +11,6 @@ from itertools import islice
 import numpy as np
 
 from solver.arrays import space_time
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import StopRules, iterations, solve
 from solver.latin.clock import Clock
@@ -20,7 +19,7 @@ from solver.latin.iterations import Method
 from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
 from solver.latin.response import DenseResponse
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 

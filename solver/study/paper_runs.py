@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, Record, solve
 from solver.reduction.svd import Decomposition, InterfaceField, decompositions
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.reference.solution import Reference
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 
 EARLY = 10

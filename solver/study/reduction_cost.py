@@ -14,7 +14,7 @@ from scipy import sparse
 from scipy.fft import idct
 
 from solver.arrays import Array, space_time
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.discrete.problem import Elasticity, Scales, Substructure
 from solver.latin import iterations
 from solver.latin.direction import search_direction
@@ -22,6 +22,7 @@ from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.laws import Component, Friction
+from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 

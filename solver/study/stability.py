@@ -7,24 +7,18 @@ import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import islice
 
 import numpy as np
-from scipy import sparse
-from scipy.linalg import eigvals_banded, eigvalsh
 
-from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.discrete import discretise
 from solver.discrete.problem import Problem
-from solver.latin import Ending, Solution, iterations, solve
+from solver.latin import Ending, Solution, solve
 from solver.latin.direction import search_direction
-from solver.reference.assembly import assembled_stiffness
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
-from solver.scenes import CATALOGUE
-from solver.scenes.bar import BarSettings
+from solver.scenes import CATALOGUE, discretise
+from solver.study.conditioning import condition_of_structure, condition_of_substructures
 from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, TOLD, UNCLEAR, Case, cases
 from solver.study.stability_plane import plane_cases
 from solver.study.stability_strand import strand_cases
@@ -35,11 +29,6 @@ RIGHT_UP_TO = 1e-6
 WRONG_FROM = 1e-3
 """Error of either from which a field must not be called converged at a tight tolerance."""
 SAME_UP_TO = 1e-10
-UNITS = {
-    "millimetres and newtons": (1e3, 1.0),
-    "inches and pounds": (1.0 / 0.0254, 1.0 / 4.4482216152605),
-}
-"""Units in a metre and in a newton."""
 
 
 class Verdict(StrEnum):
@@ -67,8 +56,6 @@ ALLOWED = {
     UNCLEAR: {Verdict.RIGHT, Verdict.TOLD, Verdict.UNCLEAR},
 }
 """What may come of a case, by what is expected of it."""
-LARGEST_DENSE = 2000
-"""Degrees of freedom up to which condition numbers of other than tridiagonal matrices are found."""
 
 
 def cases_of(scene: str | None = None, *, quick: bool = False) -> list[Case]:
@@ -220,100 +207,6 @@ def _reference(problem: Problem) -> tuple[Distance | None, str]:
     if several:
         doubt.append(f"it is one of several at {several} of {problem.n_instants} instants")
     return (None if doubt else distance_to(found, problem)), "; ".join(doubt)
-
-
-def condition_of_structure(problem: Problem) -> float:
-    """Give the condition number of the assembled stiffness without its held points."""
-    free = np.setdiff1d(np.arange(problem.n_dofs), problem.prescribed[0])
-    return _condition(assembled_stiffness(problem)[free][:, free])
-
-
-def condition_of_substructures(problem: Problem, k: Array) -> float:
-    """Give the largest condition number of K + B' k B over the substructures.
-
-    Parameters
-    ----------
-    problem, k
-        The structure, and the search direction, shape (n_rows,).
-    """
-    found = {}
-    for part in problem.substructures:
-        key = (id(part.elasticity), k[part.rows].tobytes())
-        if key not in found:
-            springs = np.zeros(len(part.dofs))
-            np.add.at(springs, part.elasticity.trace, k[part.rows])
-            stiffness = sparse.csr_array(part.elasticity.stiffness)
-            found[key] = _condition(sparse.csr_array(stiffness + sparse.diags_array(springs)))
-    return max(found.values())
-
-
-def _condition(matrix: sparse.csr_array) -> float:
-    """Give largest over smallest eigenvalue of a symmetric matrix; infinite if that is zero."""
-    size = matrix.shape[0]
-    if size == 1:
-        return 1.0
-    rows, columns = sparse.coo_array(matrix).coords
-    if np.abs(rows - columns).max() > 1:
-        return _condition_of_dense(matrix)
-    band = np.zeros((2, size))
-    band[0], band[1, :-1] = matrix.diagonal(), matrix.diagonal(1)
-    first, last = (
-        float(eigvals_banded(band, lower=True, select="i", select_range=(place, place))[0])
-        for place in (0, size - 1)
-    )
-    return last / first if first > 0.0 else float("inf")
-
-
-def _condition_of_dense(matrix: sparse.csr_array) -> float:
-    if matrix.shape[0] > LARGEST_DENSE:
-        return float("nan")
-    found = eigvalsh(matrix.toarray())
-    rounding = len(found) * np.finfo(float).eps * found[-1]
-    return float(found[-1] / found[0]) if found[0] > rounding else float("inf")
-
-
-def invariance(number: int = 40) -> dict[str, float]:
-    """Compare iterates of one bar written in several units.
-
-    Returns
-    -------
-    Largest relative difference of displacement and friction force from those in metres and
-    newtons, over some iterations, by units and method.
-    """
-    size = {"elements": 24, "substructures": 4, "instants": 31}
-    found = {}
-    for method, options in METHODS.items():
-        for units, (length, force) in UNITS.items():
-            pair = (
-                BarSettings.checked({**size, **options, **bar_in_units(*of)})
-                for of in ((1.0, 1.0), (length, force))
-            )
-            both = (islice(iterations(discretise(chosen), chosen), number) for chosen in pair)
-            found[f"{units}, {method}"] = max(
-                max(
-                    _apart(one.displacement * length, other.displacement),
-                    _apart(one.friction_force * force, other.friction_force),
-                )
-                for one, other in zip(*both, strict=True)
-            )
-    return found
-
-
-def bar_in_units(length: float, force: float) -> dict[str, float]:
-    """Give the settings of Table 1 that have units, for so many units in a metre and a newton."""
-    table = BarSettings.checked({})
-    return {
-        "length": table.length * length,
-        "section": table.section * length**2,
-        "young": table.young * force / length**2,
-        "pressure": table.pressure * force / length,
-        "peak": table.peak * force,
-    }
-
-
-def _apart(one: Array, other: Array) -> float:
-    size = float(np.abs(one).max())
-    return float(np.abs(one - other).max()) / size if size > 0.0 else float(np.abs(other).max())
 
 
 def _is_finite(solution: Solution) -> bool:

@@ -31,9 +31,17 @@ PRESSED = {
 TILTED = {**PRESSED, "top_tangential_traction": 0.0, "top_normal_slope": 2.0}
 
 
+INCLINE = {
+    "elements": 16,
+    "elements_up": 8,
+    "instants": 41,
+    "max_iterations": 1000,
+}
+
+
 def plane_cases() -> tuple[Case, ...]:
-    """Give all cases of the block and of the layers."""
-    return (*_block(), *_layers())
+    """Give all cases of the block, of the layers and of the block on a slope."""
+    return (*_block(), *_layers(), *_incline())
 
 
 def _of_block(
@@ -112,4 +120,26 @@ def _layers() -> list[Case]:
         case("young", "1e18", {"young": 1e18, "pressure": 1e13}, TOLD),
         case("substructures", "1", {"substructures": 1}, TOLD),
         case("instants", "1", {"instants": 1, "bend_load": "ramp"}, TOLD),
+    ]
+
+
+def _incline() -> list[Case]:
+    def case(
+        name: str, changes: dict[str, object], expected: str = TOLD, quick: bool = False
+    ) -> Case:
+        return Case("incline", name, {**INCLINE, **changes}, expected, quick, "incline")
+
+    return [
+        case("as it is", {}, quick=True),
+        case("never slides", {"slope": 10.0}),
+        case("friction 0", {"friction": 0.0}),
+        case("no slack", {"slack": 0.0}),
+        case("slack of a tenth of its length", {"slack": 1e-2}),
+        case("spring a thousand times softer", {"spring": 2e3}),
+        case("spring a million times stiffer", {"spring": 2e12}),
+        case("steel", {"young": 210e9}),
+        case("rises and falls twice", {"slope_load": "sine"}),
+        case("instants 1", {"instants": 1, "slope_load": "ramp"}),
+        case("weight 0", {"weight": 0.0}),
+        case("tips over", {"height": 0.15}, REFUSED, quick=True),
     ]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.error_against_time import INCREMENTAL, Course, Study
+from solver.study.error_against_time import INCREMENTAL, ErrorCurve, Study
 from solver.study.figure_data import HUES, Axis, Curve, Line, Panel
 from solver.study.growth import MEASURED, Growth
 from solver.study.peers import PEERS
@@ -47,7 +47,7 @@ def error_panels(study: Study) -> list[Panel]:
     return panels
 
 
-def _curve(course: Course, errors: Array, hue: int) -> Curve:
+def _curve(course: ErrorCurve, errors: Array, hue: int) -> Curve:
     """Give a method's line: a vertical one where the solver itself is the reference."""
     if course.kind == "incremental":
         seconds = np.repeat(course.seconds, 2)

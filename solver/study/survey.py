@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 
 from solver.definitions import SettingError
-from solver.discrete import Problem, discretise
+from solver.discrete import Problem
 from solver.latin import Ending, Solution, solve
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.solution import Reference
+from solver.scenes import discretise
 from solver.settings import Settings
 from solver.study.survey_draw import draw, is_foolish
 from solver.study.survey_residual import kkt_residual

@@ -47,7 +47,8 @@ def kkt_residual(fields: Fields, problem: Problem) -> float:
     size = max(
         float(np.abs(part).max(initial=0.0)) for part in (ELASTIC * elastic, ELASTIC * outer, force)
     )
-    broken = _broken_laws(problem, stiffness, all_jumps @ displacement, force)
+    jump = all_jumps @ displacement + rules_of(problem).compliance[:, None] * force
+    broken = _broken_laws(problem, stiffness, jump, force)
     largest = max(float(np.abs(part).max(initial=0.0)) for part in (unbalanced, broken))
     return largest / size if size > 0.0 else largest
 
@@ -60,9 +61,9 @@ def _broken_laws(problem: Problem, stiffness: sparse.csr_array, jump: Array, for
     """
     rules = rules_of(problem)
     unit = (abs(jumps(problem)) @ stiffness.diagonal())[:, None]
+    unit = unit / (1.0 + unit * rules.compliance[:, None])
     opening = unit * (jump + rules.gap[:, None])
-    soft = rules.compliance[:, None]
-    slip = np.diff(jump + soft * force, axis=1, prepend=0.0) * unit / (1.0 + unit * soft)
+    slip = unit * np.diff(jump, axis=1, prepend=0.0)
     bound = rules.bounds(force)
     overlap, tension = np.maximum(-opening, 0.0), np.maximum(-force, 0.0)
     apart = np.minimum(np.maximum(opening, 0.0), np.maximum(force, 0.0))

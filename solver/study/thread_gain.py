@@ -5,8 +5,8 @@ from __future__ import annotations
 import statistics
 from itertools import pairwise
 
-from solver.discrete import discretise
 from solver.latin import Iterate, iterations
+from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 
 SIZES = (96, 192, 384, 768)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.scenes.stack import Given, Stack
+from solver.discrete.stack import Given, Stack
 
 SLACK = 1e-9
 """Share of the loads that rounding may add to them."""
@@ -71,20 +71,22 @@ def loss_of_equilibrium(scene: Stack) -> Loss | None:
     """Find why a body on a support cannot rest under its loads, or None if nothing forbids it.
 
     Nothing but the support can hold what no side holds: it presses and does not pull, friction
-    carries at most mu times the pressing force, and the pressure's resultant acts on the base.
+    carries at most mu times the pressing force, and the pressure's resultant acts on the base. A
+    spring holds against all that pushes to the left; at the foot, it does not keep from tipping.
     """
     assert scene.support is not None
     x, y, moment = wrench(scene)
     sides = scene.sides
     held_x = any(side.x.prescribed for side in sides.values())
     held_y, upright = is_held_up(scene), is_upright(scene)
+    pushed = np.abs(x) if scene.spring is None else x
     mu, size = scene.support.friction, np.abs([x, y]).max() + np.abs(moment).max() / scene.length
     slack = SLACK * size
     checks = []
     if not held_y:
         checks.append((y > slack, "the loads lift it off its support"))
     if not held_x and not held_y:
-        checks.append((np.abs(x) > mu * np.maximum(-y, 0.0) + slack, "friction cannot hold it"))
+        checks.append((pushed > mu * np.maximum(-y, 0.0) + slack, "friction cannot hold it"))
     if not held_x and held_y and mu == 0.0:
         checks.append((np.abs(x) > slack, "there is no friction, and no side holds it"))
     if not upright and not held_y:

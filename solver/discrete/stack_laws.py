@@ -1,0 +1,145 @@
+"""The laws of all interfaces of stacked bodies: contacts, cuts, prescribed sides."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array
+from solver.discrete.macro import side_basis
+from solver.discrete.sides import Place, along, neighbour
+from solver.discrete.stack import Side, Spring, Stack
+from solver.discrete.stack_parts import Part
+from solver.laws import (
+    Bodies,
+    Component,
+    Dirichlet,
+    Friction,
+    Interface,
+    Perfect,
+    SlackSpring,
+)
+
+OPPOSITE = {"right": "left", "top": "bottom"}
+
+
+def interfaces_of(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Interface]]:
+    """Give all interfaces by name: contacts, then cuts, then prescribed sides."""
+    yield from _contacts(scene, parts)
+    if scene.spring is not None:
+        yield "spring", _spring(scene, scene.spring, parts[scene.substructures[0] - 1, 0, 0])
+    for place, part in parts.items():
+        for side, opposite in OPPOSITE.items():
+            beyond = neighbour(scene, place, side)
+            if isinstance(beyond, str) or beyond[2] != place[2]:
+                continue
+            other = parts[beyond]
+            basis = np.asarray(np.kron(_macro_basis(scene, part, side), np.eye(2)))
+            yield (
+                f"cut {_name(place)} to {_name(beyond)}",
+                Perfect(part.rows[side].ravel(), other.rows[opposite].ravel(), basis),
+            )
+    for side, given in scene.sides.items():
+        if given.x.prescribed or given.y.prescribed:
+            yield from _prescribed(scene, parts, side, given)
+
+
+def _name(place: Place) -> str:
+    column, row, body = place
+    return f"{column + 1}.{row + 1}" + (f" of {body + 1}" if body else "")
+
+
+def _macro_basis(scene: Stack, part: Part, side: str) -> Array:
+    return side_basis(part.rectangle, side, len(part.rows[side]), scene.macro_degree)
+
+
+def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Friction]]:
+    columns, rows = scene.substructures
+    x = np.linspace(0.0, scene.length, scene.order * scene.elements[0] + 1)
+    for body in range(scene.bodies):
+        if body == 0 and scene.support is None:
+            continue
+        above = [parts[column, 0, body] for column in range(columns)]
+        under = [parts[column, rows - 1, body - 1] for column in range(columns)] if body else None
+        spans = [part.held["bottom"].span for part in above]
+        places = [part.corner[0] + np.arange(part.nodes.shape[1]) for part in above]
+        weights = [part.rectangle.edge_weights("bottom") for part in above]
+        node = np.concatenate([own[span] for own, span in zip(places, spans, strict=True)])
+        found, points = np.unique(node, return_inverse=True)
+        if body == 0 and scene.support is not None:
+            friction, gap = scene.support.friction, scene.support.gap[node] / scene.length
+        else:
+            friction, gap = scene.friction, np.zeros(len(node))
+        upper = np.concatenate([part.rows["bottom"] for part in above])
+        lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
+        # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
+        bases = [sparse.coo_array(_macro_basis(scene, part, "bottom")) for part in above]
+        yield (
+            "support" if body == 0 else f"contact {body}-{body + 1}",
+            Friction.of_contact(
+                normal=Component(upper[:, 1], None if lower is None else lower[:, 1]),
+                tangent=Component(upper[:, 0], None if lower is None else lower[:, 0]),
+                points=points,
+                positions=x[found],
+                weights=scene.length
+                * np.concatenate([own[span] for own, span in zip(weights, spans, strict=True)]),
+                gap=gap,
+                friction=np.full(len(node), friction),
+                around=Bodies(
+                    moduli=(
+                        float(scene.stiffness[body]),
+                        np.inf if lower is None else float(scene.stiffness[body - 1]),
+                    ),
+                    depth=scene.height,
+                ),
+                macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
+            ),
+        )
+
+
+def _spring(scene: Stack, spring: Spring, part: Part) -> SlackSpring:
+    """Give the law of a spring: it pushes to the right, as if from the left."""
+    rows = part.rows["right"]
+    return SlackSpring.of_contact(
+        normal=Component(rows[:, 0]),
+        tangent=Component(rows[:, 1]),
+        friction=np.zeros(1),
+        points=np.zeros(1, dtype=np.intp),
+        positions=np.array([scene.length]),
+        weights=scene.length * part.rectangle.edge_weights("right")[:1],
+        gap=np.array([spring.slack / scene.length]),
+        around=Bodies(depth=scene.height),
+        softness=np.array([scene.young / spring.stiffness]),
+    )
+
+
+def _prescribed(
+    scene: Stack, parts: dict[Place, Part], side: str, given: Side
+) -> Iterable[tuple[str, Dirichlet]]:
+    rows, values = [], []
+    for place, part in parts.items():
+        if neighbour(scene, place, side) != side or side not in part.held:
+            continue
+        for number, component in enumerate(part.held[side].components):
+            one = (given.x, given.y)[component]
+            rows.append(part.rows[side][:, number])
+            where = along(scene, part.rectangle, place, part.corner, side, one)
+            found = one.mean + where * one.slope
+            if side in ("left", "right"):
+                _settle_corners(scene, place, side, component, found)
+            values.append(found / scene.length)
+    if rows:
+        yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
+
+
+def _settle_corners(scene: Stack, place: Place, side: str, component: int, found: Array) -> None:
+    """Let a corner have one displacement, that of the top or bottom, if both sides prescribe it."""
+    for level, node in (("bottom", 0), ("top", -1)):
+        if neighbour(scene, place, level) != level:
+            continue
+        other = (scene.sides[level].x, scene.sides[level].y)[component]
+        if other.prescribed:
+            sign = 1.0 if side == "right" else -1.0
+            found[node] = other.mean + sign * other.slope

@@ -1,0 +1,90 @@
+"""What the settings of all scenes have alike: a mesh that is cut, and paths over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.definitions import Pairs, SettingError
+from solver.loads import PRESETS, instants_of, load_path
+from solver.settings import Settings
+
+LARGEST_FIELD = 25_000_000
+"""Nodes times instants; a run keeps about ten fields over them."""
+POINTS = 9
+"""Of a table that stands for a preset."""
+
+
+class SceneSettings(Settings):
+    """Settings of a scene: those of the method, and its own."""
+
+    PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
+    """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
+    SHAPES: ClassVar[Mapping[str, Callable[[Array, int], Array]]] = PRESETS
+    """What the presets of paths over time stand for."""
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all bodies."""
+        raise NotImplementedError
+
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset of a path over time reaches."""
+        raise NotImplementedError
+
+    def times(self) -> Array:
+        """Give the instants, shape (n_instants,), s; a single one stands at the end."""
+        own: Any = self  # every scene defines these, where it shows them
+        return instants_of(own.duration, own.instants)
+
+    def path(self, name: str) -> Array:
+        """Give a quantity over time from the setting of its path; a table has its own size."""
+        return self._along(name, self.times())
+
+    def points(self, name: str) -> Pairs:
+        """Give points of the preset that a curve setting has at present."""
+        own: Any = self
+        instants = np.linspace(0.0, own.duration, POINTS)
+        return as_points(instants, self._along(name, instants))
+
+    def _along(self, name: str, instants: Array) -> Array:
+        own: Any = self
+        curve: str | Pairs = getattr(self, name)
+        size = self.size_of(name) if isinstance(curve, str) else 0.0
+        return load_path(curve, instants, own.duration, size, own.seed, self.SHAPES)
+
+    def with_change(self, name: str, value: object) -> Self:
+        """Change one setting; numbers of parts that exceed it come down with it."""
+        changes = {name: value}
+        for part, whole in self.PARTS.items():
+            if name == whole and isinstance(value, int) and value < getattr(self, part):
+                changes[part] = max(value, self.definitions()[part].bounds[0])
+        return self.replace(**changes)
+
+    def check_together(self) -> None:
+        """Refuse more parts than there is to deal out, and fields beyond memory."""
+        own: Any = self
+        for part, whole in self.PARTS.items():
+            value, most = getattr(self, part), getattr(self, whole)
+            if value > most:
+                raise SettingError(
+                    part,
+                    value,
+                    f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
+                    f"lower {part} or raise {whole}",
+                )
+        if self.n_nodes * own.instants > LARGEST_FIELD:
+            raise SettingError(
+                "instants",
+                own.instants,
+                f"at most {LARGEST_FIELD // self.n_nodes} with {self.n_nodes} nodes",
+                "give fewer instants, or a coarser mesh",
+            )
+
+
+def as_points(where: Array, values: Array) -> Pairs:
+    """Give points with as many digits as one likes to read."""
+    return tuple((float(f"{a:.6g}"), float(f"{b:.6g}")) for a, b in zip(where, values, strict=True))

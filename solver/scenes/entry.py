@@ -1,0 +1,53 @@
+"""What the catalogue knows of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Generic, Literal, TypeVar
+
+from solver.discrete.loops import Loop
+from solver.discrete.problem import Problem
+from solver.reference.broken_wire import BrokenWire
+from solver.reference.closed_form import ClosedForm
+from solver.scenes.base import SceneSettings
+
+S = TypeVar("S", bound=SceneSettings)
+Kind = Literal["rod", "wires", "plane"]
+
+
+@dataclass(frozen=True)
+class Entry(Generic[S]):
+    """One scene of the catalogue, and what it can.
+
+    Attributes
+    ----------
+    title, source
+        What it is called, and where it comes from.
+    settings
+        Its settings.
+    kind
+        What there is to see: a rod on its support, wires beside each other, or plane bodies.
+    discretise
+        Makes its discrete problem, with Coulomb's friction.
+    loop
+        Gives the loop that it shows.
+    coarser
+        Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
+        where no run starts from them.
+    closed_form, broken_wire
+        Solve it without discretisation in space, under Coulomb's friction, or give None.
+    sizes
+        Numbers over which costs are measured, by setting.
+    """
+
+    title: str
+    source: str
+    settings: type[S]
+    kind: Kind
+    discretise: Callable[[S], Problem]
+    loop: Callable[[S, Problem], Loop]
+    sizes: Mapping[str, tuple[int, ...]]
+    coarser: Callable[[S], Iterable[Problem]] | None = None
+    closed_form: Callable[[S], ClosedForm | None] | None = None
+    broken_wire: Callable[[S], BrokenWire | None] | None = None

@@ -1,0 +1,24 @@
+"""The law of friction that the settings choose, put in the place of Coulomb's."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from solver.discrete.problem import Problem
+from solver.laws import Friction
+from solver.laws.compliant import CompliantFriction
+from solver.settings import Settings
+
+
+def with_friction_law(problem: Problem, settings: Settings) -> Problem:
+    """Give all plain friction the law of the settings."""
+    if settings.friction_law == "coulomb":
+        return problem
+    length = problem.scales.displacement
+    laws = {
+        name: CompliantFriction.of(law, settings.contact_stiffness, length)
+        if type(law) is Friction
+        else law
+        for name, law in problem.interfaces.items()
+    }
+    return replace(problem, interfaces=laws)

@@ -1,0 +1,160 @@
+"""A block on a slope that rises and falls, caught by a spring uphill (solver/README.md, 9).
+
+The block is drawn as it lies on the slope: x runs uphill, and its weight turns instead. The spring
+pulls at the foot of the uphill side once it has slid down by the slack.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+import solver.scenes.shared as shared
+from solver.definitions import SettingError, curve, quantity, redefined
+from solver.discrete.equilibrium import loss_of_equilibrium
+from solver.discrete.loops import Loop
+from solver.discrete.probes import constant
+from solver.discrete.problem import Problem
+from solver.discrete.stack import Given, Side, Spring, Stack, Support
+from solver.discrete.stack_problem import discretise_stack
+from solver.loads import PULLS
+from solver.scenes.entry import Entry
+from solver.scenes.plane import PlaneSettings
+
+
+class InclineSettings(PlaneSettings):
+    """Settings of the block on a slope; by default the spring catches it, and pulls it back."""
+
+    scene = "incline"
+    SHAPES: ClassVar = PULLS
+
+    slope = quantity(
+        40.0,
+        (0.0, 89.0),
+        (0.0, 60.0),
+        "Largest angle of the slope. Up to tan θ = μ the block sticks; unless tan(θ/2) > μ, "
+        "the spring cannot pull it back.",
+        group="Load",
+        title="Slope θ",
+        unit="°",
+        essential=True,
+    )
+    slope_load = curve(
+        "triangle",
+        PULLS,
+        "time",
+        "angle",
+        ("s", "°"),
+        "Angle of the slope over time: a preset between 0 and the largest, or points (s, °).",
+        group="Load",
+        title="Path of the slope",
+        essential=True,
+    )
+    weight = quantity(
+        1000.0,
+        (0.0, 1e15),
+        (0.0, 5000.0),
+        "Weight W of the block, for a metre of thickness.",
+        group="Load",
+        title="Weight W",
+        unit="N",
+        essential=True,
+    )
+    slack = quantity(
+        2e-4,
+        (0.0, 1e6),
+        (0.0, 1e-3),
+        "How far the block may slide before the spring pulls.",
+        group="Contact",
+        title="Slack",
+        unit="m",
+        essential=True,
+    )
+    spring = quantity(
+        2e6,
+        (1e-6, 1e18),
+        (1e5, 1e8),
+        "Stiffness of the spring, for a metre of thickness.",
+        group="Contact",
+        title="Spring stiffness",
+        unit="N/m",
+        logarithmic=True,
+        essential=True,
+    )
+    length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", "Body")
+    height = shared.size(
+        0.05, (0.01, 1.0), "Height h", "Height of the block; it tips where tan θ > b/h.", "Body"
+    )
+    young = shared.young("Body", 1e7, (1e6, 1e12))
+    elements = redefined(PlaneSettings.param["elements"], 24)
+    elements_up = redefined(PlaneSettings.param["elements_up"], 12)
+
+    def size_of(self, path: str) -> float:
+        """Give the largest angle of the slope that a preset reaches."""
+        return float(self.slope)
+
+    def check_together(self) -> None:
+        """Refuse slopes on which nothing holds the block."""
+        super().check_together()
+        loss = loss_of_equilibrium(incline(self))
+        if loss is None:
+            return
+        name = "slope" if isinstance(self.slope_load, str) else "slope_load"
+        angle = float(np.interp(loss.instant, self.times(), self.path("slope_load")))
+        raise SettingError(
+            name,
+            getattr(self, name),
+            "slopes on which the block stays in equilibrium",
+            f"from {loss.instant:g} s on, at {angle:.4g}°, {loss.reason}: lower the slope, or take "
+            "a longer base or a lower block",
+        )
+
+
+def incline(settings: InclineSettings) -> Stack:
+    """Make the block on its slope that the settings describe; one metre thick."""
+    rest = np.zeros(settings.instants)
+    free = Side(Given(False, rest, rest), Given(False, rest, rest))
+    angle = np.radians(settings.path("slope_load"))
+    density = settings.weight / (settings.length * settings.height)
+    return Stack(
+        length=settings.length,
+        height=settings.height,
+        bodies=1,
+        elements=(settings.elements, settings.elements_up),
+        substructures=(settings.substructures, settings.substructures_up),
+        order=settings.order,
+        macro_degree=settings.macro_degree,
+        young=settings.young,
+        poisson=settings.poisson,
+        state=settings.plane,
+        stiffness=np.ones(1),
+        friction=settings.friction,
+        support=Support(np.zeros(settings.nodes[0]), settings.friction),
+        sides=dict.fromkeys(("left", "right", "top", "bottom"), free),
+        body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
+        instants=settings.times(),
+        duration=settings.duration,
+        spring=Spring(settings.slack, settings.spring),
+    )
+
+
+def _loop(settings: InclineSettings, problem: Problem) -> Loop:
+    """Give the spring's force over the angle: it lags behind on the way back."""
+    return Loop(
+        ("Angle of the slope", "°"),
+        ("Spring force", "N"),
+        constant(settings.path("slope_load")),
+        lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
+    )
+
+
+INCLINE = Entry(
+    title="Block on an inclined plane",
+    source="closed form: Coulomb, Théorie des machines simples, 1785",
+    settings=InclineSettings,
+    kind="plane",
+    discretise=lambda settings: discretise_stack(incline(settings)),
+    loop=_loop,
+    sizes=shared.PLANE_SIZES,
+)

@@ -1,0 +1,179 @@
+"""A block on a slope sticks, slides into its spring, comes back late, and tips.
+
+Closed forms: solver/README.md, 9.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from solver.definitions import SettingError
+from solver.discrete.rest import rigid_slide
+from solver.discrete.stack import Spring
+from solver.latin import Ending, solve
+from solver.laws import Component, SlackSpring
+from solver.laws.interface import Region
+from solver.reference.choice import reference_of
+from solver.reference.distance import distance_to
+from solver.scenes import discretise, loop_of
+from solver.scenes.incline import InclineSettings, incline
+
+SMALL = {"elements": 16, "elements_up": 8, "instants": 41}
+
+
+class Run:
+    """A run on a slope: angle, spring force and displacement over time."""
+
+    def __init__(self, **values):
+        self.settings = InclineSettings.checked({**SMALL, **values})
+        problem = discretise(self.settings)
+        distance = distance_to(reference_of(problem), problem)
+        self.solution = solve(problem, self.settings, distance=distance)
+        iterate = self.solution.iterate
+        loop = loop_of(self.settings, problem)
+        self.degrees = loop.displacement(iterate.displacement)
+        self.angle = np.radians(self.degrees)
+        self.force = loop.force(iterate)
+        whole = problem.inside.displacement(iterate.displacement, slice(None))
+        self.moved = whole[:, 0].mean(axis=0)
+        weight, mu = self.settings.weight, self.settings.friction
+        self.sliding_down = weight * (np.sin(self.angle) - mu * np.cos(self.angle))
+        self.sliding_up = weight * (np.sin(self.angle) + mu * np.cos(self.angle))
+
+
+@pytest.fixture(scope="module")
+def run():
+    return Run()
+
+
+def test_the_loop_runs_over_the_angle_that_is_given(run):
+    np.testing.assert_allclose(run.degrees, run.settings.path("slope_load"), atol=1e-12)
+    assert run.degrees.max() == 40.0
+
+
+def test_a_run_ends_certified_at_the_reference(run):
+    assert run.solution.is_certified
+    assert run.solution.records[-1].error_force < 1e-8
+    assert run.solution.records[-1].error_displacement < 1e-8
+
+
+def test_the_block_sticks_until_the_slope_is_that_of_friction(run):
+    sticks = (run.degrees < np.degrees(np.arctan(0.3)) - 0.5) & (np.arange(41) < 20)
+    assert sticks.sum() > 5
+    assert not run.force[sticks].any()
+    assert np.abs(run.moved[sticks]).max() < 0.15 * run.settings.slack
+    slides = (np.tan(run.angle) > 0.3) & (np.arange(41) < 20)
+    assert np.all(run.moved[slides] < -run.settings.slack)
+
+
+def test_on_the_way_up_the_spring_carries_what_friction_does_not(run):
+    rising = (np.tan(run.angle) > 0.3) & (np.arange(41) <= 20)
+    np.testing.assert_allclose(run.force[rising], run.sliding_down[rising], rtol=1e-7)
+
+
+def test_on_the_way_back_nothing_moves_until_the_spring_overcomes_friction(run):
+    peak = run.force.max()
+    back = np.arange(41) > 20
+    waits = back & (run.sliding_up > 1.1 * peak)
+    assert waits.sum() > 10
+    np.testing.assert_allclose(run.force[waits], peak, rtol=0.02)
+    returns = back & (run.sliding_up < 0.95 * peak)
+    assert returns.sum() > 2
+    np.testing.assert_allclose(run.force[returns], run.sliding_up[returns], rtol=1e-7)
+
+
+@pytest.mark.parametrize(("slope", "returns"), [(30.0, False), (36.0, True)])
+def test_the_spring_pulls_the_block_back_only_from_twice_the_angle_of_friction(slope, returns):
+    """At the end it pulls W (sin - mu cos) of the steepest slope against mu W: tan half > mu."""
+    found = Run(slope=slope)
+    assert (np.tan(np.radians(slope) / 2.0) > 0.3) == returns
+    assert (found.force[-1] == pytest.approx(300.0, rel=1e-6)) == returns
+    assert returns or found.force[-1] > 0.97 * found.force.max()
+
+
+def test_without_friction_the_spring_carries_the_whole_weight():
+    found = Run(friction=0.0)
+    np.testing.assert_allclose(
+        found.force, np.maximum(found.sliding_down, 0.0), atol=1e-6 * found.settings.weight
+    )
+
+
+def test_the_spring_is_stretched_by_what_the_foot_moves_beyond_the_slack(run):
+    problem = run.solution.iterate.problem
+    law = problem.rubbing["spring"]
+    foot = run.solution.iterate.displacement[problem.row_dofs[law.normal.above[0]]]
+    stretched = np.maximum(-foot - run.settings.slack, 0.0)
+    np.testing.assert_allclose(
+        run.force, run.settings.spring * stretched, atol=1e-8 * run.force.max()
+    )
+
+
+def test_the_papers_method_reaches_it_too():
+    found = Run(method="paper")
+    assert found.solution.status.ending is Ending.CONVERGED
+    assert found.solution.records[-1].error_force < 1e-3
+
+
+@pytest.mark.parametrize("decomposition", [(1, 1), (4, 2), (16, 8)])
+def test_cuts_change_nothing(run, decomposition):
+    along, up = decomposition
+    found = Run(substructures=along, substructures_up=up)
+    np.testing.assert_allclose(found.force, run.force, atol=1e-7 * run.force.max())
+
+
+@pytest.mark.parametrize("height", [0.12, 0.15, 0.3])
+def test_a_block_tips_where_the_slope_exceeds_base_over_height(height):
+    steepest = np.degrees(np.arctan(0.1 / height))
+    assert InclineSettings.checked({**SMALL, "height": height, "slope": 0.99 * steepest})
+    with pytest.raises(SettingError, match="tips over an end of its base") as refusal:
+        InclineSettings.checked({**SMALL, "height": height, "slope": 1.01 * steepest})
+    told = float(str(refusal.value).split("at ")[-1].split("°")[0])
+    assert steepest < told < 1.011 * steepest
+
+
+def test_a_slope_that_falls_below_the_horizontal_lets_the_block_go():
+    with pytest.raises(SettingError, match="friction cannot hold it"):
+        InclineSettings.checked({**SMALL, "slope_load": [[0.0, 0.0], [1.0, -20.0]]})
+    assert InclineSettings.checked({**SMALL, "slope_load": [[0.0, 0.0], [1.0, -16.0]]})
+
+
+def test_a_rigid_block_slides_no_farther_than_friction_and_spring_let_it():
+    settings = InclineSettings.checked(SMALL)
+    place = rigid_slide(incline(settings), Spring(settings.slack, settings.spring))
+    angle = np.radians(settings.path("slope_load"))
+    pull = settings.spring * np.maximum(-place - settings.slack, 0.0)
+    left = settings.weight * np.sin(angle) - pull
+    most = 0.3 * settings.weight * np.cos(angle)
+    assert np.all(np.abs(left) <= most * (1.0 + 1e-9))
+    moves = np.diff(place, prepend=0.0)
+    assert np.all(left[moves < 0.0] == pytest.approx(most[moves < 0.0]))
+    assert np.all(left[moves > 0.0] == pytest.approx(-most[moves > 0.0]))
+    assert (moves < 0.0).sum() > 5 < (moves == 0.0).sum()
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(st.integers(0, 2**31))
+def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(seed):
+    random = np.random.default_rng(seed)
+    law = SlackSpring.of_contact(
+        normal=Component(np.arange(3)),
+        tangent=Component(np.arange(3, 6)),
+        friction=np.zeros(3),
+        points=np.arange(3),
+        positions=np.arange(3.0),
+        weights=np.ones(3),
+        gap=random.uniform(0.0, 1.0, 3),
+        softness=10.0 ** random.uniform(-2.0, 2.0, 3),
+    )
+    k = 10.0 ** random.uniform(-1.0, 1.0, 6)
+    incoming = random.normal(size=(6, 20))
+    moved = incoming.copy()
+    law.rule(Region(np.arange(6), k, np.arange(20)))(incoming, moved, slice(None))
+    force = k[:, None] * (moved - incoming)
+    overlap = np.maximum(-(moved[:3] + law.gap[:, None]), 0.0)
+    np.testing.assert_allclose(force[:3], overlap / law.softness[:, None], atol=1e-12)
+    assert not force[3:].any()
+    assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0) < 1e-10)
