@@ -5,9 +5,8 @@ What is read is the report of the command line, as it grows; its plots are drawn
 
 from __future__ import annotations
 
-import threading
-from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from html import escape
 from io import BytesIO
@@ -26,6 +25,8 @@ from solver.study.page import Plot, Section
 COLORS = (GREY, *HUES)
 """Of curves, by their hue."""
 MARKS = {"solid": "line", "points": "dot"}
+HAND = ThreadPoolExecutor(1, "drawing")
+"""Draws, and first imports what draws: at half a second each, all pages would stand still."""
 
 
 class Report:
@@ -55,7 +56,6 @@ class Report:
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
-        self._owed: deque[tuple[pn.Column, Panel]] = deque()
         self._progress = self._text("", role="progress")
         self._heading, self._sheet = self._text(""), self._column()
         self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
@@ -133,7 +133,6 @@ class Report:
         if self._shown == before:
             return
         if found is not before[0]:
-            self._owed.clear()
             self._sheet[:] = []
         for pane, section in zip(self._sheet, found.sections, strict=False):
             if isinstance(section, str):
@@ -148,26 +147,12 @@ class Report:
         """Give what shows a section; a plot is drawn in it later."""
         if isinstance(section, str):
             return self._text(section, self._role)
-        keys = self._text(legend(section), role="title")
         # A `FlexBox` would not do: what is put into it later misses the theme.
-        box = self._column(keys, role="panels")
-        if not self._owed:
-            threading.Thread(target=self._prepare, args=(pn.state.curdoc,), daemon=True).start()
-        self._owed += [(box, panel) for panel in section.panels]
+        box = self._column(self._text(legend(section), role="title"), role="panels")
+        put = partial(_put_later, pn.state.curdoc, box)
+        for panel in section.panels:
+            HAND.submit(_drawn, panel).add_done_callback(put)
         return box
-
-    def _prepare(self, document: Document) -> None:
-        """Import what draws, and begin: on a thread, as pages would stand still for 0.6 s."""
-        from app.report_plots import plot
-
-        document.add_next_tick_callback(partial(self._draw, document, plot))
-
-    def _draw(self, document: Document, plot: Callable[[Panel], Any]) -> None:
-        """Draw one panel, and the others later: one takes 0.2 s, in which all pages stand still."""
-        if self._owed:
-            box, panel = self._owed.popleft()
-            box.append(plot(panel))
-            document.add_next_tick_callback(partial(self._draw, document, plot))
 
     def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:
         """Put parts one below the other, as high as they are."""
@@ -184,6 +169,16 @@ class Report:
     def _looks(self, role: str) -> dict[str, Any]:
         classes, styles = role.split(), [self._style]
         return {"css_classes": classes, "stylesheets": styles, "sizing_mode": "stretch_width"}
+
+
+def _drawn(panel: Panel) -> Any:
+    from app.report_plots import plot
+
+    return plot(panel)
+
+
+def _put_later(document: Document, box: pn.Column, drawing: Future[Any]) -> None:
+    document.add_next_tick_callback(lambda: box.append(drawing.result()))
 
 
 def legend(plot: Plot) -> str:

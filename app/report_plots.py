@@ -19,9 +19,13 @@ hv.extension("bokeh")
 hv.renderer("bokeh").webgl = False
 
 
-def plot(panel: Panel) -> pn.pane.HoloViews:
-    """Put a panel on the page, without a legend, which panels side by side share."""
-    return pn.pane.HoloViews(overlay(panel), linked_axes=False, sizing_mode="stretch_width")
+def plot(panel: Panel) -> pn.pane.Bokeh:
+    """Draw a panel as it is put on the page, which takes little then.
+
+    It has no legend, which panels side by side share.
+    """
+    drawn = hv.renderer("bokeh").get_plot(overlay(panel)).state
+    return pn.pane.Bokeh(drawn, sizing_mode="stretch_width")
 
 
 def overlay(panel: Panel) -> hv.Overlay:
@@ -38,6 +42,7 @@ def overlay(panel: Panel) -> hv.Overlay:
         xlabel=panel.x.label,
         ylabel=panel.y.label,
         xticks=whole if 0 < len(whole) <= MOST_LABELS else None,
+        padding=(0.03, 0.1),
         show_legend=False,
         show_grid=True,
         toolbar="above",

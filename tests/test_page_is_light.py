@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 import weakref
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
@@ -10,6 +12,7 @@ from contextlib import ExitStack, closing
 import panel as pn
 import pytest
 from bokeh.document import Document
+from browser import ROOT
 from lone_link import LoneLink
 from panel.io.state import set_curdoc
 
@@ -92,3 +95,15 @@ def test_views_and_sliders_are_those_that_apply(
     transport = dashboard.transport
     assert len(dashboard._plots) == views
     assert (transport._substructure in transport._sliders.objects) == substructures
+
+
+def test_a_server_that_draws_no_report_imports_nothing_that_would() -> None:
+    program = (
+        "import sys, app.serve\n"
+        "app.serve.rehearse()\n"
+        "sys.exit(str({'holoviews', 'matplotlib'} & sys.modules.keys() or ''))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.stderr.strip() == ""

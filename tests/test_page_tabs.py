@@ -74,16 +74,19 @@ def test_what_is_drawn_later_follows_the_dark_theme_and_shows_its_values(open_pa
             (one) => Math.max(...rgb(one.background_fill_color)) < 80)
         }"""
     )
-    plot = page.locator(".bk-Canvas:visible").first
-    box = plot.bounding_box()
-    assert box is not None
-    for share in (0.3, 0.4, 0.5, 0.6, 0.7):
-        # Somewhere above the axis a curve is crossed.
-        for height in range(40, int(box["height"]) - 60, 6):
-            page.mouse.move(box["x"] + share * box["width"], box["y"] + height)
-        if page.get_by_text("multiscale").locator("visible=true").count() > 9:
-            break
-    expect(page.locator(".bk-Tooltip").first).to_be_visible()
+    place = page.evaluate(
+        """() => {
+          const figure = [...Bokeh.documents[0].all_models].find(
+            (one) => one.type === "Figure" && one.title?.text === "What is true")
+          const view = Bokeh.index.find_one_by_id(figure.id)
+          const {x, y} = view.el.getBoundingClientRect()
+          const {Iteration, Relative_error} = figure.renderers[0].data_source.data
+          const {x_scale, y_scale} = view.frame
+          return [x + x_scale.compute(Iteration[100]), y + y_scale.compute(Relative_error[100])]
+        }"""
+    )
+    page.mouse.move(*place)
+    expect(page.locator(".bk-Tooltip").first).to_contain_text("friction force, multiscale")
 
 
 def test_the_live_tab_says_that_its_run_waits_and_a_cancelled_study_lets_it_go_on(
