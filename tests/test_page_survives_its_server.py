@@ -57,16 +57,18 @@ def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
     tmp_path: Path, chrome: Browser
 ) -> None:
     server = Server(tmp_path / "first")
-    server.wait()
     page = chrome.new_page()
-    page.goto(server.address + "?scene=strand&wires=5")
-    expect(status(page)).to_contain_text("iteration")
-    slider(page, "Instant").press("Home")
-    choose(page.get_by_role("combobox", name=re.compile("^Pace")), "5 iterations/s")
-    slider(page, "Wires").press("ArrowRight")
-    press(page, "Stability")
-    page.wait_for_url(re.compile("(?=.*wires=6)(?=.*tab=Stability)(?=.*instant=0)(?=.*pace=5)"))
-    server.stop(signal.SIGKILL)
+    try:
+        server.wait()
+        page.goto(server.address + "?scene=strand&wires=5")
+        expect(status(page)).to_contain_text("iteration")
+        slider(page, "Instant").press("Home")
+        choose(page.get_by_role("combobox", name=re.compile("^Pace")), "5 iterations/s")
+        slider(page, "Wires").press("ArrowRight")
+        press(page, "Stability")
+        page.wait_for_url(re.compile("(?=.*wires=6)(?=.*tab=Stability)(?=.*instant=0)(?=.*pace=5)"))
+    finally:
+        server.stop(signal.SIGKILL)
     expect(status(page)).to_contain_text("not connected")
     again = Server(tmp_path / "second", server.port)
     try:
