@@ -70,7 +70,7 @@ def small(scene: str) -> Settings:
 
 
 def never_apply(scene: str) -> set[str]:
-    return NEVER[scene].union(*(DEPENDENT[name] for name in NEVER[scene]))
+    return NEVER[scene].union(*(DEPENDENT.get(name, ()) for name in NEVER[scene]))
 
 
 def has_errors(settings: Settings) -> bool:
