@@ -6,7 +6,6 @@ import asyncio
 import os
 import signal
 import threading
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -14,7 +13,7 @@ import panel as pn
 import pytest
 from panel.io.server import get_server
 from processes import is_alive, wait_for
-from web_pages import WebPage, until
+from web_pages import WebPage, run_apart, until
 
 from app import serve
 from app.pages import Pages
@@ -105,7 +104,5 @@ def test_a_hundred_drops_in_a_row_leave_nothing_and_pictures_come() -> None:
         server.stop()
 
     threads = workers()
-    # A thread of its own: that of the browser's tests has a loop at work.
-    with ThreadPoolExecutor(1) as thread:
-        thread.submit(asyncio.run, drops()).result()
+    run_apart(drops())
     wait_for(lambda: workers() == threads)

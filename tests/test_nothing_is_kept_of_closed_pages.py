@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import gc
-from concurrent.futures import ThreadPoolExecutor
 
 import panel as pn
 import pytest
 from bokeh.document import Document
 from bokeh.server.server import Server
 from panel.io.server import get_server
-from web_pages import WebPage, until
+from web_pages import WebPage, run_apart, until
 
 from app import serve
 from app.dashboard import Dashboard
@@ -65,8 +64,6 @@ def test_waves_of_pages_leave_nothing() -> None:
         server.stop()
         return counts
 
-    # A thread of its own: that of the browser's tests has a loop at work.
-    with ThreadPoolExecutor(1) as thread:
-        first, *_, last = thread.submit(asyncio.run, waves()).result()
+    first, *_, last = run_apart(waves())
     assert last["Session"] <= 1
     assert all(last[kind] <= first[kind] for kind in last)

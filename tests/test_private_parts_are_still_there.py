@@ -14,6 +14,7 @@ from panel.io.server import DocHandler
 from panel.reactive import Syncable
 from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
+from web_pages import run_apart
 
 from app.figures import make_figure
 from app.innards import Prompt, ignore_business, open_in_turn
@@ -56,7 +57,7 @@ def test_pages_are_opened_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -
         open_in_turn()
         await asyncio.gather(DocHandler.get("one"), DocHandler.get("two"))
 
-    asyncio.run(both())
+    run_apart(both())
     assert said == ["one begins", "one ends", "two begins", "two ends"]
 
 

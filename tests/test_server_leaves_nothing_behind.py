@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import re
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from browser import Server
 from pages import open_report, press, status
 from playwright.sync_api import Browser, expect
 from processes import wait_for
-from web_pages import WebPage, until
+from web_pages import WebPage, run_apart, until
 
 
 def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
@@ -51,9 +50,7 @@ def test_a_server_that_is_interrupted_leaves_no_worker_of_its_pages(tmp_path: Pa
     server = Server(tmp_path / "log")
     try:
         server.wait()
-        # A thread of its own: that of the browser's tests has a loop at work.
-        with ThreadPoolExecutor(1) as thread:
-            thread.submit(asyncio.run, visit()).result()
+        run_apart(visit())
         wait_for(lambda: server.processes() == [])
         assert "Traceback" not in server.log
     finally:

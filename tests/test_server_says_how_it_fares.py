@@ -16,6 +16,7 @@ from lone_link import LoneLink
 from pages import Visit, status
 from panel.io.state import set_curdoc
 from playwright.sync_api import expect
+from web_pages import run_apart
 
 from app import lateness, serve
 from app.dashboard import Dashboard
@@ -55,7 +56,7 @@ def test_the_loop_is_watched(monkeypatch: pytest.MonkeyPatch) -> None:
             await asyncio.sleep(0.0)
         task.cancel()
 
-    asyncio.run(watch())
+    run_apart(watch())
     assert min(noted) >= 0.0
 
 

@@ -6,6 +6,8 @@ import asyncio
 import json
 import re
 import time
+from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any
 
@@ -160,6 +162,12 @@ def _plain(content: Any) -> Any:
     if isinstance(content, dict) and content.get("type") == "map":
         return {name: _plain(value) for name, value in content.get("entries", ())}
     return content
+
+
+def run_apart(main: Coroutine[Any, Any, Any]) -> Any:
+    """Run in a thread of its own: that of the browser's tests has a loop at work."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, main).result()
 
 
 async def until(condition: Any, patience: float = 120.0) -> None:
