@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from solver.arrays import ROUNDING, Array
 from solver.discrete.problem import Problem
 from solver.laws import OPEN
-from solver.laws.play import play
 from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation, TooLargeError
+from solver.reference.contact_states import all_forces, states_at, status_of
 from solver.reference.residual import unbalanced_of
 from solver.reference.solution import Interrupted, Reference
 from solver.reference.states import HELD, Response, Sides, States, rules_of
@@ -125,28 +125,34 @@ class IncrementalContact:
             jump[:, instant], force[:, instant] = newton(instant)
             ambiguous[instant] = newton.response.turned
             reached[instant] = True
-        displacement = condensed.displacement(jump, force)
+        done = _Marched(jump, force, reached, ambiguous, newton.response.solutions)
+        return self._judged(done, time.perf_counter() - start)
+
+    def _judged(self, done: _Marched, seconds: float) -> Reference:
+        """Give all fields, and how far they are from equilibrium and laws."""
+        problem, condensed, rules = self._problem, self._condensed, self._rules
+        displacement = condensed.displacement(done.jump, done.force)
         jumps = condensed.jump(displacement)
-        forces = _all_forces(condensed, rules, jumps, force)
+        forces = all_forces(condensed, rules, jumps, done.force)
         jumps = condensed.jump(displacement, forces)
-        jumps[condensed.moving] = jump
+        jumps[condensed.moving] = done.jump
         unbalanced = unbalanced_of(condensed, rules, displacement, forces)
         blurred = condensed.rounding(displacement)
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
         residual = unbalanced / size if size > 0.0 else unbalanced
-        converged = reached & (unbalanced <= max(CONVERGED * size, blurred))
+        converged = done.reached & (unbalanced <= max(CONVERGED * size, blurred))
         return Reference(
             problem=problem,
             displacement=displacement * problem.scales.displacement,
             contact_force=forces * problem.scales.force,
-            status=_status(rules, jumps, forces),
+            status=status_of(rules, jumps, forces),
             residual=float(residual.max(initial=0.0)),
             unbalanced=float(unbalanced.max(initial=0.0)) * problem.scales.force,
             rounding=blurred * problem.scales.force,
             converged=converged,
-            ambiguous=ambiguous & converged,
-            steps=newton.response.solutions,
-            seconds=time.perf_counter() - start,
+            ambiguous=done.ambiguous & converged,
+            steps=done.solutions,
+            seconds=seconds,
         )
 
 
@@ -154,6 +160,16 @@ def jumps_in(problem: Problem) -> int:
     """Give the number of components of contact that `IncrementalContact` condenses."""
     laws = problem.rubbing.values()
     return sum(len(component.above) for law in laws for component in law.components)
+
+
+class _Marched(NamedTuple):
+    """What all instants came to: jump and force, shape (n, n_instants), and how each was found."""
+
+    jump: Array
+    force: Array
+    reached: NDArray[np.bool_]
+    ambiguous: NDArray[np.bool_]
+    solutions: int
 
 
 class _Solved(NamedTuple):
@@ -179,7 +195,7 @@ class _Newton:
             guesses[rules.smooth] = OPEN
         self._at_rest: States | None = None
         if rest is not None:
-            self._at_rest = _states_at(condensed.jump(rest)[condensed.moving], rules)
+            self._at_rest = states_at(condensed.jump(rest)[condensed.moving], rules)
         self._largest = float(np.abs(condensed.load).max(initial=0.0))
 
     def __call__(self, instant: int) -> tuple[Array, Array]:
@@ -265,37 +281,3 @@ class _Newton:
         found = np.where(rules.normal, np.where(closed, HELD, OPEN), found)
         found[(rules.friction > 0.0) & (found[rules.partner] == OPEN)] = OPEN
         return found.astype(np.int8)
-
-
-def _states_at(jumps: Array, rules: Rules) -> States:
-    """Give the states of a body that is where it would be if it were rigid, (n, n_instants)."""
-    closed = (jumps + rules.gap[:, None] < 0.0)[rules.partner]
-    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
-    slip[rules.normal] = HELD
-    return np.where(closed, slip, OPEN).astype(np.int8)
-
-
-def _all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array) -> Array:
-    """Add the friction at jumps that follow from prescribed displacements, all instants."""
-    found = np.zeros_like(jumps)
-    found[condensed.moving] = force
-    given = ~rules.normal
-    given[condensed.moving] = False
-    bound = rules.bounds(found)
-    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
-    found[given] = (-bound * slip)[given]
-    sprung = np.flatnonzero(given & (rules.compliance > 0.0))
-    if len(sprung):
-        soft, jump = rules.compliance[sprung, None], jumps[sprung]
-        found[sprung] = (play(jump, bound[sprung] * soft) - jump) / soft
-    return found
-
-
-def _status(rules: Rules, jumps: Array, forces: Array) -> NDArray[np.int8]:
-    """Give the status of every point, stacked interface by interface, (n_points, n_instants)."""
-    tangential = ~rules.normal
-    slip = np.diff(jumps, axis=1, prepend=0.0)
-    status = np.sign(slip).astype(np.int8)
-    with_normal = rules.normal[rules.partner][:, None]
-    status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN
-    return np.asarray(status[tangential])
