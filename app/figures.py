@@ -78,6 +78,9 @@ def _axes(view: View) -> Plot:
         y_range=Range1d(1, 2, name=f"{slug}.y"),
         min_border_right=12,
         min_border_top=6,
+        # The theme of the page colours only what `figure` has made; the card is seen instead.
+        background_fill_color=None,
+        border_fill_color=None,
         outline_line_color=None,
     )
     if look.names:

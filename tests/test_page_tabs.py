@@ -89,6 +89,18 @@ def test_what_is_drawn_later_follows_the_dark_theme_and_shows_its_values(open_pa
     expect(page.locator(".bk-Tooltip").first).to_contain_text("friction force, multiscale")
 
 
+def test_no_plot_of_the_run_covers_the_dark_page(open_page: Visit) -> None:
+    page = open_page(TINY)
+    expect(status(page)).to_contain_text("iteration")
+    page.get_by_role("button", name="Toggle theme").click()
+    expect(page.locator(".card canvas").first).to_be_visible()
+    corners = page.locator(".card canvas").evaluate_all(
+        """(all) => all.map(
+          (one) => one.getContext("2d")?.getImageData(1, one.height - 2, 1, 1).data[3])"""
+    )
+    assert set(corners) == {0}
+
+
 def test_the_live_tab_says_that_its_run_waits_and_a_cancelled_study_lets_it_go_on(
     open_page: Visit,
 ) -> None:
