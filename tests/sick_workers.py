@@ -13,7 +13,8 @@ from app.worker.run import WorkerRun
 
 ROOM = 200_000_000
 """Bytes that a process may take beyond what it has at its start."""
-SOON = 0.5
+SOON = 3.0
+"""Seconds after which a piece of work counts as stuck; others end by then, however busy all is."""
 
 
 def hungry(connection: Connection, log: str) -> None:

@@ -69,7 +69,7 @@ def test_a_hundred_kills_in_a_row_leave_nothing_and_the_run_goes_on() -> None:
         assert len(set(killed)) == TIMES
         # Its pipes live as long as it does.
         del link
-    wait_for(lambda: workers() == threads)
+    wait_for(lambda: workers() <= threads)
     wait_for(lambda: open_files() <= files)
     assert not any(map(is_alive, killed))
 
@@ -105,4 +105,4 @@ def test_a_hundred_drops_in_a_row_leave_nothing_and_pictures_come() -> None:
 
     threads = workers()
     run_apart(drops())
-    wait_for(lambda: workers() == threads)
+    wait_for(lambda: workers() <= threads)
