@@ -76,8 +76,8 @@ class WebPage:
     async def live(self) -> None:
         """Acknowledge pictures until the page is closed."""
         with suppress(WebSocketClosedError):
-            while (message := await self._message())[0]:
-                kind, content = message
+            while True:
+                kind, content = await self._message()
                 for event in content.get("events", ()) if kind == "PATCH-DOC" else ():
                     model = event.get("model", {}).get("id")
                     if model == self._form_data:
@@ -122,21 +122,21 @@ class WebPage:
                 await self._socket.write_message(json.dumps(part))
 
     async def _message(self) -> tuple[str, dict[str, Any]]:
-        """Give kind and content of the next message; empty at the end."""
-        header = await self._part()
-        if header is None:
-            return "", {}
-        parts = json.loads(header)
+        """Give kind and content of the next message."""
+        parts = json.loads(await self._part())
         await self._part()
         content = await self._part()
         for _ in range(2 * parts.get("num_buffers", 0)):
             await self._part()
-        return parts["msgtype"], json.loads(content or "{}")
+        return parts["msgtype"], json.loads(content)
 
-    async def _part(self) -> str | bytes | None:
+    async def _part(self) -> str | bytes:
         assert self._socket is not None
         part = await self._socket.read_message()
-        self.size += len(part or "")
+        # Told once only: whoever reads on, in the midst of a message, waits for ever.
+        if part is None:
+            raise WebSocketClosedError
+        self.size += len(part)
         return part
 
 
