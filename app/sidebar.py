@@ -9,10 +9,11 @@ from typing import Any
 from app.form import POINTS, Form, item_of
 from app.session import Session
 from app.uploads import load_in
+from solver.checked import dump
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE, points_of
-from solver.settings import Settings, dump
+from solver.settings import Settings
 
 METHOD = "Method"
 ORDER = (

@@ -5,22 +5,11 @@ A settings object is checked once, at the edge, and cannot be changed; `replace`
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
-import param
-
-from solver.definitions import (
-    Parameter,
-    about,
-    checked_value,
-    choice,
-    count,
-    quantity,
-    switch,
-    unknown,
-)
+from solver.checked import Checked
+from solver.definitions import choice, count, quantity, switch
 
 
 def _is_reduced(settings: Settings) -> bool:
@@ -31,13 +20,11 @@ def _is_sampled(settings: Settings) -> bool:
     return _is_reduced(settings) and settings.local_stage == "reduced"
 
 
-class Settings(param.Parameterized):
+class Settings(Checked):
     """Settings of the method, common to all scenes; a scene adds its own.
 
     `Settings.checked` is the one edge at which values are verified.
     """
-
-    scene: str = ""
 
     METHODS: ClassVar[Mapping[str, Mapping[str, object]]] = {
         "fast": {
@@ -57,7 +44,6 @@ class Settings(param.Parameterized):
             "tolerance": 1e-10,
         },
     }
-    """What `method` sets; a scene that lacks an option keeps its own default."""
 
     substructures = count(
         10,
@@ -85,25 +71,6 @@ class Settings(param.Parameterized):
         group="Method",
         title="Method",
         essential=True,
-    )
-    friction_law = choice(
-        "coulomb",
-        ["coulomb", "compliant"],
-        "Points stick until the friction force reaches its bound (Coulomb), or give way before "
-        "they slip, with a spring in series (Jenkins' element, as in joints and fretting).",
-        group="Contact",
-        title="Friction law",
-    )
-    contact_stiffness = quantity(
-        100.0,
-        (1e-3, 1e9),
-        (1.0, 1e4),
-        "Tangential stiffness of the contact before it slips, over E S / L^2 along a rod, or E / L "
-        "in the plane.",
-        group="Contact",
-        title="Contact stiffness",
-        applies=lambda settings: settings.friction_law == "compliant",
-        logarithmic=True,
     )
     search_direction = choice(
         "auto",
@@ -312,85 +279,6 @@ class Settings(param.Parameterized):
         """Give further factors on k of contacts, along and across them."""
         return self.k_friction_scale, 1.0
 
-    @classmethod
-    def definitions(cls) -> dict[str, Parameter]:
-        """Give the definition of every setting, by name, in the order of their groups."""
-        return {
-            name: cls.param[name]
-            for name in cls.param
-            if (cls.param[name].metadata or {}).get("about") is not None
-        }
-
-    @classmethod
-    def checked(cls, values: Mapping[str, object]) -> Self:
-        """Check values and make a settings object of them.
-
-        Parameters
-        ----------
-        values
-            Plain values by name; what is left out takes its default, or what the method says.
-
-        Raises
-        ------
-        SettingError
-            For an unknown name, a wrong type, a value out of range, or values that do not fit
-            together.
-        """
-        definitions = cls.definitions()
-        clean = {}
-        for name, value in values.items():
-            if name not in definitions:
-                raise unknown(name, value, definitions)
-            clean[name] = checked_value(definitions[name], name, value)
-        chosen = clean.get("method", definitions["method"].default)
-        settings = cls(**{**cls.of_method(chosen), **clean})
-        settings.check_together()
-        return settings
-
-    @classmethod
-    def of_method(cls, method: str) -> dict[str, Any]:
-        """Give the values of the settings that a method sets."""
-        definitions = cls.definitions()
-        found = {}
-        for name, value in cls.METHODS[method].items():
-            definition = definitions[name]
-            is_option = not isinstance(definition, param.Selector) or value in definition.objects
-            found[name] = value if is_option else definition.default
-        return found
-
-    @classmethod
-    def usual(cls, method: str) -> dict[str, Any]:
-        """Give every setting's value where nothing is said but the method."""
-        defaults = {name: definition.default for name, definition in cls.definitions().items()}
-        return {**defaults, **cls.of_method(method)}
-
-    def check_together(self) -> None:
-        """Check what no setting can check alone; a scene extends this."""
-
-    def values(self) -> dict[str, Any]:
-        """Give every setting's plain value by name."""
-        return {name: getattr(self, name) for name in self.definitions()}
-
-    def changed(self) -> dict[str, Any]:
-        """Give the settings that differ from their defaults, or from what their method says."""
-        usual = self.usual(self.method)
-        return {name: value for name, value in self.values().items() if value != usual[name]}
-
-    def replace(self, /, **changes: object) -> Self:
-        """Give new settings with some values changed, checked as a whole.
-
-        Another method brings its own values of all that it sets.
-        """
-        values = self.values()
-        if changes.get("method", self.method) != self.method:
-            own = self.METHODS[self.method]
-            values = {name: value for name, value in values.items() if name not in own}
-        return self.checked({**values, **changes})
-
-    def with_change(self, name: str, value: object) -> Self:
-        """Change one setting and bring along those that could not stand beside it."""
-        return self.replace(**{name: value})
-
     @property
     def n_jumps(self) -> int:
         """Components of all contacts that open or lie between bodies, which a reference condenses.
@@ -403,13 +291,3 @@ class Settings(param.Parameterized):
     def is_reduced(self) -> bool:
         """Whether the linear stage works on separated bases."""
         return bool(self.linear_stage == "pgd")
-
-    def applies(self, name: str) -> bool:
-        """Tell whether a setting does anything under the present values."""
-        return about(self.definitions()[name]).applies(self)
-
-
-def dump(settings: Settings) -> str:
-    """Write settings as the text of a TOML file that every front reads."""
-    lines = [f"{name} = {json.dumps(value)}" for name, value in settings.values().items()]
-    return "\n".join([f"scene = {json.dumps(settings.scene)}", *lines, ""])

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from solver.checked import dump
 from solver.cli import main
 from solver.definitions import about, allowed
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.settings import dump
 
 ROOT = Path(__file__).resolve().parents[1]
 SMALL = ["--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]

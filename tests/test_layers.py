@@ -15,6 +15,7 @@ TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile",
 LAYERS = [
     ["definitions"],
     ["tables"],
+    ["checked"],
     ["settings"],
     ["arrays"],
     ["loads"],

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from app.address import query_of, settings_from_query
+from solver.checked import dump
 from solver.cli import main
 from solver.files import settings_from_command, settings_from_toml
 from solver.latin import iterations
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
-from solver.settings import Settings, dump
+from solver.settings import Settings
 
 PAPER = {
     "search_direction": "paper",

@@ -11,12 +11,12 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from solver.checked import dump
 from solver.definitions import Curve, SettingError, allowed, parse
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.scenes.base import LARGEST_FIELD
-from solver.settings import dump
 from solver.tables import resolve
 
 ANY = settings(

@@ -13,7 +13,7 @@ from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK
 from solver.scenes.entry import Entry, Kind
-from solver.scenes.friction_law import with_friction_law
+from solver.scenes.friction_law import is_coulomb, with_friction_law
 from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
 from solver.scenes.strand import STRAND
@@ -63,13 +63,13 @@ def loop_of(settings: Settings, problem: Problem) -> Loop:
 def closed_form_of(settings: Settings) -> ClosedForm | None:
     """Solve a rod on its support without discretisation in space, where that is known."""
     solve = entry_of(settings).closed_form
-    return None if solve is None or settings.friction_law != "coulomb" else solve(settings)
+    return None if solve is None or not is_coulomb(settings) else solve(settings)
 
 
 def broken_wire_of(settings: Settings) -> BrokenWire | None:
     """Solve a broken wire without discretisation in space, where that is known."""
     solve = entry_of(settings).broken_wire
-    return None if solve is None or settings.friction_law != "coulomb" else solve(settings)
+    return None if solve is None or not is_coulomb(settings) else solve(settings)
 
 
 def points_of(settings: Settings, name: str) -> Pairs:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError
+from solver.definitions import Pairs, SettingError, choice, quantity
 from solver.loads import PRESETS, instants_of, load_path
 from solver.settings import Settings
 
@@ -20,6 +20,26 @@ POINTS = 9
 
 class SceneSettings(Settings):
     """Settings of a scene: those of the method, and its own."""
+
+    friction_law = choice(
+        "coulomb",
+        ["coulomb", "compliant"],
+        "Points stick until the friction force reaches its bound (Coulomb), or give way before "
+        "they slip, with a spring in series (Jenkins' element, as in joints and fretting).",
+        group="Contact",
+        title="Friction law",
+    )
+    contact_stiffness = quantity(
+        100.0,
+        (1e-3, 1e9),
+        (1.0, 1e4),
+        "Tangential stiffness of the contact before it slips, over E S / L^2 along a rod, or E / L "
+        "in the plane.",
+        group="Contact",
+        title="Contact stiffness",
+        applies=lambda settings: settings.friction_law == "compliant",
+        logarithmic=True,
+    )
 
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""

@@ -7,12 +7,20 @@ from dataclasses import replace
 from solver.discrete.problem import Problem
 from solver.laws import Friction
 from solver.laws.compliant import CompliantFriction
+from solver.scenes.base import SceneSettings
 from solver.settings import Settings
+
+
+def is_coulomb(settings: Settings) -> bool:
+    """Tell whether points stick until they slip."""
+    assert isinstance(settings, SceneSettings)
+    return bool(settings.friction_law == "coulomb")
 
 
 def with_friction_law(problem: Problem, settings: Settings) -> Problem:
     """Give all plain friction the law of the settings."""
-    if settings.friction_law == "coulomb":
+    assert isinstance(settings, SceneSettings)
+    if is_coulomb(settings):
         return problem
     length = problem.scales.displacement
     laws = {
