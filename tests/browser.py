@@ -18,6 +18,13 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
+
+
+def _heed_interrupts() -> None:
+    """Undo what a shell does to all that it runs in the background: it has interrupts ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 FLAGS = [
     "--no-sandbox",
     "--disable-gpu",
@@ -63,7 +70,12 @@ class Server:
         command = [panel, "serve", "app", "--port", str(port), "--liveness", *options]
         with log.open("w") as output:
             self._process = subprocess.Popen(
-                command, cwd=ROOT, stdout=output, stderr=output, start_new_session=True
+                command,
+                cwd=ROOT,
+                stdout=output,
+                stderr=output,
+                start_new_session=True,
+                preexec_fn=_heed_interrupts,
             )
 
     def wait(self, seconds: float = 60.0) -> None:
