@@ -9,14 +9,20 @@ import one_thread  # noqa: F401  # before NumPy, which asks but once
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 
+import hypothesis.internal.conjecture.providers as draws
 import pytest
 from browser import Server, browser
+from hypothesis.internal.constants_ast import Constants
 from pages import Visit, visits
 from playwright.sync_api import Browser, expect
 from processes import PATIENCE
 from worker_line import Line
 
 from solver.study.paper_runs import PaperRuns
+
+# Hypothesis also draws numbers that stand in our modules, those that happen to be loaded: which
+# examples a test sees would depend on the tests that ran before it in the same process
+draws._get_local_constants = Constants
 
 
 @pytest.fixture(scope="session")
