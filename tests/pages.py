@@ -46,7 +46,7 @@ def visits(server: Server, chrome: Browser) -> Iterator[Visit]:
     yield visit
     for page in pages:
         page.close()
-    assert complaints == []
+    assert not complaints, complaints
     assert not OURS.search(server.log[said_before:])
 
 

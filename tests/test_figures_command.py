@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solver import cli
+from solver import report_commands
 from solver.cli import main
 from solver.study.figure_data import Axis, Curve, Finding, Panel, PaperFigure
 from solver.study.paper_figures import paper_figures
@@ -37,7 +37,7 @@ def figures(paper_runs):
 def written(tmp_path_factory, figures):
     folder = tmp_path_factory.mktemp("made") / "by" / "the command"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cli, "paper_figures", lambda: figures)
+        patch.setattr(report_commands, "paper_figures", lambda: figures)
         assert main(["figures", "--out", str(folder)]) == 0
     return folder
 
@@ -114,7 +114,7 @@ def test_claim_numbers_and_verdict_are_printed_and_the_default_folder_is_figures
     tmp_path, monkeypatch, capsys
 ):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cli, "paper_figures", lambda: [SMALL])
+    monkeypatch.setattr(report_commands, "paper_figures", lambda: [SMALL])
     assert main(["figures"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
@@ -135,7 +135,7 @@ def test_claim_numbers_and_verdict_are_printed_and_the_default_folder_is_figures
 def test_a_folder_that_cannot_be_written_to_is_refused_in_one_line(
     tmp_path, monkeypatch, capsys, obstacle
 ):
-    monkeypatch.setattr(cli, "paper_figures", lambda: [SMALL])
+    monkeypatch.setattr(report_commands, "paper_figures", lambda: [SMALL])
     folder = tmp_path / "out"
     if obstacle == "picture is a folder":
         (folder / "figure-3.png").mkdir(parents=True)

@@ -26,6 +26,7 @@ LAYERS = [
     ["reduction"],
     ["latin"],
     ["files", "study"],
+    ["report_commands"],
     ["cli"],
     ["__main__"],
 ]

@@ -10,7 +10,7 @@ import re
 import numpy as np
 import pytest
 
-from solver import cli
+from solver import report_commands
 from solver.cli import main
 from solver.latin import Ending
 from solver.reference.assembly import assembled_stiffness
@@ -194,7 +194,7 @@ def test_elements_in_a_row_stretch_by_the_inverse_of_their_stiffness():
 @pytest.fixture
 def written(tmp_path, monkeypatch, capsys):
     few = [Case("load", "zero <N>", {"peak": 0.0}, quick=True), Case("friction", "0")]
-    monkeypatch.setattr(cli, "cases_of", lambda scene, quick: few[: 1 if quick else 2])
+    monkeypatch.setattr(report_commands, "cases_of", lambda scene, quick: few[: 1 if quick else 2])
     folder = tmp_path / "made by" / "the command"
     code = main(["stability", "--quick", "--out", str(folder)])
     return folder, code, capsys.readouterr()
@@ -235,7 +235,9 @@ def test_one_scene_alone_can_be_asked(tmp_path, capsys):
 
 def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
     monkeypatch.setattr(
-        cli, "cases_of", lambda scene, quick: [Case("load", "too few", {"max_iterations": 3})]
+        report_commands,
+        "cases_of",
+        lambda scene, quick: [Case("load", "too few", {"max_iterations": 3})],
     )
     assert main(["stability", "--out", str(tmp_path)]) == 1
     assert "FAIL" in (tmp_path / "stability.csv").read_text(encoding="utf-8")
@@ -245,7 +247,7 @@ def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_written_to_is_refused_before_the_runs(
     tmp_path, monkeypatch, capsys, obstacle
 ):
-    monkeypatch.setattr(cli, "stability", lambda *rest: pytest.fail("it ran"))
+    monkeypatch.setattr(report_commands, "stability", lambda *rest: pytest.fail("it ran"))
     folder = tmp_path / "out"
     if obstacle == "page is a folder":
         (folder / "stability.html").mkdir(parents=True)

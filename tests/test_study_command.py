@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver import cli
+from solver import report_commands
 from solver.cli import main
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -45,11 +45,13 @@ def measured(tmp_path_factory):
     kept = []
     folder = tmp_path_factory.mktemp("study") / "made"
     with pytest.MonkeyPatch.context() as patch:
-        original = cli.error_against_time
+        original = report_commands.error_against_time
         for limit in LIMITS:
             patch.setenv(limit, "1")
         patch.setattr(
-            cli, "error_against_time", lambda *given: kept.append(original(*given)) or kept[0]
+            report_commands,
+            "error_against_time",
+            lambda *given: kept.append(original(*given)) or kept[0],
         )
         assert main([*TINY, "--out", str(folder)]) == 0
     return folder, kept[0]
@@ -170,7 +172,9 @@ def test_bad_input_is_refused_in_one_line(tmp_path, capsys, words, name):
 def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_measured(
     tmp_path, monkeypatch, capsys
 ):
-    monkeypatch.setattr(cli, "error_against_time", lambda *given: pytest.fail("measured"))
+    monkeypatch.setattr(
+        report_commands, "error_against_time", lambda *given: pytest.fail("measured")
+    )
     (tmp_path / "file").write_text("in the way", encoding="utf-8")
     assert main([*TINY, "--out", str(tmp_path / "file")]) == 2
     assert "a folder that can be made and written to" in capsys.readouterr().err
@@ -179,10 +183,10 @@ def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_measured(
 def test_without_matplotlib_the_tables_are_written_and_one_line_says_so(
     tmp_path, monkeypatch, capsys, measured
 ):
-    monkeypatch.setattr(cli, "error_against_time", lambda *given: measured[1])
-    monkeypatch.setitem(cli.sys.modules, "matplotlib", None)
+    monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
+    monkeypatch.setitem(report_commands.sys.modules, "matplotlib", None)
     for module in ("solver.study.drawing", "solver.study.study_page", "matplotlib.axes"):
-        monkeypatch.delitem(cli.sys.modules, module, raising=False)
+        monkeypatch.delitem(report_commands.sys.modules, module, raising=False)
     assert main([*TINY, "--out", str(tmp_path)]) == 0
     assert {file.name for file in tmp_path.iterdir()} == {"curves.csv", "levels.csv"}
     assert "The page needs matplotlib" in capsys.readouterr().out

@@ -8,29 +8,20 @@ above, and the jump is that of the body above over what is below.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.laws.around import Around, Rod
 from solver.laws.behaviour import Behaviour
-from solver.laws.interface import (
-    Component,
-    Gaps,
-    Interface,
-    MacroPart,
-    Region,
-    Rule,
-    beyond,
-    squared,
-)
+from solver.laws.interface import Component, Region, Rule, beyond
 from solver.laws.obeying import ContactRule, FrictionRule
+from solver.laws.pairs import Pairs
 from solver.laws.rules import Rules
 
 NO_SLIP = 1e-9
@@ -39,48 +30,29 @@ OPEN = 2
 """Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
 
 
-@dataclass(frozen=True)
-class Friction(Interface):
-    """An interface that sticks and slips, and may open.
-
-    A pair is a point of the body above and what lies below it; the pairs of one point (two, where a
-    cut crosses the interface, or ends at it) share its force.
+@dataclass(frozen=True, kw_only=True)
+class Friction(Pairs):
+    """Pairs that stick and slip, and may open.
 
     Attributes
     ----------
-    tangent
-        Component along the interface.
-    points
-        Point of the interface that each pair belongs to, shape (n_pairs,).
-    positions
-        Place of the points along the interface, shape (n_points,), m.
     weights
         Tributary length or area of each pair, shape (n_pairs,), m or m^2.
     bound
         r, the friction force of each pair that needs no pressing one, (n_pairs,), non-negative.
     friction
         Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
-    normal
-        Component across the interface; None where the pressure is known.
     gap
         Opening between the undeformed bodies, shape (n_pairs,), scaled; negative where they
         overlap.
-    macro
-        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
-        from the other is in equilibrium in the coarse problem. None on a rigid support.
     around
         What the search direction has to know of the bodies.
     """
 
-    tangent: Component
-    points: Indices
-    positions: Array
     weights: Array
     bound: Array
     friction: Array
-    normal: Component | None = None
     gap: Array = field(default_factory=lambda: np.zeros(0))
-    macro: sparse.csr_array | None = None
     around: Around = field(default_factory=Rod)
 
     remembers = True
@@ -113,40 +85,9 @@ class Friction(Interface):
         return cls(tangent=tangent, normal=normal, bound=none, friction=friction, **others)
 
     @property
-    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
-        """Rows of all components, of both sides."""
-        return np.concatenate([rows for component in self.components for rows in component.sides])
-
-    @property
-    def is_on_support(self) -> bool:
-        """Whether what lies below is rigid."""
-        return self.tangent.below is None
-
-    @property
-    def opens(self) -> bool:
-        """Whether it is unilateral contact, with a normal component."""
-        return self.normal is not None
-
-    @property
     def is_plain(self) -> bool:
         """Whether it is the play operator: of known bound, and nothing but slip below it moves."""
         return self.is_on_support and not self.opens and not self.compliance.any()
-
-    @cached_property
-    def components(self) -> tuple[Component, ...]:
-        """All components, the tangential one last."""
-        return (self.tangent,) if self.normal is None else (self.normal, self.tangent)
-
-    def by_point(self, values: Array) -> Array:
-        """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
-        found = np.zeros((len(self.positions), *values.shape[1:]))
-        np.add.at(found, self.points, values)
-        return found
-
-    def mean_by_point(self, values: Array) -> Array:
-        """Give the mean of the pairs of every point, shape (n_points, ...)."""
-        counts = np.bincount(self.points, minlength=len(self.positions))
-        return np.asarray(self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1)))
 
     @cached_property
     def shares(self) -> Array:
@@ -205,21 +146,6 @@ class Friction(Interface):
         values: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self.of_pairs}
         return replace(self, tangent=kept, points=self.points[chosen], **values)
 
-    def macro_parts(self) -> Iterator[MacroPart]:
-        """Give the macro forces of both sides, which cancel, component by component."""
-        if self.macro is None:
-            return
-        basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
-        for component in self.components:
-            yield MacroPart(np.concatenate(component.sides), basis)
-
-    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
-        """Compare the forces of both sides; where they move is what the law is about."""
-        if self.is_on_support:
-            return Gaps()
-        sums = (sum(force[rows] for rows in component.sides) for component in self.components)
-        return Gaps(force=sum(squared(beyond(np.asarray(one), noise)) for one in sums))
-
     @property
     def compliance(self) -> Array:
         """Tangential displacement before slip, per friction force, of every point, scaled."""
@@ -272,11 +198,6 @@ class Friction(Interface):
             Rows whose displacement is prescribed, shape (n_rows,).
         """
         return float(self.bound[~held[self.tangent.above]].sum())
-
-    def carried(self, force: Array) -> float:
-        """Give the largest force on a pair where it may open, of that of all rows."""
-        rows = [component.above for component in self.components if self.opens]
-        return max((float(np.abs(force[own]).max()) for own in rows), default=0.0)
 
     def status(self, displacement: Array, force: Array | None = None) -> NDArray[np.int8]:
         """Give the contact status of a local stage, shape (n_points, n_instants).

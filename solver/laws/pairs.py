@@ -1,0 +1,93 @@
+"""Pairs of points along an interface, a point of the body above and what lies below it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import sparse
+
+from solver.arrays import Array, Indices
+from solver.laws.interface import Component, Gaps, Interface, MacroPart, beyond, squared
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pairs(Interface):
+    """An interface of two sides, of which one may be a rigid support.
+
+    A pair is a point of the body above and what lies below it; the pairs of one point (two, where a
+    cut crosses the interface, or ends at it) share its force.
+
+    Attributes
+    ----------
+    tangent
+        Component along the interface.
+    points
+        Point of the interface that each pair belongs to, shape (n_pairs,).
+    positions
+        Place of the points along the interface, shape (n_points,), m.
+    normal
+        Component across the interface; None where the pressure is known.
+    macro
+        Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
+        from the other is in equilibrium in the coarse problem. None on a rigid support.
+    """
+
+    tangent: Component
+    points: Indices
+    positions: Array
+    normal: Component | None = None
+    macro: sparse.csr_array | None = None
+
+    @property
+    def rows(self) -> Indices:  # type: ignore[override]  # others are given them
+        """Rows of all components, of both sides."""
+        return np.concatenate([rows for component in self.components for rows in component.sides])
+
+    @property
+    def is_on_support(self) -> bool:
+        """Whether what lies below is rigid."""
+        return self.tangent.below is None
+
+    @property
+    def opens(self) -> bool:
+        """Whether it is unilateral contact, with a normal component."""
+        return self.normal is not None
+
+    @cached_property
+    def components(self) -> tuple[Component, ...]:
+        """All components, the tangential one last."""
+        return (self.tangent,) if self.normal is None else (self.normal, self.tangent)
+
+    def by_point(self, values: Array) -> Array:
+        """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
+        found = np.zeros((len(self.positions), *values.shape[1:]))
+        np.add.at(found, self.points, values)
+        return found
+
+    def mean_by_point(self, values: Array) -> Array:
+        """Give the mean of the pairs of every point, shape (n_points, ...)."""
+        counts = np.bincount(self.points, minlength=len(self.positions))
+        return np.asarray(self.by_point(values) / counts.reshape(-1, *[1] * (values.ndim - 1)))
+
+    def macro_parts(self) -> Iterator[MacroPart]:
+        """Give the macro forces of both sides, which cancel, component by component."""
+        if self.macro is None:
+            return
+        basis = sparse.coo_array(sparse.vstack([self.macro, self.macro]))
+        for component in self.components:
+            yield MacroPart(np.concatenate(component.sides), basis)
+
+    def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
+        """Compare the forces of both sides; where they move is what the law is about."""
+        if self.is_on_support:
+            return Gaps()
+        sums = (sum(force[rows] for rows in component.sides) for component in self.components)
+        return Gaps(force=sum(squared(beyond(np.asarray(one), noise)) for one in sums))
+
+    def carried(self, force: Array) -> float:
+        """Give the largest force on a pair where it may open, of that of all rows."""
+        rows = [component.above for component in self.components if self.opens]
+        return max((float(np.abs(force[own]).max()) for own in rows), default=0.0)

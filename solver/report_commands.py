@@ -1,0 +1,172 @@
+"""The commands of `python -m solver` that measure and write reports."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from solver.definitions import SettingError
+from solver.files import scene_settings, settings_from_command
+from solver.scenes import CATALOGUE
+from solver.study import survey_report
+from solver.study.error_against_time import error_against_time
+from solver.study.growth import growth
+from solver.study.iteration_cost import print_iteration_cost, print_overheads
+from solver.study.paper_figures import paper_figures
+from solver.study.reduction_cost import print_reduction_cost
+from solver.study.row_report import prepare
+from solver.study.stability import cases_of, stability
+from solver.study.stability_report import HEAD, line, notes, passes, write_report
+from solver.study.stability_report import summary as summary_of
+from solver.study.stability_units import invariance
+from solver.study.study_files import NO_PAGE, write_study
+from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
+from solver.study.survey import Row, Verdict, survey
+from solver.study.thread_gain import print_thread_gain
+
+REFUSED = 2
+"""Exit code of refused input."""
+
+
+def add_reports(commands: Any) -> None:
+    """Add the commands that measure and write reports."""
+    cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
+    cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
+    cost.add_argument(
+        "--reduction", action="store_true", help="separated bases against full fields instead"
+    )
+    cost.add_argument(
+        "--threads", type=int, default=1, help="so many threads against one instead, on blocks"
+    )
+    cost.set_defaults(command=_benchmark)
+    figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
+    figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
+    figures.set_defaults(command=_figures)
+    study = commands.add_parser("study", help="error against run time, all methods side by side")
+    study.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
+    study.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    study.add_argument("--out", type=Path, default=Path("study"), metavar="DIR")
+    study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
+    study.add_argument(
+        "--no-growth", action="store_false", dest="growth", help="leave out other sizes"
+    )
+    study.set_defaults(command=_study)
+    stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
+    stable.add_argument("scene", nargs="?", help="a name of the catalogue; all without")
+    stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
+    stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
+    stable.set_defaults(command=_stability)
+    random = commands.add_parser("survey", help="random runs of all scenes, each judged")
+    random.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
+    random.add_argument("--runs", type=int, default=100, help="number of runs")
+    random.add_argument("--seed", type=int, default=1, help="of the draws")
+    random.add_argument("--row", type=int, help="this row of one scene alone")
+    random.add_argument("--out", type=Path, default=Path("survey"), metavar="DIR")
+    random.set_defaults(command=_survey)
+
+
+def _check_repeats(chosen: argparse.Namespace) -> None:
+    if chosen.repeats < 1:
+        raise SettingError("--repeats", chosen.repeats, "a whole number from 1", "give 1 or more")
+
+
+@contextlib.contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    """Refuse a folder that cannot be made or written to."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as problem:
+        allowed_folder = "a folder that can be made and written to"
+        raise SettingError("--out", str(folder), allowed_folder, str(problem)) from None
+
+
+def _benchmark(chosen: argparse.Namespace) -> int:
+    _check_repeats(chosen)
+    if chosen.threads > 1:
+        print_thread_gain(chosen.threads, chosen.repeats)
+        return 0
+    measure = print_reduction_cost if chosen.reduction else print_iteration_cost
+    measure(chosen.repeats)
+    if not chosen.reduction:
+        print_overheads(chosen.repeats)
+    return 0
+
+
+def _figures(chosen: argparse.Namespace) -> int:
+    try:
+        from solver.study.drawing import write_figures
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").split(".")[0] != "matplotlib":
+            raise
+        print(
+            "slipfront: figures need matplotlib: pip install 'slipfront[figures]'", file=sys.stderr
+        )
+        return REFUSED
+    with _writing(chosen.out):
+        chosen.out.mkdir(parents=True, exist_ok=True)
+        figures = paper_figures()
+        files = write_figures(figures, chosen.out)
+    for figure in figures:
+        print(f"Fig. {figure.number}: {figure.title} ({figure.verdict})")
+        for found in figure.findings:
+            print(f"  {'+' if found.holds else '-'} {found.text}")
+    print(f"{len(files)} files in {chosen.out}")
+    return 0
+
+
+def _study(chosen: argparse.Namespace) -> int:
+    settings = settings_from_command(chosen.scene, chosen.changes)
+    _check_repeats(chosen)
+    with _writing(chosen.out):
+        chosen.out.mkdir(parents=True, exist_ok=True)
+        found = error_against_time(settings, chosen.repeats)
+        sizes = growth(settings) if chosen.growth else []
+        files, drawn = write_study(found, sizes, chosen.out)
+    print("\n".join(conditions(found)), end="\n\n")
+    print(aligned(table(found)), end="\n\n")
+    print("\n".join(verdicts(found)))
+    if sizes:
+        print(f"\n{aligned(growth_table(sizes))}")
+    if not drawn:
+        print(NO_PAGE)
+    print(f"{len(files)} files in {chosen.out}")
+    return 0
+
+
+def _stability(chosen: argparse.Namespace) -> int:
+    scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
+    matrix = cases_of(scene, quick=chosen.quick)
+    with _writing(chosen.out):
+        prepare(chosen.out, "stability")
+        print(HEAD)
+        rows = stability(matrix, lambda row: print(line(row), flush=True))
+        apart = invariance() if scene in (None, "bar") else {}
+        files = write_report(rows, apart, chosen.out)
+    print("\n".join(["", summary_of(rows), *notes(apart), f"{len(files)} files in {chosen.out}"]))
+    return 0 if passes(rows, apart) else 1
+
+
+def _survey(chosen: argparse.Namespace) -> int:
+    scenes = [scene_settings(scene).scene for scene in chosen.scenes] or list(CATALOGUE)
+    for name, least in (("runs", 1), ("seed", 0), ("row", 0)):
+        value = getattr(chosen, name)
+        if value is not None and value < least:
+            raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
+    numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
+    rows: list[Row] = []
+    with _writing(chosen.out):
+        prepare(chosen.out, "survey")
+        print(survey_report.HEAD)
+        with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept
+            for row in survey(scenes, numbers, chosen.seed):
+                rows.append(row)
+                print(survey_report.line(row), flush=True)
+        files = survey_report.write_report(rows, chosen.out)
+    print("\n".join(["", *survey_report.ends(rows), f"{len(files)} files in {chosen.out}"]))
+    return int(any(row.verdict is Verdict.WRONG for row in rows))
