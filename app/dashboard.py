@@ -218,7 +218,7 @@ class Dashboard:
         if is_dimmed != self._is_dimmed:
             self._is_dimmed = is_dimmed
             self._plots.styles = DIMMED if is_dimmed else CLEAR
-        bodies = any(view.plot.equal for view in self._shown)
+        bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
         self.transport.show()
 

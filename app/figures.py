@@ -24,6 +24,7 @@ from bokeh.models import (
     Plot,
     Range1d,
     Scatter,
+    Text,
 )
 from bokeh.models.annotations.legends import ColorBar
 from bokeh.models.glyphs import Patches
@@ -56,8 +57,10 @@ def make_figure(view: View, choose: Callable[[float], None]) -> Plot:
         box.js_on_change("data", fit)
         made.js_on_change("inner_width", fit)
         made.js_on_change("inner_height", fit)
-    else:
+    if plot.words or not plot.equal:
         _add_curves(made, view)
+    if plot.words:
+        _add_words(made, view)
     if plot.chooses:
         made.on_event(Tap, lambda event: choose(event.y))
         made.on_event(Pan, lambda event: choose(event.y))
@@ -86,6 +89,8 @@ def _axes(view: View) -> Plot:
     )
     if look.names:
         made.add_tools(HoverTool(tooltips=[(look.names, "@name")]))
+    if not look.x_label:
+        return made
     made.add_layout(_axis("x", look.x_label, view), "below")
     axis = _axis("y", look.y_label, view)
     made.add_layout(axis, "left")
@@ -130,6 +135,18 @@ def _add_curves(made: Plot, view: View) -> None:
         made.add_glyph(_empty(f"{slug}.{marks.kind}", "x", "y"), glyph)
 
 
+def _add_words(made: Plot, view: View) -> None:
+    source = _empty(f"{view.slug}.words", "x", "y", "text", "color", "across", "up")
+    glyph = Text(
+        text_color="color",
+        text_align="across",
+        text_baseline="up",
+        text_font_size="14px",
+        text_font_style="bold",
+    )
+    made.add_glyph(source, glyph)
+
+
 def _add_colors(made: Plot, view: View) -> None:
     """Add an image, or bodies, and the scale of their colours."""
     plot, slug = view.plot, view.slug
@@ -139,7 +156,10 @@ def _add_colors(made: Plot, view: View) -> None:
     if plot.equal:
         color: Any = {"field": "value", "transform": mapper}
         source = _empty(f"{slug}.bodies", "xs", "ys", "value")
-        made.add_glyph(source, Patches(fill_color=color, line_color=color, line_width=0.5))
+        alpha = 0.6 if plot.words else 1.0
+        made.add_glyph(
+            source, Patches(fill_color=color, fill_alpha=alpha, line_color=color, line_width=0.5)
+        )
     elif not plot.names:
         source = _empty(f"{slug}.image", "image", "x", "y", "dw", "dh")
         made.add_glyph(source, Image(dw="dw", dh="dh", color_mapper=mapper))

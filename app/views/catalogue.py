@@ -10,6 +10,7 @@ from app.views import (
     error_time,
     friction,
     loop,
+    picture,
     spectra,
     status_map,
     tractions,
@@ -19,6 +20,7 @@ from app.views.modes import SPACE_MODES, TIME_FUNCTIONS
 from solver.settings import Settings
 
 VIEWS: tuple[View, ...] = (
+    picture.VIEW,
     deformed.VIEW,
     tractions.VIEW,
     friction.VIEW,

@@ -8,6 +8,8 @@ import numpy as np
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#8A8A8A"
 SKY, VERMILION = "#56B4E9", "#D55E00"
+FORCE, GIVEN = "#C24E00", "#A8508A"
+"""Of forces and of displacements that are given; words in them can be read on light and dark."""
 BACKWARD, STICK, FORWARD, OPEN = BLUE, "#D9D9D9", ORANGE, "#4D4D4D"
 VIRIDIS = ("#470e61", "#433d84", "#33628d", "#25828e", "#1fa287", "#42be71", "#91d742", "#d8e219")
 

@@ -79,6 +79,18 @@ class Marks:
     kind: str = "circle"
 
 
+@dataclass(frozen=True)
+class Word:
+    """A value beside what it belongs to, and how it is aligned there, across and up."""
+
+    x: ArrayLike
+    y: ArrayLike
+    text: str
+    color: str
+    across: str = "left"
+    up: str = "middle"
+
+
 @dataclass(frozen=True, eq=False)
 class Image:
     """Cells of equal size, row by row from below, and the values that colours span."""
@@ -142,6 +154,7 @@ class Drawing:
     y: Axis | None = None
     curves: Sequence[Curve] = ()
     marks: Sequence[Marks] = ()
+    words: Sequence[Word] = ()
     image: Image | None = None
     bodies: Bodies | None = None
     colors: Colors | None = None
@@ -156,7 +169,7 @@ class Plot:
     Attributes
     ----------
     x_label, y_label
-        Titles of the axes, until a drawing has others.
+        Titles of the axes, until a drawing has others; without them there are no axes.
     logarithmic
         Which axes are: "", "y", "xy".
     palette
@@ -167,6 +180,8 @@ class Plot:
         Kinds of marks, each with its colour and without points.
     equal
         Whether both axes have one scale.
+    words
+        Whether values stand in it.
     names
         What the name of a curve is called where one points at it; empty shows none.
     chooses
@@ -182,6 +197,7 @@ class Plot:
     scale: str = ""
     marks: tuple[Marks, ...] = ()
     equal: bool = False
+    words: bool = False
     names: str = ""
     chooses: str = ""
     whole: str = ""

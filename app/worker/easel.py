@@ -51,8 +51,10 @@ def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
     found: dict[str, Attributes] = {"title": {"text": escape(card_title(view.name, drawing.keys))}}
     for name, axis in (("x", drawing.x), ("y", drawing.y)):
         found.update(_axis(name, axis))
-    if not view.plot.equal:
+    if view.plot.words or not view.plot.equal:
         found["curves"] = _curves(drawing)
+    if view.plot.words:
+        found["words"] = _words(drawing)
     for kind in view.plot.marks:
         found[kind.kind] = _marks(kind, drawing)
     if drawing.image is not None:
@@ -87,6 +89,18 @@ def _curves(drawing: Drawing) -> Attributes:
         "alpha": [curve.alpha for curve in curves],
         "dash": [curve.dash for curve in curves],
         "name": [curve.name for curve in curves],
+    }
+
+
+def _words(drawing: Drawing) -> Attributes:
+    words = drawing.words
+    return {
+        "x": np.array([word.x for word in words], float),
+        "y": np.array([word.y for word in words], float),
+        "text": [word.text for word in words],
+        "color": [word.color for word in words],
+        "across": [word.across for word in words],
+        "up": [word.up for word in words],
     }
 
 

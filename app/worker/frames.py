@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from app.worker.portrait import Portrait
 from app.worker.shown import Axes, Bytes, Floats, Mesh, Wires
 
 
@@ -32,6 +33,8 @@ class Stand:
     closed_form, closed_form_end
         Friction force, N/m, and end displacement, m, of the closed form; None where there is
         none, or as long as it is not computed.
+    portrait
+        What a picture of the scene shows of every iterate alike.
     mesh
         Of plane bodies.
     wires
@@ -52,6 +55,7 @@ class Stand:
     all_instants: Floats
     closed_form: Floats | None
     closed_form_end: Floats | None
+    portrait: Portrait
     mesh: Mesh | None = None
     wires: Wires | None = None
     is_idle: bool = False

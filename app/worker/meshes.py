@@ -39,10 +39,6 @@ class Thinned:
         self._nodes = kept.ravel()
         corners = np.arange(kept.size).reshape(kept.shape)
         quads = (corners[:, a : a - 1 or None, b : b - 1 or None] for a, b in _AROUND)
-        self.mesh = Mesh(
-            nodes=inside.nodes[self._nodes].astype(np.float32),
-            quads=np.stack([corner.ravel() for corner in quads], axis=1).astype(np.int32),
-        )
         body, row, column = np.unravel_index(inside.elements[:, 0], grid.shape)
         self._quad = np.ravel_multi_index(
             (
@@ -53,6 +49,13 @@ class Thinned:
             (bodies, len(up) - 1, len(across) - 1),
         )
         self._counts = np.bincount(self._quad)
+        parts = np.zeros(len(self._counts), dtype=np.intp)
+        parts[self._quad] = inside.parts
+        self.mesh = Mesh(
+            nodes=inside.nodes[self._nodes].astype(np.float32),
+            quads=np.stack([corner.ravel() for corner in quads], axis=1).astype(np.int32),
+            parts=parts,
+        )
 
     def fields(self, skeleton: Array, instant: int, component: str) -> tuple[Array, Array]:
         """Give the displacement of the shown nodes, m, and a stress in the shown quads, Pa."""

@@ -13,6 +13,7 @@ from app.worker.bases import Bases, bases_of
 from app.worker.frames import Fields as Shown
 from app.worker.frames import Reference, Stand
 from app.worker.meshes import Thinned
+from app.worker.portrait import Pose, Sitter
 from app.worker.shown import (
     LONGEST_CURVE,
     MOST_SPECTRA,
@@ -32,7 +33,7 @@ from solver.discrete.loops import Fields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
 from solver.reference import solution
-from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of
+from solver.scenes import broken_wire_of, closed_form_of, data_of, kind_of, loop_of
 from solver.settings import Settings
 
 
@@ -72,6 +73,8 @@ class Sampler:
             self._mesh = Thinned(problem.inside, settings)
         elif kind_of(settings) == "wires":
             self._wires = ShownWires(problem, settings.values()["broken"])
+        mesh = self._mesh.mesh if self._mesh else None
+        self._sitter = Sitter(problem, data_of(settings), mesh)
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""
@@ -96,6 +99,7 @@ class Sampler:
             all_instants=_floats(problem.instants[self._curve]),
             closed_form=None,
             closed_form_end=None,
+            portrait=self._sitter.portrait,
             mesh=self._mesh.mesh if self._mesh else None,
             wires=self._wires.base if self._wires else None,
             is_idle=nothing_acts(problem),
@@ -140,16 +144,23 @@ class Sampler:
         """Show the inside of plane bodies at the chosen instant."""
         if self._mesh is None:
             return None
-        column = int(self._columns[instant_of(look.phase, len(self._columns))])
+        column = self._column(look)
         whole = iterate.displacement
         displacement, stress = self._mesh.fields(whole, column, look.stress)
         largest = max(float(whole.max()), -float(whole.min()))
         return MeshField(_floats(displacement), _floats(stress), largest)
 
+    def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
+        """Show what has moved at the chosen instant."""
+        return self._sitter.pose(iterate, self._column(look), bodies)
+
     def axial(self, iterate: Iterate, look: Look) -> Floats | None:
         """Give the forces in the wires of a strand at the chosen instant."""
-        column = int(self._columns[instant_of(look.phase, len(self._columns))])
+        column = self._column(look)
         return self._wires.forces(iterate, column) if self._wires else None
+
+    def _column(self, look: Look) -> int:
+        return int(self._columns[instant_of(look.phase, len(self._columns))])
 
     def _fields(
         self,
@@ -213,6 +224,11 @@ class Frame(Shown):
     def mesh(self) -> MeshField | None:
         """The inside of plane bodies."""
         return self.sampler.mesh_field(self.iterate, self.look)
+
+    @cached_property
+    def pose(self) -> Pose:
+        """What has moved at the chosen instant."""
+        return self.sampler.pose(self.iterate, self.look, self.mesh)
 
     @cached_property
     def axial(self) -> Floats | None:

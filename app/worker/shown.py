@@ -53,10 +53,21 @@ class Axes:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Quadrilaterals, as many as a screen shows: corners (n_nodes, 2), m; nodes (n_quads, 4)."""
+    """Quadrilaterals, as many as a screen shows.
+
+    Attributes
+    ----------
+    nodes
+        Corners, shape (n_nodes, 2), m.
+    quads
+        Which of them each has, shape (n_quads, 4).
+    parts
+        The substructure of each, shape (n_quads,).
+    """
 
     nodes: Floats
     quads: NDArray[np.int32]
+    parts: NDArray[np.intp]
 
 
 @dataclass(frozen=True)

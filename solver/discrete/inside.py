@@ -17,8 +17,8 @@ class Inside(Protocol):
     elements
         Corners of every element, counter-clockwise, shape (n_elements, 4); a biquadratic one counts
         as its four quarters.
-    bodies
-        Body of every element, shape (n_elements,).
+    bodies, parts
+        Body and substructure of every element, shape (n_elements,).
     components
         Of every degree of freedom of the problem, 0 along x and 1 along y, shape (n_dofs,).
     """
@@ -26,6 +26,7 @@ class Inside(Protocol):
     nodes: Array
     elements: Indices
     bodies: Indices
+    parts: Indices
     components: Indices
 
     def displacement(self, skeleton: Array, instants: slice | list[int]) -> Array:

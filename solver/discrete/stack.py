@@ -100,6 +100,9 @@ class Stack:
         s.
     spring
         At the right side, of which nothing is prescribed then; or None.
+    tilt
+        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
+        `body_force` has turned the other way already. None where it does not.
     """
 
     length: float
@@ -120,3 +123,4 @@ class Stack:
     instants: Array
     duration: float
     spring: Spring | None = None
+    tilt: Array | None = None

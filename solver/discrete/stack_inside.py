@@ -20,10 +20,9 @@ class StackInside:
         self.elements: Indices = np.concatenate(
             [part.nodes.ravel()[part.rectangle.cells] for part in parts]
         )
-        self.bodies: Indices = np.repeat(
-            [part.place[2] for part in parts],
-            [len(part.rectangle.cells) for part in parts],
-        )
+        sizes = [len(part.rectangle.cells) for part in parts]
+        self.parts: Indices = np.repeat(np.arange(len(parts)), sizes)
+        self.bodies: Indices = np.repeat([part.place[2] for part in parts], sizes)
         self.components: Indices = skeleton % 2
         self._places = [np.searchsorted(skeleton, part.dofs) for part in parts]
         self._size = len(skeleton), len(scene.instants)

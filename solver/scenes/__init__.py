@@ -7,6 +7,10 @@ from typing import Any
 from solver.definitions import Pairs
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
+from solver.discrete.rods import Rods
+from solver.discrete.rods_problem import discretise_rods
+from solver.discrete.stack import Stack
+from solver.discrete.stack_problem import discretise_stack
 from solver.reference.broken_wire import BrokenWire
 from solver.reference.closed_form import ClosedForm
 from solver.scenes.bar import BAR
@@ -38,9 +42,16 @@ def kind_of(settings: Settings) -> Kind:
     return entry_of(settings).kind
 
 
+def data_of(settings: Settings) -> Rods | Stack:
+    """Make what checked settings describe: rods, or stacked bodies, with all that acts on them."""
+    return entry_of(settings).data(settings)
+
+
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem that checked settings describe."""
-    return with_friction_law(entry_of(settings).discretise(settings), settings)
+    data = data_of(settings)
+    problem = discretise_rods(data) if isinstance(data, Rods) else discretise_stack(data)
+    return with_friction_law(problem, settings)
 
 
 def coarser_problems(settings: Settings) -> list[Problem]:

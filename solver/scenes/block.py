@@ -12,7 +12,6 @@ from solver.discrete.loops import Loop
 from solver.discrete.probes import side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack, Support
-from solver.discrete.stack_problem import discretise_stack
 from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Entry
@@ -164,7 +163,7 @@ BLOCK = Entry(
     source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
     settings=BlockSettings,
     kind="plane",
-    discretise=lambda settings: discretise_stack(block(settings)),
+    data=block,
     loop=_loop,
     sizes=shared.PLANE_SIZES,
 )

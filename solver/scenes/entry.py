@@ -8,6 +8,8 @@ from typing import Generic, Literal, TypeVar
 
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
+from solver.discrete.rods import Rods
+from solver.discrete.stack import Stack
 from solver.reference.broken_wire import BrokenWire
 from solver.reference.closed_form import ClosedForm
 from solver.scenes.base import SceneSettings
@@ -28,8 +30,8 @@ class Entry(Generic[S]):
         Its settings.
     kind
         What there is to see: a rod on its support, wires beside each other, or plane bodies.
-    discretise
-        Makes its discrete problem, with Coulomb's friction.
+    data
+        Makes what the scene is made of, with Coulomb's friction: rods, or stacked bodies.
     loop
         Gives the loop that it shows.
     coarser
@@ -45,7 +47,7 @@ class Entry(Generic[S]):
     source: str
     settings: type[S]
     kind: Kind
-    discretise: Callable[[S], Problem]
+    data: Callable[[S], Rods | Stack]
     loop: Callable[[S, Problem], Loop]
     sizes: Mapping[str, tuple[int, ...]]
     coarser: Callable[[S], Iterable[Problem]] | None = None

@@ -17,7 +17,6 @@ from solver.discrete.loops import Loop
 from solver.discrete.probes import constant
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Spring, Stack, Support
-from solver.discrete.stack_problem import discretise_stack
 from solver.loads import PULLS
 from solver.scenes.entry import Entry
 from solver.scenes.plane import PlaneSettings
@@ -136,6 +135,7 @@ def incline(settings: InclineSettings) -> Stack:
         instants=settings.times(),
         duration=settings.duration,
         spring=Spring(settings.slack, settings.spring),
+        tilt=angle,
     )
 
 
@@ -154,7 +154,7 @@ INCLINE = Entry(
     source="closed form: Coulomb, Théorie des machines simples, 1785",
     settings=InclineSettings,
     kind="plane",
-    discretise=lambda settings: discretise_stack(incline(settings)),
+    data=incline,
     loop=_loop,
     sizes=shared.PLANE_SIZES,
 )

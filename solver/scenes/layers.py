@@ -10,7 +10,6 @@ from solver.discrete.loops import Loop
 from solver.discrete.probes import end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Given, Side, Stack
-from solver.discrete.stack_problem import discretise_stack
 from solver.loads import PRESETS
 from solver.scenes.entry import Entry
 from solver.scenes.plane import PlaneSettings
@@ -199,7 +198,7 @@ LAYERS = Entry(
     source="a leaf spring, or the section of a cable laid flat",
     settings=LayersSettings,
     kind="plane",
-    discretise=lambda settings: discretise_stack(layers(settings)),
+    data=layers,
     loop=_loop,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
 )

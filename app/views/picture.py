@@ -1,0 +1,241 @@
+"""The scene itself: bodies, what holds them, what acts on them, and where they slip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from app.views import sketch
+from app.views.acts import OUTWARD, Act, acts_on, ends_of, holds, size_of
+from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN, GREY, shaded
+from app.views.deformed import fitting
+from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, Word
+from app.views.legend import Key
+from app.views.scales import decimal_scale
+from app.worker.portrait import Portrait, Pose
+from app.worker.shown import Floats
+from solver.arrays import Array
+from solver.discrete.rods import Rods
+from solver.discrete.stack import Stack
+
+ARROW = 0.17
+"""Length of the largest arrow, as a share of the size of what is drawn."""
+LEAST = 0.02
+"""Share of its largest value below which an arrow is not drawn."""
+HATCH, ROOM, WORDS = 0.03, 0.06, 0.36
+"""Depth of a hatch, room around what is drawn, and for words beside it; shares of the size."""
+SHADES = shaded(64)
+SLIPS = ((-1, BACKWARD), (1, FORWARD))
+
+
+def draw(scene: Scene, kept: float | None) -> Drawing:
+    """Draw the scene at the chosen instant; displacements are magnified until they show."""
+    portrait, pose = scene.run.stand.portrait, scene.frame.pose
+    factor = scene.look.magnification
+    fit = fitting(portrait.mesh, pose.largest, kept or 1.0)
+    artist = _Artist(portrait, pose, factor or fit, float(scene.run.stand.instants[scene.instant]))
+    acts = acts_on(portrait.data, scene.run.settings)
+    strokes = [Curve(*artist.placed(one), GREY, 1, "dotted") for one in artist.outlines()]
+    strokes += [Curve(*artist.placed(one), GREY, 1.5) for one in artist.held()]
+    words = []
+    for act in acts:
+        color = GIVEN if act.unit == "m" else FORCE
+        arrows, found = artist.arrows(act)
+        strokes.append(Curve(*artist.placed(arrows), color, 2.5))
+        words += [Word(*artist.placed(place), text, color, *align) for place, text, align in found]
+    width = 7 if portrait.chains.max() == 0 else 4
+    slips = [Curve(*artist.placed(artist.band(status)), color, width) for status, color in SLIPS]
+    last = max(int(portrait.mesh.parts.max()), 1)
+    return Drawing(
+        bodies=Bodies(
+            portrait.mesh.quads,
+            np.stack(artist.placed(artist.nodes), axis=1).astype(np.float32),
+            portrait.mesh.parts.astype(np.float32),
+            artist.box(acts),
+        ),
+        colors=Colors(0, last, ()),
+        curves=[*strokes, *slips],
+        words=words,
+        keys=_keys(portrait, factor or fit),
+        kept=fit,
+    )
+
+
+def _keys(portrait: Portrait, factor: float) -> tuple[Key, ...]:
+    keys = [Key(BACKWARD, "square", "slip −"), Key(FORWARD, "square", "slip +")]
+    keys.append(Key(GREY, "bare", f"displacement × {factor:g}"))
+    if isinstance(portrait.data, Rods):
+        keys.append(Key(GREY, "bare", "thickness not to scale"))
+    return tuple(keys)
+
+
+class _Artist:
+    """Draws one instant, in the axes of the bodies; `placed` turns them as they lie."""
+
+    def __init__(self, portrait: Portrait, pose: Pose, factor: float, time: float) -> None:
+        self._portrait, self._pose, self._factor, self._time = portrait, pose, factor, time
+        self._data = portrait.data
+        self._length, self._height = size_of(self._data)
+        self._size = max(self._length, self._height)
+        tilt = self._data.tilt if isinstance(self._data, Stack) else None
+        self._tilts = np.zeros(1) if tilt is None else tilt
+        self._tilt = float(self._now(tilt)) if tilt is not None else 0.0
+        self.nodes: Array = portrait.mesh.nodes + np.float32(factor) * pose.displacement
+
+    def placed(self, points: Array) -> tuple[Array, Array]:
+        """Give x and y of points on the page."""
+        found = sketch.turned(np.asarray(points, dtype=np.float64), self._tilt)
+        return found[..., 0], found[..., 1]
+
+    def box(self, acts: Sequence[Act]) -> tuple[float, float, float, float]:
+        """Give left, right, low and high end of what is to be seen at any instant."""
+        moves = self._factor * self._pose.largest
+        sides = dict.fromkeys(OUTWARD, ROOM * self._size + moves)
+        for act in acts:
+            side = next(name for name, away in OUTWARD.items() if away == act.away)
+            words = WORDS * self._size if side in ("left", "right") else 0.0
+            sides[side] = max(sides[side], (ARROW + ROOM) * self._size + words + moves)
+        left, low = -sides["left"], -sides["bottom"]
+        right, high = self._length + sides["right"], self._height + sides["top"]
+        corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+        angles = np.linspace(float(self._tilts.min()), float(self._tilts.max()), 5)
+        found = np.concatenate([sketch.turned(corners, float(angle)) for angle in angles])
+        (left, low), (right, high) = found.min(axis=0), found.max(axis=0)
+        return float(left), float(right), float(low), float(high)
+
+    def outlines(self) -> Iterator[Array]:
+        """Give the undeformed bodies."""
+        nodes = self._portrait.mesh.nodes[self._portrait.mesh.quads]
+        bodies = self._data.wires if isinstance(self._data, Rods) else self._data.bodies
+        for body in nodes.reshape(bodies, -1, 2):
+            (left, low), (right, high) = body.min(axis=0), body.max(axis=0)
+            yield sketch.line((left, low), (right, low), (right, high), (left, high), (left, low))
+
+    def held(self) -> Iterator[Array]:
+        """Give what holds the bodies: supports, clamps, rollers, a spring."""
+        return self._rods_held(self._data) if isinstance(self._data, Rods) else self._stack_held()
+
+    def _rods_held(self, data: Rods) -> Iterator[Array]:
+        depth = HATCH * self._size
+        moved = 0.0 if data.support is None else self._factor * float(self._now(data.support))
+        clamp = sketch.line((moved, -depth), (moved, self._height + depth))
+        yield sketch.hatched(clamp, depth, behind=1.0)
+        if data.wires > 1:
+            return
+        rubs = np.flatnonzero(data.bound > 0.0)
+        for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
+            if len(run) > 1:
+                ends = data.nodes[run[[0, -1]]]
+                edge = sketch.line((ends[0], 0.0), (ends[1], 0.0))
+                yield sketch.hatched(edge, depth)
+
+    def _stack_held(self) -> Iterator[Array]:
+        data, depth = self._data, HATCH * self._size
+        assert isinstance(data, Stack)
+        if data.support is not None:
+            x = np.linspace(0.0, self._length, len(data.support.gap))
+            edge = np.stack([x, -self._factor * data.support.gap], axis=1)
+            beyond = ROOM * self._size + self._factor * self._pose.largest
+            aside = np.array([[beyond, 0.0]])
+            edge = np.concatenate([edge[:1] - aside, edge, edge[-1:] + aside])
+            yield sketch.hatched(edge, depth)
+        for name, side in data.sides.items():
+            how, (first, last) = holds(side), ends_of(name, self._length, self._height)
+            if how == "clamp":
+                behind = 1.0 if name in ("left", "top") else -1.0
+                yield sketch.hatched(np.stack([first, last]), depth, behind)
+            elif how == "rollers":
+                aside = 0.5 * depth * np.array(OUTWARD[name])
+                yield sketch.rollers(first + aside, last + aside, 0.5 * depth)
+        if data.spring is not None:
+            foot = self._moved(np.array([[self._length, 0.0]]))[0] + [0.0, depth]
+            wall = np.array([self._length + 0.25 * self._size, depth])
+            yield sketch.spring(foot, wall, 0.5 * depth)
+            half = np.array([0.0, depth])
+            yield sketch.hatched(np.stack([wall - half, wall + half]), depth)
+
+    def arrows(self, act: Act) -> tuple[Array, list[tuple[Array, str, tuple[str, str]]]]:
+        """Give the arrows of what acts, and the value beside them: place, words, alignment."""
+        peak = float(np.abs(act.values).max())
+        unit, name = decimal_scale(peak, act.unit)
+        now = self._now(act.values)
+        shares = np.broadcast_to(now / peak, len(act.places))
+        towards, away = np.array(act.towards), np.array(act.away)
+        if towards.ndim > 1:
+            towards = self._now(towards)
+        is_aside = np.ndim(act.towards) < 2 and abs(float(towards @ away)) < 0.5
+        ends, drawn, words = [], [], []
+        for place, share in zip(self._moved(act.places), shares, strict=True):
+            length = ARROW * self._size * float(share) * towards
+            base = place + (0.5 * ROOM * self._size) * away if is_aside else place
+            if is_aside:
+                tail, head = base - 0.5 * length, base + 0.5 * length
+            elif length @ away >= 0.0:
+                tail, head = base, base + length
+            else:
+                tail, head = base - length, base
+            if abs(share) > LEAST:
+                drawn.append(sketch.arrow(tail, head, self._size))
+            outer = base if is_aside else max((tail, head), key=lambda end: float(end @ away))
+            ends.append(outer + 0.25 * ROOM * self._size * away)
+        chosen = range(len(ends)) if np.ndim(now) else [len(ends) // 2]
+        for number in chosen:
+            value = float(np.broadcast_to(now, len(ends))[number]) / unit
+            says = f"{act.symbol} = {_plain(value)} {name}"
+            words.append((ends[number], says, _aligned(act.away)))
+        return sketch.joined(drawn), words
+
+    def band(self, status: int) -> Array:
+        """Give the stretches of all contacts that have a status."""
+        pose, portrait = self._pose, self._portrait
+        places = portrait.places + np.float32(self._factor) * pose.slid
+        strokes = []
+        for chain in range(int(portrait.chains.max()) + 1):
+            own = portrait.chains == chain
+            strokes += _stretches(places[own], pose.status[own] == status)
+        return sketch.joined(strokes)
+
+    def _moved(self, places: Array) -> Array:
+        """Give where the nodes nearest to undeformed places have gone, as seen from there."""
+        nodes = self._portrait.mesh.nodes
+        nearest = [int(np.argmin(np.sum((nodes - place) ** 2, axis=1))) for place in places]
+        return np.asarray(places + self._factor * self._pose.displacement[nearest])
+
+    def _now(self, values: Array) -> Array:
+        """Give values over time at the chosen instant."""
+        instants = self._data.instants
+        flat = np.atleast_2d(values)
+        found = np.array([np.interp(self._time, instants, one) for one in flat])
+        return found if values.ndim > 1 else found[0]
+
+
+def _stretches(places: Floats, chosen: Array) -> list[Array]:
+    """Give a line over every run of chosen points, which reaches halfway to its neighbours."""
+    if len(places) == 1:
+        return []
+    middles = 0.5 * (places[1:] + places[:-1])
+    ends = np.concatenate([places[:1], middles, places[-1:]])
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], chosen.astype(np.int8), [0]])))
+    return [
+        np.concatenate([ends[[first]], places[first:last], ends[[last]]])
+        for first, last in edges.reshape(-1, 2)
+    ]
+
+
+def _aligned(away: tuple[float, float]) -> tuple[str, str]:
+    """Say how words stand beside what points away from a body: across and up."""
+    across = {1.0: "left", -1.0: "right"}.get(away[0], "center")
+    return across, {1.0: "bottom", -1.0: "top"}.get(away[1], "middle")
+
+
+def _plain(value: float) -> str:
+    """Write a number with three digits at most, and zero without a sign."""
+    return f"{value:.3g}".replace("-", "−") if abs(value) > 1e-9 else "0"
+
+
+VIEW = View(
+    "Scene",
+    Plot("", "", palette=tuple(SHADES), equal=True, words=True),
+    draw,
+)
