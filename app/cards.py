@@ -18,8 +18,8 @@ class Cards(dict[View, pn.Column]):
     Parameters
     ----------
     choices
-        What a tap or a drag on a plot tells, by what it chooses: "instant" with a time, s, and
-        "substructure" with a number.
+        What a tap or a drag on a plot tells, by what it chooses: "instant" and "time" with a
+        time, s, and "substructure" with a number.
     """
 
     def __init__(self, choices: dict[str, Callable[[float], None]]) -> None:

@@ -81,6 +81,7 @@ class Dashboard:
         self._looks = Looks(session)
         chosen = {
             "instant": self.transport.choose_time,
+            "time": self.transport.choose_time,
             "substructure": self.transport.choose_substructure,
         }
         self._cards = Cards(chosen)

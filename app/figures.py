@@ -42,6 +42,23 @@ figure.x_range.setv({start: x - 0.5 * scale * wide, end: x + 0.5 * scale * wide}
 figure.y_range.setv({start: y - 0.5 * scale * tall, end: y + 0.5 * scale * tall}, {sync: false})
 """
 """Makes both axes of one scale, however large the plot is."""
+PICK = """
+const {xs, ys, value} = source.data, {x, y} = cb_obj
+const holds = (across, up) => {
+  let inside = false
+  for (let i = 0, j = across.length - 1; i < across.length; j = i++) {
+    const between = up[i] > y !== up[j] > y
+    if (between && x < across[i] + (y - up[i]) / (up[j] - up[i]) * (across[j] - across[i])) {
+      inside = !inside
+    }
+  }
+  return inside
+}
+for (let i = 0; i < xs.length; i++) {
+  if (holds(xs[i], ys[i])) { figure.tags = [value[i] + 1]; break }
+}
+"""
+"""Tells the server, by the figure's tag, which substructure was tapped; it has not the bodies."""
 SHADES = 180
 
 
@@ -62,9 +79,19 @@ def make_figure(view: View, choose: Callable[[float], None]) -> Plot:
     if plot.words:
         _add_words(made, view)
     if plot.chooses:
-        made.on_event(Tap, lambda event: choose(event.y))
-        made.on_event(Pan, lambda event: choose(event.y))
+        _listen(made, view, choose)
     return made
+
+
+def _listen(made: Plot, view: View, choose: Callable[[float], None]) -> None:
+    if view.plot.equal:
+        source = made.select_one({"name": f"{view.slug}.bodies"})
+        made.js_on_event(Tap, CustomJS(args={"figure": made, "source": source}, code=PICK))
+        made.on_change("tags", lambda name, old, new: choose(*new))
+        return
+    along = "x" if view.plot.chooses == "time" else "y"
+    for event in (Tap, Pan):
+        made.on_event(event, lambda event: choose(getattr(event, along)))
 
 
 def _axes(view: View) -> Plot:

@@ -185,7 +185,8 @@ class Plot:
     names
         What the name of a curve is called where one points at it; empty shows none.
     chooses
-        What a tap or a drag chooses with its height: "instant", "substructure" or nothing.
+        What a tap or a drag chooses: with its height "instant" or "substructure", with its place
+        along x "time"; or nothing.
     whole
         Whether the values across, up, or both are whole numbers: "", "x", "y".
     """

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.views import sketch
 from app.views.acts import OUTWARD, Act, acts_on, ends_of, holds, size_of
-from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN, GREY, shaded
+from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN, GREY, VERMILION, shaded
 from app.views.deformed import fitting
 from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, Word
 from app.views.legend import Key
@@ -17,7 +17,7 @@ from app.worker.portrait import Portrait, Pose
 from app.worker.shown import Floats
 from solver.arrays import Array
 from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack
+from solver.discrete.stack import Stack, Support
 
 ARROW = 0.17
 """Length of the largest arrow, as a share of the size of what is drawn."""
@@ -25,6 +25,8 @@ LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn."""
 HATCH, ROOM, WORDS = 0.03, 0.06, 0.36
 """Depth of a hatch, room around what is drawn, and for words beside it; shares of the size."""
+DEEPEST = 0.2
+"""Gap below a body that is drawn at most, as a share of the size."""
 SHADES = shaded(64)
 SLIPS = ((-1, BACKWARD), (1, FORWARD))
 
@@ -38,15 +40,20 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
     acts = acts_on(portrait.data, scene.run.settings)
     strokes = [Curve(*artist.placed(one), GREY, 1, "dotted") for one in artist.outlines()]
     strokes += [Curve(*artist.placed(one), GREY, 1.5) for one in artist.held()]
+    last = int(portrait.mesh.parts.max())
     words = []
     for act in acts:
         color = GIVEN if act.unit == "m" else FORCE
         arrows, found = artist.arrows(act)
         strokes.append(Curve(*artist.placed(arrows), color, 2.5))
         words += [Word(*artist.placed(place), text, color, *align) for place, text, align in found]
+    settings = scene.run.settings
+    if settings.is_reduced and last:
+        chosen = scene.look.substructure
+        part = last if chosen is None else min(chosen, last)
+        strokes += [Curve(*artist.placed(one), VERMILION, 2.5) for one in artist.outline_of(part)]
     width = 7 if portrait.chains.max() == 0 else 4
     slips = [Curve(*artist.placed(artist.band(status)), color, width) for status, color in SLIPS]
-    last = max(int(portrait.mesh.parts.max()), 1)
     return Drawing(
         bodies=Bodies(
             portrait.mesh.quads,
@@ -54,7 +61,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
             portrait.mesh.parts.astype(np.float32),
             artist.box(acts),
         ),
-        colors=Colors(0, last, ()),
+        colors=Colors(0, max(last, 1), ()),
         curves=[*strokes, *slips],
         words=words,
         keys=_keys(portrait, factor or fit),
@@ -91,7 +98,9 @@ class _Artist:
     def box(self, acts: Sequence[Act]) -> tuple[float, float, float, float]:
         """Give left, right, low and high end of what is to be seen at any instant."""
         moves = self._factor * self._pose.largest
-        sides = dict.fromkeys(OUTWARD, ROOM * self._size + moves)
+        sides = dict.fromkeys(OUTWARD, (ROOM + HATCH) * self._size + moves)
+        if isinstance(self._data, Stack) and self._data.support is not None:
+            sides["bottom"] = float(self._gap(self._data.support).max()) + 2 * HATCH * self._size
         for act in acts:
             side = next(name for name, away in OUTWARD.items() if away == act.away)
             words = WORDS * self._size if side in ("left", "right") else 0.0
@@ -111,6 +120,15 @@ class _Artist:
         for body in nodes.reshape(bodies, -1, 2):
             (left, low), (right, high) = body.min(axis=0), body.max(axis=0)
             yield sketch.line((left, low), (right, low), (right, high), (left, high), (left, low))
+
+    def outline_of(self, part: int) -> Iterator[Array]:
+        """Give the deformed edge of a substructure: sides that only one of its quads has."""
+        quads = self._portrait.mesh.quads[self._portrait.mesh.parts == part]
+        sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2)
+        _, first, counts = np.unique(
+            np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
+        )
+        yield sketch.joined(self.nodes[sides[first[counts == 1]]])
 
     def held(self) -> Iterator[Array]:
         """Give what holds the bodies: supports, clamps, rollers, a spring."""
@@ -135,7 +153,7 @@ class _Artist:
         assert isinstance(data, Stack)
         if data.support is not None:
             x = np.linspace(0.0, self._length, len(data.support.gap))
-            edge = np.stack([x, -self._factor * data.support.gap], axis=1)
+            edge = np.stack([x, -self._gap(data.support)], axis=1)
             beyond = ROOM * self._size + self._factor * self._pose.largest
             aside = np.array([[beyond, 0.0]])
             edge = np.concatenate([edge[:1] - aside, edge, edge[-1:] + aside])
@@ -196,6 +214,10 @@ class _Artist:
             strokes += _stretches(places[own], pose.status[own] == status)
         return sketch.joined(strokes)
 
+    def _gap(self, support: Support) -> Array:
+        """Give the gap as it is drawn: magnified as displacements are, and at most so deep."""
+        return np.minimum(self._factor * support.gap, DEEPEST * self._size)
+
     def _moved(self, places: Array) -> Array:
         """Give where the nodes nearest to undeformed places have gone, as seen from there."""
         nodes = self._portrait.mesh.nodes
@@ -236,6 +258,6 @@ def _plain(value: float) -> str:
 
 VIEW = View(
     "Scene",
-    Plot("", "", palette=tuple(SHADES), equal=True, words=True),
+    Plot("", "", palette=tuple(SHADES), equal=True, words=True, chooses="substructure"),
     draw,
 )

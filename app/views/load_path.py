@@ -1,0 +1,62 @@
+"""What acts on the structure over time, and the chosen instant."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.views.acts import acts_on
+from app.views.colors import BLUE, FORCE, GREEN, GREY, PURPLE, VERMILION
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
+from app.views.legend import Key
+from app.views.scales import ROOM, across, decimal_scale, spanned, upright
+from solver.arrays import Array
+from solver.discrete.stack import Stack
+
+COLORS = (FORCE, BLUE, GREEN, PURPLE, GREY)
+
+
+def draw(scene: Scene, _kept: None) -> Drawing | None:
+    """Draw every load that changes, or that of a constant one; of several units, shares of each."""
+    data = scene.run.stand.portrait.data
+    paths = _paths(scene)
+    if not paths:
+        return None
+    units = {unit for _, unit, _ in paths}
+    peaks = [float(np.abs(values).max()) or 1.0 for _, _, values in paths]
+    top = max(peaks)
+    factor, unit = decimal_scale(top, units.pop()) if len(units) == 1 else (0.0, "of the largest")
+    time = float(scene.run.stand.instants[scene.instant])
+    x = spanned(float(data.instants[0]), float(data.instants[-1]))
+    shown = [values / (factor or peak) for (_, _, values), peak in zip(paths, peaks, strict=True)]
+    low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
+    room = (ROOM - 1.0) * (max(high, 0.0) - min(low, 0.0) or 1.0)
+    y = Axis(min(low, 0.0) - room, max(high, 0.0) + room, label=f"Load ({unit})")
+    curves = [across([0.0], x, color=GREY, alpha=0.4, width=1)]
+    keys = []
+    for (symbol, own, _), values, peak, color in zip(paths, shown, peaks, COLORS, strict=False):
+        curves.append(Curve(data.instants, values, color))
+        size, name = decimal_scale(peak, own)
+        keys.append(Key(color, "line", f"{symbol}, {peak / size:.3g} {name}"))
+    curves.append(upright([time], y, color=VERMILION, width=2))
+    now = [np.interp(time, data.instants, one) for one in shown[: len(COLORS)]]
+    return Drawing(x, y, curves, [Marks([time] * len(now), now, VERMILION)], keys=keys)
+
+
+def _paths(scene: Scene) -> list[tuple[str, str, Array]]:
+    """Give the loads that change, with symbol and unit; or all, if none does."""
+    data = scene.run.stand.portrait.data
+    found = [
+        (act.symbol, act.unit, np.atleast_2d(act.values)[-1])
+        for act in acts_on(data, scene.run.settings)
+    ]
+    if isinstance(data, Stack) and data.tilt is not None:
+        found.insert(0, ("θ", "°", np.degrees(data.tilt)))
+    return [path for path in found if np.ptp(path[2]) > 0.0] or found
+
+
+VIEW = View(
+    "Load path",
+    Plot("Time t (s)", "Load", marks=(Marks((), (), VERMILION),), chooses="time"),
+    draw,
+    has_instants,
+)

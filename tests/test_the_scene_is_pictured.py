@@ -1,0 +1,193 @@
+"""The picture of a scene shows what holds it, what acts on it now, and where it slips."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from studios import ALL, Shown
+from test_views_say_what_they_draw import SMALL, looked_at
+
+from app.views import load_path, picture, sketch
+from app.views.acts import acts_on, holds
+from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN
+from app.views.drawing import Curve, Drawing, Scene
+from solver.scenes import CATALOGUE, data_of
+from solver.scenes.bar import BarSettings
+from solver.scenes.block import BlockSettings
+
+LENGTH = BarSettings.checked({}).length
+
+
+def pictured(scene: Scene) -> Drawing:
+    return picture.draw(scene, None)
+
+
+def of_color(drawing: Drawing, color: str) -> list[Curve]:
+    return [curve for curve in drawing.curves if curve.color == color]
+
+
+def says(drawing: Drawing) -> dict[str, str]:
+    """Give the values that stand in a picture, by what they are called."""
+    return dict(word.text.split(" = ") for word in drawing.words)
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_all_that_is_drawn_lies_in_what_is_seen(scene: str) -> None:
+    shown = looked_at(scene)
+    for instant in (0, 5, len(shown.run.stand.instants) - 1):
+        drawing = pictured(Scene(**{**vars(shown), "instant": instant}))
+        assert drawing.bodies is not None
+        left, right, low, high = drawing.bodies.box
+        for x, y in [
+            *((curve.x, curve.y) for curve in drawing.curves),
+            *((word.x, word.y) for word in drawing.words),
+            drawing.bodies.places.T,
+        ]:
+            within = np.isnan(x) | ((np.asarray(x) >= left) & (np.asarray(x) <= right))
+            within &= np.isnan(y) | ((np.asarray(y) >= low) & (np.asarray(y) <= high))
+            assert within.all()
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_every_substructure_has_a_colour_of_its_own(scene: str) -> None:
+    shown = looked_at(scene)
+    drawing = pictured(shown)
+    assert drawing.bodies is not None
+    assert set(drawing.bodies.values) == set(range(shown.run.settings.n_substructures))
+
+
+@pytest.mark.parametrize("instant", [5, 15])
+def test_the_load_arrow_follows_the_load_and_says_its_value(instant: int) -> None:
+    shown = Shown()
+    shown.run(1, "bar", SMALL["bar"])
+    scene = shown.scene(instant=instant)
+    load = float(scene.run.stand.portrait.data.load[instant])
+    drawing = pictured(scene)
+    assert abs(load) == pytest.approx(900.0)
+    assert says(drawing)["F"] == f"{load / 1e3:.3g} kN".replace("-", "−")
+    tail, head = np.asarray(of_color(drawing, FORCE)[0].x, float)[:2]
+    assert np.sign(head - tail) == np.sign(load)
+    assert min(tail, head) > 0.9 * LENGTH
+
+
+def test_an_unloaded_instant_has_no_arrow_but_its_value() -> None:
+    shown = Shown()
+    shown.run(1, "bar", {**SMALL["bar"], "pressure": 0.0})
+    drawing = pictured(shown.scene(instant=0))
+    assert says(drawing) == {"F": "0 kN"}
+    assert np.isnan(np.asarray(of_color(drawing, FORCE)[0].x)).all()
+
+
+def test_slip_is_marked_where_the_status_says_so() -> None:
+    shown = Shown()
+    shown.run(1, "bar", SMALL["bar"])
+    scene = shown.scene(instant=3)
+    status = scene.frame.iterate.status[:, scene.frame.sampler._column(ALL)]
+    assert set(status) == {-1, 0}
+    drawing = pictured(scene)
+    (slips,) = of_color(drawing, BACKWARD)
+    slipping = scene.run.stand.positions[status == -1]
+    assert np.nanmin(slips.x) == pytest.approx(slipping[0], abs=0.6 * LENGTH / 20)
+    assert np.isnan(np.asarray(of_color(drawing, FORWARD)[0].x)).all()
+
+
+def test_a_gap_in_the_support_is_seen() -> None:
+    whole, gap = (
+        len(np.asarray(pictured(looked_at("bar", {"pressure_profile": profile})).curves[2].x))
+        for profile in ("uniform", "gap")
+    )
+    assert gap < whole
+
+
+def test_a_slope_is_drawn_as_steep_as_it_is_and_the_weight_points_down() -> None:
+    scene = looked_at("incline")
+    data = scene.run.stand.portrait.data
+    angle = float(data.tilt[scene.instant])
+    assert angle > 0.1
+    drawing = pictured(scene)
+    assert drawing.bodies is not None
+    mesh = scene.run.stand.portrait.mesh
+    first, last = drawing.bodies.places[[0, np.argmax(mesh.nodes @ [1.0, -10.0])]]
+    assert np.arctan2(*(last - first)[::-1]) == pytest.approx(angle, abs=0.02)
+    arrow = of_color(drawing, FORCE)[0]
+    assert np.asarray(arrow.x)[0] == pytest.approx(np.asarray(arrow.x)[1], abs=1e-9)
+    assert np.asarray(arrow.y)[1] < np.asarray(arrow.y)[0]
+    assert says(drawing) == {"W": "1 kN"}
+
+
+def test_displacements_are_magnified_as_one_chooses() -> None:
+    scene = looked_at("bar")
+    fitted, chosen = (
+        pictured(Scene(**{**vars(scene), "look": look}))
+        for look in (ALL, type(ALL)(views=ALL.views, magnification=1000.0))
+    )
+    mesh = scene.run.stand.portrait.mesh
+    assert fitted.bodies is not None
+    assert chosen.bodies is not None
+    moved = [drawing.bodies.places[:, 0] - mesh.nodes[:, 0] for drawing in (fitted, chosen)]
+    assert moved[1] == pytest.approx(moved[0] * 1000.0 / fitted.kept, rel=1e-3, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "symbols"),
+    [
+        ({"top": "displacement"}, {"m"}, {"u"}),
+        ({"top": "traction", "top_normal_traction": -1e6}, {"Pa"}, {"σ"}),
+        ({"left": "clamped", "body_force_y": -1e4, "top": "free"}, {"N"}, {"W"}),
+    ],
+)
+def test_what_acts_has_its_unit_and_its_symbol(
+    values: dict[str, Any], unit: set[str], symbols: set[str]
+) -> None:
+    settings = BlockSettings.checked({**SMALL["block"], "gap": "flat", **values})
+    acts = acts_on(data_of(settings), settings)
+    assert {act.unit for act in acts} == unit
+    assert {act.symbol for act in acts} == symbols
+
+
+@pytest.mark.parametrize(
+    ("kind", "how"), [("clamped", "clamp"), ("roller", "rollers"), ("free", ""), ("traction", "")]
+)
+def test_sides_are_held_as_they_say(kind: str, how: str) -> None:
+    settings = BlockSettings.checked({**SMALL["block"], "left": kind})
+    assert holds(data_of(settings).sides["left"]) == how
+
+
+def test_a_hatch_lies_behind_its_edge() -> None:
+    edge = sketch.line((0.0, 0.0), (1.0, 0.0))
+    below, above = (sketch.hatched(edge, 0.1, behind) for behind in (-1.0, 1.0))
+    assert np.nanmin(below[:, 1]) == pytest.approx(-0.1)
+    assert np.nanmax(below[:, 1]) == 0.0
+    assert np.nanmax(above[:, 1]) == pytest.approx(0.1)
+
+
+def marks(drawing: Drawing | None) -> Sequence[Any]:
+    assert drawing is not None
+    return drawing.marks
+
+
+def test_the_load_path_shows_the_chosen_instant_on_the_load() -> None:
+    shown = Shown()
+    shown.run(1, "bar", SMALL["bar"])
+    scene = shown.scene(instant=5)
+    drawing = load_path.draw(scene, None)
+    assert drawing is not None
+    (mark,) = marks(drawing)
+    assert list(mark.x) == pytest.approx([0.25])
+    assert list(mark.y) == pytest.approx([0.9])
+    assert [key.text for key in drawing.keys] == ["F, 900 N"] or [
+        key.text for key in drawing.keys
+    ] == ["F, 0.9 kN"]
+
+
+def test_loads_of_several_units_are_drawn_as_shares_of_their_largest_values() -> None:
+    drawing = load_path.draw(looked_at("bar", {"support_displacement": 1e-4}), None)
+    assert drawing is not None
+    assert {key.text.split(",")[0] for key in drawing.keys} == {"F", "u"}
+    assert drawing.y is not None
+    assert drawing.y.label == "Load (of the largest)"
+    assert drawing.y.high < 1.5
+    assert of_color(drawing, GIVEN) == []
