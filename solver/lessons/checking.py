@@ -1,0 +1,37 @@
+"""Testing what a lesson claims, by runs of the engine."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from solver.checked import dump
+from solver.lessons.lesson import Checkpoint, Lesson
+from solver.study.finished import FinishedRun, finished_run
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """A checkpoint, and what was measured, in the unit of its quantity."""
+
+    checkpoint: Checkpoint
+    value: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim holds."""
+        return self.checkpoint.expected.holds(self.value)
+
+
+def check(lesson: Lesson) -> Iterator[Outcome]:
+    """Measure what a lesson claims, in order; checkpoints of equal settings share a run."""
+    errors: defaultdict[str, bool] = defaultdict(bool)
+    for one in lesson.checkpoints:
+        errors[dump(one.settings)] |= one.reading.quantity.reads_errors
+    runs: dict[str, FinishedRun] = {}
+    for one in lesson.checkpoints:
+        key = dump(one.settings)
+        if key not in runs:
+            runs[key] = finished_run(one.settings, errors=errors[key])
+        yield Outcome(one, one.reading(runs[key]))
