@@ -144,11 +144,11 @@ def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
     if len(controls) > MOST_CONTROLS:
         allowed = f"at most {MOST_CONTROLS} settings"
         raise SettingError("controls", controls, allowed, "a lesson is about one thing")
-    idle = [one for one in settings.definitions() if settings.applies(one)]
+    working = [one for one in settings.definitions() if settings.applies(one)]
     for one in controls:
-        if one not in idle:
+        if one not in working:
             remedy = "name a setting that does something with the lesson's settings"
-            raise SettingError("controls", one, ", ".join(idle), remedy)
+            raise SettingError("controls", one, ", ".join(working), remedy)
 
 
 def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
