@@ -26,12 +26,15 @@ class Outcome:
 
 def check(lesson: Lesson) -> Iterator[Outcome]:
     """Measure what a lesson claims, in order; checkpoints of equal settings share a run."""
-    errors: defaultdict[str, bool] = defaultdict(bool)
+    wanted: defaultdict[str, set[str | None]] = defaultdict(set)
     for one in lesson.checkpoints:
-        errors[dump(one.settings)] |= one.reading.quantity.reads_errors
+        wanted[dump(one.settings)].add(one.reading.quantity.reads)
     runs: dict[str, FinishedRun] = {}
     for one in lesson.checkpoints:
         key = dump(one.settings)
         if key not in runs:
-            runs[key] = finished_run(one.settings, errors=errors[key])
+            reads = wanted[key]
+            runs[key] = finished_run(
+                one.settings, errors="errors" in reads, indicators="indicators" in reads
+            )
         yield Outcome(one, one.reading(runs[key]))

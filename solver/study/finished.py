@@ -83,7 +83,9 @@ class FinishedRun:
         return found * scales.force * scales.displacement
 
 
-def finished_run(settings: Settings, *, errors: bool = True) -> FinishedRun:
+def finished_run(
+    settings: Settings, *, errors: bool = True, indicators: bool = True
+) -> FinishedRun:
     """Run a scene to its stop rule.
 
     Parameters
@@ -93,6 +95,8 @@ def finished_run(settings: Settings, *, errors: bool = True) -> FinishedRun:
     errors
         Whether the distance to a reference is wanted, which takes its time; where there is none,
         the run is made without.
+    indicators
+        Whether the indicators of every iteration are wanted, which take theirs.
     """
     problem = discretise(settings)
     distance = None
@@ -103,5 +107,5 @@ def finished_run(settings: Settings, *, errors: bool = True) -> FinishedRun:
             reference = None
         if reference is not None and reference.converged.all():
             distance = distance_to(reference, problem)
-    solution = solve(problem, settings, distance=distance)
+    solution = solve(problem, settings, distance=distance, watch=indicators)
     return FinishedRun(settings, solution, distance is not None)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 from solver.definitions import SettingError
 from solver.reduction.svd import InterfaceField
@@ -58,8 +59,9 @@ class Quantity:
         waited for never comes.
     parameter
         What it may be asked with.
-    reads_errors
-        Whether it needs the distance to a reference.
+    reads
+        What the records must hold for it, which takes its time: distances to a reference, or the
+        indicators of every iteration.
     """
 
     name: str
@@ -67,7 +69,7 @@ class Quantity:
     unit: str
     of: Callable[[FinishedRun, float | None], float]
     parameter: Parameter | None = None
-    reads_errors: bool = False
+    reads: Literal["errors", "indicators"] | None = None
 
 
 @dataclass(frozen=True)
@@ -89,22 +91,22 @@ class Reading:
         return self.quantity.of(run, self.at)
 
 
-def _recorded(column: str, title: str, *, reads_errors: bool = False) -> Quantity:
-    return Quantity(column, title, "", measures.recorded(column), ITERATION, reads_errors)
+def _recorded(column: str, title: str, reads: Literal["errors", "indicators"]) -> Quantity:
+    return Quantity(column, title, "", measures.recorded(column), ITERATION, reads)
 
 
 def _until(name: str, title: str, column: str, error: str, unit: str = "") -> Quantity:
-    return Quantity(name, title, unit, measures.until(column, error), WITHIN, reads_errors=True)
+    return Quantity(name, title, unit, measures.until(column, error), WITHIN, "errors")
 
 
 _ALL = (
     Quantity("iterations", "Iterations", "", lambda run, at: run.iterate.number),
     Quantity("seconds", "Run time", "s", measures.recorded("seconds")),
-    _recorded("indicator", "LATIN indicator"),
-    _recorded("behaviour", "k-free indicator"),
-    _recorded("estimated_error", "Estimated error of the contact force"),
-    _recorded("error_displacement", "Error of the displacement", reads_errors=True),
-    _recorded("error_force", "Error of the contact force", reads_errors=True),
+    _recorded("indicator", "LATIN indicator", "indicators"),
+    _recorded("behaviour", "k-free indicator", "indicators"),
+    _recorded("estimated_error", "Estimated error of the contact force", "indicators"),
+    _recorded("error_displacement", "Error of the displacement", "errors"),
+    _recorded("error_force", "Error of the contact force", "errors"),
     _until(
         "iterations_to_displacement",
         "Iterations to an error of the displacement of",
