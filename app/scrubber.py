@@ -7,7 +7,7 @@ updated many times a second).
 
 from __future__ import annotations
 
-from typing import Any
+from typing import ClassVar
 
 import param
 
@@ -39,33 +39,5 @@ class Scrubber(Prompt):
     shown = param.Integer(default=0)
     wanted = param.Integer(default=-1)
 
-    _esm = """
-    export function render({model, el}) {
-      const label = document.createElement("label")
-      const text = document.createElement("output")
-      const range = document.createElement("input")
-      range.type = "range"
-      label.append(document.createElement("span"), text, range)
-      const show = () => {
-        label.title = model.help
-        range.ariaLabel = model.label
-        label.firstChild.textContent = model.label + ": "
-        text.textContent = model.text
-        range.min = model.start
-        range.max = model.end
-        if (!held) { range.value = model.shown }
-      }
-      let held = false
-      range.addEventListener("pointerdown", () => {
-        held = true
-        window.addEventListener("pointerup", () => { held = false }, {once: true})
-      })
-      range.addEventListener("input", () => { model.wanted = Number(range.value) })
-      for (const name of ["label", "text", "start", "end", "shown"]) { model.on(name, show) }
-      show()
-      return label
-    }
-    """
-
-    def __init__(self, **params: Any) -> None:
-        super().__init__(stylesheets=[STYLE], **params)
+    _esm = "scrubber.js"
+    _stylesheets: ClassVar[list[str]] = [STYLE]

@@ -1,0 +1,152 @@
+const WAIT = 8000, BEAT = 2000, UNHEARD = 3
+export function render({model, view}) {
+  const found = new Map()
+  const named = (name) => {
+    const kept = found.get(name)
+    if (kept && kept.document) { return kept }
+    found.clear()
+    for (const one of view.model.document._all_models.values()) {
+      // Panes of Panel keep their names to themselves, but not their tags.
+      for (const own of [one.name, ...one.tags]) { found.set(own, one) }
+    }
+    return found.get(name)
+  }
+  const floats = (buffer, at, count) => new Float32Array(buffer, at, count)
+  const corners = (buffer, base, [c, n, p, m]) => {
+    const corner = new Uint32Array(buffer, base + c, n), place = floats(buffer, base + p, m)
+    const xs = [], ys = []
+    for (let i = 0; i < n; i += 4) {
+      const x = new Float32Array(4), y = new Float32Array(4)
+      for (let j = 0; j < 4; j++) {
+        x[j] = place[2 * corner[i + j]]
+        y[j] = place[2 * corner[i + j] + 1]
+      }
+      xs.push(x)
+      ys.push(y)
+    }
+    return {xs, ys}
+  }
+  const image = (buffer, base, [at, rows, columns, dtype]) => {
+    const kind = dtype === "uint8" ? Uint8Array : Float32Array
+    const {ndarray} = Bokeh.require("core/util/ndarray")
+    const numbers = new kind(buffer, base + at, rows * columns)
+    return [ndarray(numbers, {dtype, shape: [rows, columns]})]
+  }
+  const read = (buffer, base, settings) => {
+    const values = {}
+    for (const [key, value] of Object.entries(settings)) {
+      const where = value !== null && typeof value === "object" && !Array.isArray(value)
+      const cut = ([at, count]) => floats(buffer, base + at, count)
+      if (!where) { values[key] = value }
+      else if (value.floats) { values[key] = cut(value.floats) }
+      else if (value.lines) { values[key] = value.lines.map(cut) }
+      else if (value.image) { values[key] = image(buffer, base, value.image) }
+      else { Object.assign(values, corners(buffer, base, value.quads)) }
+    }
+    return values
+  }
+  const paint = () => {
+    const buffer = model.picture
+    if (!buffer || !buffer.byteLength) { return }
+    const length = new DataView(buffer).getUint32(0, true)
+    const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)))
+    for (const [name, part] of Object.entries(header)) {
+      const one = named(name)
+      if (!one) { continue }
+      const values = read(buffer, 4 + length + part.at, part.set)
+      one.setv(one.type === "ColumnDataSource" ? {data: values} : values, {sync: false})
+    }
+  }
+  // A socket may close, or, where a network only falls silent, stay open for minutes.
+  let lost = false, gone = false, closed = null, beats = 0
+  const reach = () => fetch(
+    location.pathname, {method: "HEAD", signal: AbortSignal.timeout(WAIT)}
+  )
+  const come_back = async () => {
+    if (!lost || gone) { return }
+    try {
+      await reach()
+      // Bokeh itself tries but five times, and does not say when it has succeeded.
+      closed?.reconnect()
+      closed = null
+      await new Promise((done) => setTimeout(done, WAIT))
+      // A server that still knows this page has answered; for another one it is made anew.
+      await reach()
+      if (lost && !gone) { location.replace(model.query) }
+    } catch { setTimeout(come_back, 1000) }
+  }
+  const lose = () => {
+    if (gone) { return }
+    const text = "&lt;b&gt;not connected&lt;/b&gt;, trying again"
+    named("status").setv({text}, {sync: false})
+    if (!lost) {
+      lost = true
+      come_back()
+    }
+  }
+  const timer = setInterval(() => {
+    // Bokeh, connected again, asks for a whole page and fails to read it: half of one stays.
+    const kept = Bokeh.documents.filter((one) => one.roots().length)
+    if (kept.length < Bokeh.documents.length) { Bokeh.documents.splice(0, Infinity, ...kept) }
+    if (beats - Math.abs(model.heard) >= UNHEARD) { lose() }
+    if (!closed) { model.beat = ++beats }
+  }, BEAT)
+  view.model.document.on_event("connection_lost", (_, event) => {
+    closed = event
+    lose()
+  })
+  model.on("heard", () => {
+    if (!lost) { return }
+    lost = false
+    model.beat = -++beats
+  })
+  model.on("frame", () => {
+    closed = null
+    const frame = model.frame
+    paint()
+    requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
+      model.painted = frame
+    })))
+  })
+  let count = 0
+  if (window.innerWidth < 640) { model.phone = true }
+  if (window.innerWidth < 900) { model.narrow = true }
+  // The address bar follows, so that a reload comes back; browsers refuse to do it very often.
+  let due = 0
+  const follow = () => history.replaceState(null, "", model.query)
+  model.on("query", () => {
+    clearTimeout(due)
+    due = setTimeout(follow, 300)
+  })
+  model.on("copy", () => {
+    follow()
+    if (navigator.clipboard) { navigator.clipboard.writeText(location.href).catch(() => {}) }
+  })
+  const look = () => { model.hidden = document.visibilityState === "hidden" }
+  const press = (event) => {
+    const typed = event.composedPath()[0]
+    const writes = typed.tagName === "INPUT" && typed.type !== "range" ||
+      typed.tagName === "TEXTAREA" || typed.isContentEditable
+    if (writes || event.ctrlKey || event.metaKey || event.altKey) { return }
+    if (!model.hears || event.repeat || ![" ", "s", "r"].includes(event.key)) { return }
+    // In an open list letters choose; the space bar presses what has the focus.
+    const lists = "[role=option], [role=menuitem], [role=listbox], [role=menu], select"
+    const presses = ", button, summary, [role=combobox], [role=switch]"
+    const keeps = event.key === " " ? lists + presses : lists
+    if (typed.closest && typed.closest(keeps)) { return }
+    event.preventDefault()
+    count += 1
+    model.key = event.key + count
+  }
+  document.addEventListener("visibilitychange", look)
+  document.addEventListener("keydown", press)
+  model.on("remove", () => {
+    gone = true
+    clearInterval(timer)
+    clearTimeout(due)
+    document.removeEventListener("visibilitychange", look)
+    document.removeEventListener("keydown", press)
+  })
+  look()
+  return document.createElement("span")
+}
