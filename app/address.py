@@ -16,6 +16,8 @@ from solver.settings import Settings
 
 DEFAULT_SCENE = "bar"
 TABS = ("Live", "Figures", "Study", "Stability")
+TAB_OF = {tab.lower(): tab for tab in TABS}
+"""Who writes an address by hand need not mind their case."""
 PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
 """Iterations per second."""
 MOST_TOLD = 3
@@ -44,7 +46,7 @@ def sight_from_query(query: str) -> tuple[Sight, str]:
     for name, text in parse_qsl(query.lstrip("?")):
         try:
             if name in SIGHT:
-                value = parse(text) if name == "instant" else text
+                value = parse(text) if name == "instant" else TAB_OF.get(text.lower(), text)
                 found[name] = checked_value(SIGHT[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
@@ -90,7 +92,8 @@ def _together(kind: type[Settings], values: dict[str, Any]) -> tuple[Settings, l
     except SettingError:
         pass
     taken: dict[str, Any] = {}
-    left, refused = values, {}
+    left = values
+    refused: dict[str, str] = {}
     while left:
         # One that was refused may be valid beside one that came later.
         refused = {}

@@ -45,7 +45,9 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
         ("", Sight(), []),
         ("?instant=0.5&pace=5&tab=Study", Sight("Study", 0.5, "5"), []),
         ("?pace=fastest&pace=100", Sight(pace="100"), []),
-        ("?instant=2&pace=7&tab=study", Sight(), ["instant = 2", 'pace = "7"', 'tab = "study"']),
+        ("?tab=figures", Sight("Figures"), []),
+        ("?tab=STUDY&pace=Fastest", Sight("Study"), ['pace = "Fastest"']),
+        ("?instant=2&pace=7&tab=studies", Sight(), ["instant = 2", 'pace = "7"', '"studies"']),
         ("?instant=nan&tab=Figures&seed=2", Sight("Figures"), ["instant"]),
     ],
 )
