@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
-import panel_material_ui as pmui
+from panel_material_ui.template.base import Page
 
 from app.address import PACES, Sight, query_of
 from app.cards import Cards
@@ -167,8 +167,8 @@ class Dashboard:
             margin=(4, 10),
         )
 
-    def _make_page(self) -> pmui.Page:
-        page = pmui.Page(
+    def _make_page(self) -> Page:
+        page = Page(
             title="Slipfront",
             favicon=STATIC / "logo.svg",
             logo=STATIC / "logo.svg",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from bokeh.events import Pan, Tap
 from bokeh.models import (
     Axis,
     BasicTicker,
-    ColorBar,
     ColumnDataSource,
     CustomJS,
     FixedTicker,
@@ -21,11 +21,12 @@ from bokeh.models import (
     LogAxis,
     LogScale,
     MultiLine,
-    Patches,
     Plot,
     Range1d,
     Scatter,
 )
+from bokeh.models.annotations.legends import ColorBar
+from bokeh.models.glyphs import Patches
 
 from app.views.colors import shaded
 from app.views.drawing import View
@@ -74,8 +75,8 @@ def _axes(view: View) -> Plot:
         toolbar_location=None,
         x_scale=LogScale() if "x" in look.logarithmic else LinearScale(),
         y_scale=LogScale() if "y" in look.logarithmic else LinearScale(),
-        x_range=Range1d(1, 2, name=f"{slug}.x"),
-        y_range=Range1d(1, 2, name=f"{slug}.y"),
+        x_range=Range1d(start=1, end=2, name=f"{slug}.x"),
+        y_range=Range1d(start=1, end=2, name=f"{slug}.y"),
         min_border_right=12,
         min_border_top=6,
         # The theme of the page colours only what `figure` has made; the card is seen instead.
@@ -95,7 +96,7 @@ def _axes(view: View) -> Plot:
 
 def _axis(name: str, label: str, view: View) -> Axis:
     look, named = view.plot, f"{view.slug}.{name}-axis"
-    style = {
+    style: dict[str, Any] = {
         "name": named,
         "axis_label": label,
         "axis_label_text_font_size": "14px",
@@ -104,7 +105,8 @@ def _axis(name: str, label: str, view: View) -> Axis:
         "minor_tick_line_color": None,
     }
     if name in look.logarithmic:
-        return LogAxis(ticker=FixedTicker(ticks=[], name=f"{view.slug}.{name}-ticks"), **style)
+        style["ticker"] = FixedTicker(ticks=[], name=f"{view.slug}.{name}-ticks")
+        return LogAxis(**style)
     # Labels are half of what a browser paints.
     least = 1 if name in look.whole else 0
     return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
@@ -135,7 +137,7 @@ def _add_colors(made: Plot, view: View) -> None:
     high = len(palette) - 1 if not plot.scale else 1
     mapper = LinearColorMapper(palette=palette, low=0, high=high, name=f"{slug}.colors")
     if plot.equal:
-        color = {"field": "value", "transform": mapper}
+        color: Any = {"field": "value", "transform": mapper}
         source = _empty(f"{slug}.bodies", "xs", "ys", "value")
         made.add_glyph(source, Patches(fill_color=color, line_color=color, line_width=0.5))
     elif not plot.names:

@@ -14,7 +14,7 @@ from bokeh.document import Document
 from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
 from panel.io.server import DocHandler
-from panel.util import edit_readonly
+from panel.util.parameters import edit_readonly
 
 
 class Prompt(JSComponent):
@@ -28,7 +28,7 @@ class Prompt(JSComponent):
 
 def connections() -> set[Any]:
     """Give the present session's sockets: one that broke and was opened again is another one."""
-    context = pn.state.curdoc.session_context if pn.state.curdoc else None
+    context: Any = pn.state.curdoc.session_context if pn.state.curdoc else None
     return set(context.session._subscribed_connections) if context is not None else set()
 
 
@@ -44,7 +44,7 @@ def send_without_delay(sockets: set[Any]) -> None:
 
 def alive_with(facts: Callable[[], Mapping[str, Any]]) -> None:
     """Have the liveness endpoint of Panel, which says but `true`, say how the server fares."""
-    get = LivenessHandler.get
+    get: Any = LivenessHandler.get
 
     async def tell(handler: LivenessHandler) -> None:
         await get(handler)
@@ -62,7 +62,8 @@ def open_in_turn() -> None:
     What has come in meanwhile is all done in one turn of the event loop: of thirty pages that are
     asked for together, everybody else waits for all.
     """
-    get, turn = DocHandler.get, asyncio.Lock()
+    get: Any = DocHandler.get
+    turn = asyncio.Lock()
 
     async def wait(handler: DocHandler, *args: Any, **options: Any) -> None:
         async with turn:

@@ -28,7 +28,7 @@ class Keeper:
 
     def __init__(self, hire: Hire) -> None:
         self.link: Link | None = None
-        self.wake: Callable[[], None] = lambda: None
+        self.wake: Callable[[], object] = lambda: None
         self._hire = hire
         self._hired = 0
         self._closed = False

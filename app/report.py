@@ -136,7 +136,7 @@ class Report:
             self._sheet[:] = []
         for pane, section in zip(self._sheet, found.sections, strict=False):
             if isinstance(section, str):
-                pane.object = section
+                pane.param.update(object=section)
         self._sheet.extend(map(self._pane, found.sections[len(self._sheet) :]))
         is_whole = found in self._found()
         self._heading.object = self._title(found) if is_whole else ""
@@ -149,7 +149,9 @@ class Report:
             return self._text(section, self._role)
         # A `FlexBox` would not do: what is put into it later misses the theme.
         box = self._column(self._text(legend(section), role="title"), role="panels")
-        put = partial(_put_later, pn.state.curdoc, box)
+        document = pn.state.curdoc
+        assert document is not None
+        put = partial(_put_later, document, box)
         for panel in section.panels:
             HAND.submit(_drawn, panel).add_done_callback(put)
         return box

@@ -7,9 +7,9 @@ from functools import partial
 from typing import Any
 
 import panel as pn
-import panel_material_ui as pmui
 from bokeh.document import Document
 from panel.io.state import set_curdoc
+from panel_material_ui.template.base import Page
 
 from app.address import PACES, settings_from_query, sight_from_query
 from app.dashboard import TICK_MS, Dashboard
@@ -30,11 +30,13 @@ TRY_AGAIN = 20
 """Seconds after which a page that found the server full asks again."""
 
 
-def open_page() -> pmui.Page:
+def open_page() -> Page:
     """Make the page of one session; its run starts when the browser is there."""
     _configure()
     if PAGES.is_full:
         return _full()
+    document = pn.state.curdoc
+    assert document is not None
     query = pn.state.location.search if pn.state.location else ""
     settings, complaint = settings_from_query(query)
     sight, more = sight_from_query(query)
@@ -44,7 +46,6 @@ def open_page() -> pmui.Page:
     complaint, phone = f"{complaint} {more}".strip(), is_phone(pn.state.headers)
     dashboard = Dashboard(session, complaint=complaint, tab=sight.tab, on_phone=phone)
     pn.state.onload(dashboard.loaded)
-    document = pn.state.curdoc
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     dashboard.session.keeper.wake = lambda: document.add_next_tick_callback(dashboard.tick)
     pn.state.on_session_destroyed(partial(_end, dashboard, document))
@@ -52,7 +53,7 @@ def open_page() -> pmui.Page:
     return dashboard.page
 
 
-def is_phone(headers: Mapping[str, str]) -> bool:
+def is_phone(headers: Mapping[str, str | list[str]]) -> bool:
     """Tell from a request whether a phone asks, which has room for the run alone."""
     return headers.get("Sec-Ch-Ua-Mobile") == "?1" or "Mobi" in headers.get("User-Agent", "")
 
@@ -82,10 +83,10 @@ def _end(dashboard: Dashboard, document: Document, context: Any) -> None:
     pn.state.log(f"page closed, {len(PAGES)} left")
 
 
-def _full() -> pmui.Page:
+def _full() -> Page:
     """Say that no page can be opened now, and try again."""
     again = f'<meta http-equiv="refresh" content="{TRY_AGAIN}">'
-    return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL + again, css_classes=["full"])])
+    return Page(title="Slipfront", main=[pn.pane.HTML(FULL + again, css_classes=["full"])])
 
 
 def _configure() -> None:

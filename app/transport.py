@@ -95,7 +95,7 @@ class Transport:
 
     def place(self, more: list[Any]) -> None:
         """Put widgets behind the sliders, in place of those there."""
-        parts = [*self.view[:FIXED], *more]
+        parts = [*self.view.objects[:FIXED], *more]
         if list(self.view) != parts:
             self.view[:] = parts
 

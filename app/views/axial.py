@@ -35,9 +35,10 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     top = max(SHARED * float(np.abs(load).max()), float(axial.max()))
     limits = held(kept, min(-0.1 * top, float(axial.min())), top)
     factor, unit = decimal_scale(limits[1], "N")
-    exact = [] if wires.exact is None else list(wires.exact[:, :, scene.instant] / factor)
-    assert not exact or wires.exact_positions is not None
-    curves = [Curve(wires.exact_positions, one, GREEN, 6, alpha=0.35) for one in exact]
+    curves = []
+    if wires.exact is not None and wires.exact_positions is not None:
+        exact = wires.exact[:, :, scene.instant] / factor
+        curves += [Curve(wires.exact_positions, one, GREEN, 6, alpha=0.35) for one in exact]
     for place in np.argsort([number == wires.broken for number in wires.numbers], kind="stable"):
         number = wires.numbers[place]
         width = 3.5 if number == wires.broken else 2.0
@@ -46,7 +47,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         spanned(0.0, length_of(scene.run.settings)),
         spanned(*(limit / factor for limit in limits), label=f"Axial force ({unit})"),
         curves,
-        keys=_keys(wires, is_exact=bool(exact)),
+        keys=_keys(wires, is_exact=wires.exact is not None),
         kept=limits,
     )
 

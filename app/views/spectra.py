@@ -35,7 +35,7 @@ def draw(scene: Scene, kept: None) -> Drawing:
     ]
     marks: tuple[Marks, ...] = ()
     keys: tuple[Key, ...] = ()
-    more = np.zeros(0)
+    more = np.zeros(0, np.float32)
     if bases is not None:
         own, more = bases.values
         marks = (_sizes(more, CROSS), _sizes(own, RING))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.worker.shown import (
     MOST_MODES,
@@ -142,5 +144,5 @@ def _values(iterate: Iterate, modes: Modes, place: int) -> tuple[Floats, Floats]
     return _floats(own / largest), _floats(values / largest)
 
 
-def _floats(values: Array) -> Floats:
+def _floats(values: NDArray[np.floating[Any]]) -> Floats:
     return values.astype(np.float32, order="C")

@@ -141,7 +141,7 @@ class Bench(Executor):
 
 
 @cache
-def shared_bench() -> Executor:
+def shared_bench() -> Bench:
     """Give the executor that all pages of this server share; it ends with the server."""
     bench = Bench()
     atexit.register(bench.shutdown)

@@ -35,7 +35,7 @@ class Thinned:
         rows = len(inside.nodes) // (bodies * (columns + 1)) - 1
         across, up = _lines(columns, rows, max(MOST_QUADS // bodies, 1))
         grid = np.arange(len(inside.nodes)).reshape(bodies, rows + 1, columns + 1)
-        kept = grid[np.ix_(range(bodies), up, across)]
+        kept = grid[np.ix_(np.arange(bodies), up, across)]
         self._nodes = kept.ravel()
         corners = np.arange(kept.size).reshape(kept.shape)
         quads = (corners[:, a : a - 1 or None, b : b - 1 or None] for a, b in _AROUND)
@@ -76,7 +76,8 @@ def _lines(columns: int, rows: int, most: int) -> tuple[NDArray[np.intp], NDArra
     up = min(max(int(rows * share), 1), most)
     across = min(max(int(columns * share), 1), max(most // up, 1))
     across, up = (columns, rows) if share == 1.0 else (across, up)
-    return tuple(  # type: ignore[return-value]
-        np.linspace(0, size, count + 1).round().astype(np.intp)
-        for size, count in ((columns, across), (rows, up))
-    )
+    return _spread(columns, across), _spread(rows, up)
+
+
+def _spread(size: int, count: int) -> NDArray[np.intp]:
+    return np.linspace(0, size, count + 1).round().astype(np.intp)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,7 +113,7 @@ class Recording:
     def measure(self, iterates: Sequence[Iterate], distance: Distance) -> None:
         """Put in the errors of iterates that were recorded before there was a reference."""
         for iterate in iterates:
-            errors = {
+            errors: dict[str, Any] = {
                 "error_displacement": distance.of_displacement(iterate),
                 "error_force": distance.of_friction_force(iterate),
             }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.fingerprint import fingerprint
-from solver.reference.incremental import Reference
+from solver.reference.solution import Reference
 from solver.settings import Settings
 
 
@@ -52,7 +53,8 @@ class References:
         found = self._kept.pop(key, None) or _find(problem, stop)
         if found is None:
             return None
-        self._kept[key] = replace(found, problem=None)
+        without: Any = None
+        self._kept[key] = replace(found, problem=without)
         while len(self) > self._entries or sum(map(_size, self._kept.values())) > self._budget:
             self._kept.popitem(last=False)
         # That of a problem that is solved alike has to be given this one.

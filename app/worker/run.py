@@ -23,9 +23,8 @@ from solver.files import scene_settings
 from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.warm import Start, choose_start, iterations_from
-from solver.reference import incremental
 from solver.reference.distance import Distance, distance_to
-from solver.reference.incremental import Interrupted
+from solver.reference.solution import Interrupted, Reference
 from solver.scenes import discretise
 
 IN_A_HURRY = 0.1
@@ -88,7 +87,7 @@ class WorkerRun:
         self.has_news = False
         self._rules = StopRules(self._settings)
         self._is_compared = False
-        self._reference: incremental.Reference | None = None
+        self._reference: Reference | None = None
         self._distance: Distance | None = None
         self._unmeasured: list[Iterate] = []
         self._before: Checkpoint | None = None
@@ -234,8 +233,8 @@ class WorkerRun:
             return
         newest = self._take(newest, iterate, verdict)
         self._seeking.keep(iterate.checkpoint)
-        if verdict.finished is not None:
-            verdict, finished = self._rules.close(verdict.finished), verdict.finished
+        if (finished := verdict.finished) is not None:
+            verdict = self._rules.close(finished)
             self.recording.status = verdict.status
             self._take(newest, finished, verdict)
 

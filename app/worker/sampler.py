@@ -31,7 +31,7 @@ from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import Fields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
-from solver.reference import incremental
+from solver.reference import solution
 from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of
 from solver.settings import Settings
 
@@ -115,7 +115,7 @@ class Sampler:
             return replace(stand, wires=self._wires.completed(exact, self._columns))
         return stand
 
-    def reference(self, found: incremental.Reference) -> Reference:
+    def reference(self, found: solution.Reference) -> Reference:
         """Show a reference."""
         fields = found.contact(self.interface)
         shown = self._fields(found, fields.tangential_force, fields.normal_force, fields.status)

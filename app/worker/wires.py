@@ -40,7 +40,7 @@ class ShownWires:
         if broken:
             wires.add(broken - 1)
         elements = thinned(self._shape[1])
-        self._chosen = np.ix_(sorted(wires), elements)
+        self._chosen = np.ix_(np.array(sorted(wires)), elements)
         self._length = problem.scales.displacement
         self.base = Wires(
             numbers=tuple(wire + 1 for wire in sorted(wires)),
@@ -56,10 +56,10 @@ class ShownWires:
         return replace(
             self.base,
             exact_positions=places[rows].astype(np.float32),
-            exact=both[np.ix_(range(2), rows, columns)].astype(np.float32),
+            exact=both[np.ix_(np.arange(2), rows, columns)].astype(np.float32),
         )
 
     def forces(self, iterate: Iterate, column: int) -> Floats:
         """Show the forces of an iterate at one instant."""
         force = self._force(iterate.displacement[:, column]).reshape(self._shape)
-        return force[self._chosen].astype(np.float32)
+        return np.asarray(force[self._chosen], dtype=np.float32)
