@@ -8,6 +8,7 @@ from typing import Any
 import panel as pn
 
 from app.figures import make_figure
+from app.panes import column, text
 from app.views.drawing import View
 from app.views.legend import card_title
 
@@ -17,15 +18,12 @@ class Cards:
 
     Parameters
     ----------
-    style
-        Style sheet.
     choices
         What a tap or a drag on a plot tells, by what it chooses: "instant" with a time, s, and
         "substructure" with a number.
     """
 
-    def __init__(self, style: str, choices: dict[str, Callable[[float], None]]) -> None:
-        self._style = style
+    def __init__(self, choices: dict[str, Callable[[float], None]]) -> None:
         self._choices = choices
         self._cards: dict[str, Any] = {}
 
@@ -40,20 +38,8 @@ class Cards:
         return self._cards[view.name]
 
     def _make(self, view: View) -> Any:
-        title = pn.pane.HTML(
-            card_title(view.name, ()),
-            tags=[f"{view.slug}.title"],
-            css_classes=["title"],
-            stylesheets=[self._style],
-            sizing_mode="stretch_width",
-            margin=(4, 6, 0, 12),
-        )
+        words, tags = card_title(view.name, ()), [f"{view.slug}.title"]
+        title = text(words, role="title", tags=tags, margin=(4, 6, 0, 12))
         figure = make_figure(view, self._choices.get(view.plot.chooses, lambda height: None))
-        return pn.Column(
-            title,
-            pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=(0, 4)),
-            sizing_mode="stretch_both",
-            css_classes=["card"],
-            stylesheets=[self._style],
-            margin=0,
-        )
+        plot = pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=(0, 4))
+        return column(title, plot, role="card", sizing_mode="stretch_both")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from pathlib import Path
 from typing import Any
 
 import panel as pn
@@ -14,6 +13,7 @@ from app.address import PACES, Sight, query_of
 from app.cards import Cards
 from app.innards import connections, ignore_business, send_without_delay
 from app.looks import Looks
+from app.panes import STATIC, column, text
 from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
@@ -22,7 +22,6 @@ from app.transport import Transport
 from app.views.catalogue import VIEWS, fitting
 from solver.settings import Settings
 
-STATIC = Path(__file__).resolve().parents[1] / "static"
 TICK_MS = 25
 FIRST_ROW = 3
 CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
@@ -75,7 +74,6 @@ class Dashboard:
         self._stood: tuple[Settings, Sight] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
-        self._style = (STATIC / "style.css").read_text(encoding="utf-8")
         self._pulse = Pulse()
         self._listen()
         session.watch(complaint=complaint)
@@ -85,13 +83,11 @@ class Dashboard:
             "instant": self.transport.choose_time,
             "substructure": self.transport.choose_substructure,
         }
-        self._cards = Cards(self._style, chosen)
+        self._cards = Cards(chosen)
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
-        self._plots = pn.Column(
-            sizing_mode="stretch_width", css_classes=["plots"], stylesheets=[self._style], margin=0
-        )
+        self._plots = column(role="plots")
         self._live = self._make_live()
-        self._tabs = Tabs(session, self._live, self._style, self._on_tab)
+        self._tabs = Tabs(session, self._live, self._on_tab)
         self._first_tab = tab
         self.page = self._make_page()
         if on_phone:
@@ -155,17 +151,9 @@ class Dashboard:
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
 
     def _make_live(self) -> pn.Column:
-        return pn.Column(
-            self.transport.view,
-            self._html("status"),
-            self._html("figures"),
-            self._plots,
-            self._pulse,
-            css_classes=["live"],
-            stylesheets=[self._style],
-            sizing_mode="stretch_width",
-            margin=(4, 10),
-        )
+        words = [text(role=role, tags=[role]) for role in ("status", "figures")]
+        parts = self.transport.view, *words, self._plots, self._pulse
+        return column(*parts, role="live", margin=(4, 10))
 
     def _make_page(self) -> Page:
         page = Page(
@@ -181,16 +169,6 @@ class Dashboard:
         )
         ignore_business(page)
         return page
-
-    def _html(self, role: str) -> Any:
-        return pn.pane.HTML(
-            "",
-            tags=[role],
-            css_classes=[role],
-            stylesheets=[self._style],
-            sizing_mode="stretch_width",
-            margin=(2, 10),
-        )
 
     def _keep_address(self) -> None:
         """Have the address say where the page stands."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -11,6 +12,15 @@ from app.worker.link import Link
 from app.worker.orders import Order
 from app.worker.reports import Died, Report
 
+LEFT_ALONE = 180.0
+"""Seconds after which a page that nobody sees gives its process back."""
+RESTARTS = 2
+"""Times that a run is started again after its process died, without getting any farther."""
+AGAIN = "The worker stopped unexpectedly; the run was started again."
+GIVEN_UP = (
+    "The worker stopped unexpectedly several times; the run was given up. Lower the numbers of "
+    "elements and instants, or start it again."
+)
 Hire = Callable[[Callable[[Report], None]], Link]
 """Gives a worker process, whose reports go to what it is called with."""
 
@@ -24,11 +34,15 @@ class Keeper:
         The process, if there is one.
     wake
         Called on another thread when a report has come.
+    deaths
+        How often it has died since the run began, or since that got farther than ever.
     """
 
     def __init__(self, hire: Hire) -> None:
         self.link: Link | None = None
         self.wake: Callable[[], object] = lambda: None
+        self.deaths = self._reached = 0
+        self._alone_since: float | None = None
         self._hire = hire
         self._hired = 0
         self._closed = False
@@ -55,13 +69,45 @@ class Keeper:
             self._mailbox.clear()
         if any(isinstance(report, Died) for report in reports):
             self.link = None
+            self.deaths += 1
         return reports
+
+    def renew(self) -> None:
+        """Take it that another run begins."""
+        self.deaths = self._reached = 0
+
+    def note(self, done: int) -> None:
+        """Take it that the run has done so many iterations."""
+        if done > self._reached:
+            self.deaths, self._reached = 0, done
+
+    @property
+    def may_try_again(self) -> bool:
+        """Whether the run has not been given up yet."""
+        return self.deaths <= RESTARTS
+
+    def rest(self, alone: bool) -> None:
+        """Take it that nobody sees the page from now on, or that somebody does."""
+        self._alone_since = time.monotonic() if alone else None
+
+    @property
+    def is_alone(self) -> bool:
+        """Whether nobody sees the page."""
+        return self._alone_since is not None
 
     def part(self) -> None:
         """End the process, and hear nothing more of it."""
         if self.link is not None:
             self.link.close()
             self.link = None
+
+    def give_back(self) -> bool:
+        """End the process if nobody has seen the page for long; tell."""
+        since = self._alone_since
+        if since is None or time.monotonic() - since <= LEFT_ALONE:
+            return False
+        self.part()
+        return True
 
     def close(self) -> None:
         """End the process for good."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import panel_material_ui as pmui
 
-from app.scrubber import Scrubber
+from app.scrubber import Scrubber, scrubber
 from app.session import Session
 from app.worker.shown import STRESSES
 
@@ -72,19 +72,15 @@ class Looks:
 
     @cached_property
     def _magnification(self) -> Scrubber:
-        made = Scrubber(
+        return scrubber(
+            140,
+            self._magnify,
             label="Magnification",
             help="Factor on the displacement of the drawn bodies; at the left end it is chosen so "
             "that they are seen to move.",
             end=DECADES * len(STEPS) + 1,
             text="auto",
-            margin=(0, 8),
-            min_width=140,
-            sizing_mode="stretch_width",
-            styles={"flex": "1 1 140px"},
         )
-        made.param.watch(self._on_magnification, "wanted")
-        return made
 
     def _show(self, interfaces: list[str], chosen: str) -> None:
         select = self._interface
@@ -100,8 +96,7 @@ class Looks:
         if not self._showing and event.new:
             self._session.watch(interface=event.new)
 
-    def _on_magnification(self, event: Any) -> None:
-        place = int(event.new)
+    def _magnify(self, place: int) -> None:
         decade, step = divmod(place - 1, len(STEPS))
         factor = None if place == 0 else STEPS[step] * 10.0**decade
         text = "auto" if factor is None else f"× {factor:,.0f}"

@@ -17,6 +17,7 @@ import panel_material_ui as pmui
 from bokeh.document import Document
 
 from app.errand import Errand, Found
+from app.panes import button, column, text
 from app.views.colors import GREY
 from app.views.legend import Key, card_title
 from solver.study.figure_data import HUES, Panel
@@ -39,8 +40,6 @@ class Report:
     ----------
     errand
         The state that it shows.
-    style
-        Style sheet.
 
     Attributes
     ----------
@@ -50,26 +49,25 @@ class Report:
 
     title = words = ""
 
-    def __init__(self, errand: Errand, style: str) -> None:
+    def __init__(self, errand: Errand) -> None:
         self._errand = errand
-        self._style = style
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
-        self._progress = self._text("", role="progress")
-        self._heading, self._sheet = self._text(""), self._column()
+        self._progress = _words(role="progress")
+        self._heading, self._sheet = _words(), column(role="paper")
         self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
         self._past.param.watch(lambda event: self._put(event.new), "value")
-        self._files = self._row(margin=(0, 6, 8, 6))
+        self._files = _row(margin=(0, 6, 8, 6))
         parts = self._heading, self._sheet, self._files
-        self._card = self._column(*parts, role="card paper", visible=False)
-        self.view = self._column(margin=(4, 10), visible=False)
+        self._card = column(*parts, role="card paper", visible=False)
+        self.view = column(role="paper", margin=(4, 10), visible=False)
 
     def open(self) -> None:
         """Show the report; nothing is computed before somebody asks."""
         if not self.view.objects:
-            words = self._text(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
-            top = self._column(words, *self._bar(), role="card paper", margin=(0, 0, 12, 0))
+            words = _words(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
+            top = column(words, *self._bar(), role="card paper", margin=(0, 0, 12, 0))
             self.view[:] = [top, self._card]
         self._refresh()
 
@@ -97,12 +95,10 @@ class Report:
         return ""
 
     def _bar(self) -> list[Any]:
-        self._start = pmui.Button(label="Start", icon="play_arrow", size="small", color="primary")
-        self._cancel = pmui.Button(label="Cancel", icon="stop", size="small", variant="outlined")
-        self._start.on_click(lambda event: self._on_start())
-        self._cancel.on_click(lambda event: self._on_cancel())
+        self._start = button("Start", "play_arrow", self._on_start, color="primary")
+        self._cancel = button("Cancel", "stop", self._on_cancel, variant="outlined")
         parts = self._start, self._cancel, *self._choices(), self._past
-        return [self._row(*parts, align_items="center"), self._progress]
+        return [_row(*parts, align_items="center"), self._progress]
 
     def _on_start(self) -> None:
         self._ask()
@@ -146,9 +142,9 @@ class Report:
     def _pane(self, section: Section) -> Any:
         """Give what shows a section; a plot is drawn in it later."""
         if isinstance(section, str):
-            return self._text(section, self._role)
+            return _words(section, self._role)
         # A `FlexBox` would not do: what is put into it later misses the theme.
-        box = self._column(self._text(legend(section), role="title"), role="panels")
+        box = column(_words(legend(section), role="title"), role="panels")
         document = pn.state.curdoc
         assert document is not None
         put = partial(_put_later, document, box)
@@ -156,21 +152,16 @@ class Report:
             HAND.submit(_drawn, panel).add_done_callback(put)
         return box
 
-    def _column(self, *parts: Any, role: str = "paper", **options: Any) -> pn.Column:
-        """Put parts one below the other, as high as they are."""
-        options = {"margin": 0, **self._looks(role), **options}
-        return pn.Column(*parts, **options)
 
-    def _row(self, *parts: Any, **options: Any) -> pn.FlexBox:
-        options = {"margin": (0, 6), "sizing_mode": "stretch_width", **options}
-        return pn.FlexBox(*parts, flex_wrap="wrap", **options)
+def _words(html: str = "", role: str = "report") -> pn.pane.HTML:
+    return text(html, role=role, margin=(6, 14))
 
-    def _text(self, html: str, role: str = "report") -> pn.pane.HTML:
-        return pn.pane.HTML(html, margin=(6, 14), **self._looks(role))
 
-    def _looks(self, role: str) -> dict[str, Any]:
-        classes, styles = role.split(), [self._style]
-        return {"css_classes": classes, "stylesheets": styles, "sizing_mode": "stretch_width"}
+def _row(*parts: Any, margin: Any = (0, 6), **options: Any) -> pn.FlexBox:
+    """Put parts beside each other, as many as there is room for."""
+    return pn.FlexBox(
+        *parts, flex_wrap="wrap", sizing_mode="stretch_width", margin=margin, **options
+    )
 
 
 def _drawn(panel: Panel) -> Any:

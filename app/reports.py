@@ -73,8 +73,6 @@ class StudyReport(Report):
     ----------
     session
         Has it made, with its settings.
-    style
-        As for `Report`.
     """
 
     title = "Error against run time"
@@ -84,8 +82,8 @@ class StudyReport(Report):
         "page stands still while they are timed."
     )
 
-    def __init__(self, session: Session, style: str) -> None:
-        super().__init__(session.study, style)
+    def __init__(self, session: Session) -> None:
+        super().__init__(session.study)
         self._session = session
         self._crowds: WeakKeyDictionary[Found, int] = WeakKeyDictionary()
 

@@ -7,7 +7,8 @@ updated many times a second).
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Callable
+from typing import Any, ClassVar
 
 import param
 
@@ -41,3 +42,16 @@ class Scrubber(Prompt):
 
     _esm = "scrubber.js"
     _stylesheets: ClassVar[list[str]] = [STYLE]
+
+
+def scrubber(width: int, wish: Callable[[int], None], **options: Any) -> Scrubber:
+    """Make one for a row, where its label needs this width, px; `wish` is told what is wanted."""
+    made = Scrubber(
+        margin=(0, 8),
+        min_width=width,
+        sizing_mode="stretch_width",
+        styles={"flex": f"1 1 {width}px"},
+        **options,
+    )
+    made.param.watch(lambda event: wish(event.new), "wanted")
+    return made

@@ -42,7 +42,7 @@ def open_page() -> Page:
     sight, more = sight_from_query(query)
     session = Session(PAGES, shared_bench(), settings)
     session.set_pace(PACES[sight.pace])
-    session.look_at(sight.instant)
+    session.watch(phase=sight.instant)
     complaint, phone = f"{complaint} {more}".strip(), is_phone(pn.state.headers)
     dashboard = Dashboard(session, complaint=complaint, tab=sight.tab, on_phone=phone)
     pn.state.onload(dashboard.loaded)

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.errand import Errand
-from app.keeper import Hire, Keeper
+from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
 from app.labels import label_of
 from app.pages import Pages
 from app.worker.bench import Bench
@@ -24,17 +24,8 @@ from solver.files import scene_settings
 from solver.settings import Settings
 
 DEFAULT_PACE = 20.0
-LEFT_ALONE = 180.0
-"""Seconds after which a page that nobody sees gives its process back."""
 HELD_STILL = 0.5
 """Seconds after which a slider that does not move counts as let go."""
-RESTARTS = 2
-"""Times that a run is started again after its process died, without getting any farther."""
-AGAIN = "The worker stopped unexpectedly; the run was started again."
-GIVEN_UP = (
-    "The worker stopped unexpectedly several times; the run was given up. Lower the numbers of "
-    "elements and instants, or start it again."
-)
 
 _log = logging.getLogger(__name__)
 
@@ -68,6 +59,9 @@ class Session:
     warm_start
         Whether a changed setting starts from the run before, where that is better; a run that is
         reset never does. It is no setting of the method: a run alone has none before it.
+    follows_hand, is_held
+        Whether the run is one of many while a slider is dragged, and whether it stands still for a
+        study that is timed.
     figures, study, stability
         The reports that this page has asked for.
     crowd
@@ -85,15 +79,14 @@ class Session:
         self.running = True
         self.pace: float | None = DEFAULT_PACE
         self.warm_start = False
-        self.figures, self.study, self.stability = (Errand(bench) for _ in range(3))
+        self.follows_hand = self.is_held = False
+        self._errands = self.figures, self.study, self.stability = [Errand(bench) for _ in range(3)]
         self.crowd = 0
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._pending: Settings | None = None
-        self._follows_hand = self._pending_follows_hand = False
-        self._alone = self._held = False
-        self._alone_since = self._moved_at = 0.0
-        self._deaths = self._died_at = 0
+        self._pending_by_hand = False
+        self._moved_at = 0.0
         self._pages = pages
         pages.add(self)
 
@@ -107,17 +100,18 @@ class Session:
         """
         settings = settings or self.wanted
         if settings.scene != self.settings.scene:
-            self._leave_scene()
+            self._left[self.settings.scene] = self.wanted
+            self._label = ""
+            self.watch(interface="", substructure=None)
         elif self.ticket:
-            before = self.settings.values()
-            changed = {
-                name: value for name, value in settings.values().items() if value != before[name]
-            }
+            before, values = self.settings.values(), settings.values()
+            changed = {name: value for name, value in values.items() if value != before[name]}
             self._label = label_of(settings, changed) if changed else self._label
         self.settings = settings
         self.ticket += 1
-        self.facts, self._pending, self._deaths, self._died_at = None, None, 0, 0
-        self._follows_hand = follows_hand and self._is_free
+        self.facts, self._pending = None, None
+        self.keeper.renew()
+        self.follows_hand = follows_hand and self._is_free
         self._work(warm=warm)
 
     def change(self, name: str, value: Any, *, by_hand: bool = False) -> None:
@@ -139,14 +133,14 @@ class Session:
             return
         if settings.values() == self.settings.values() and self._pending is None:
             return
-        self._pending, self._pending_follows_hand = settings, by_hand
+        self._pending, self._pending_by_hand = settings, by_hand
         self._moved_at = time.monotonic()
         self._start_pending()
 
     def let_go(self) -> None:
         """Replay the iteration of what a hand has chosen."""
-        self._pending_follows_hand = False
-        if self._follows_hand:
+        self._pending_by_hand = False
+        if self.follows_hand:
             self._pending = self.wanted
             self._start_pending()
 
@@ -165,8 +159,7 @@ class Session:
                 blocks.append(report.block)
                 if report.ticket == self.ticket:
                     self.facts = report.facts
-                    if report.facts.done > self._died_at:
-                        self._deaths = 0
+                    self.keeper.note(report.facts.done)
         self._start_pending()
         return blocks
 
@@ -206,21 +199,12 @@ class Session:
         done = self.facts.done if self.facts else 0
         self.keeper.send(Seek(self.ticket, iteration if iteration < done else None))
 
-    def look_at(self, phase: float) -> None:
-        """Choose the instant at which fields are drawn, as a share of the interval."""
-        self.watch(phase=min(max(phase, 0.0), 1.0))
-
     def watch(self, **changes: Any) -> None:
         """Look elsewhere."""
         look = replace(self.look, **changes)
         if look != self.look:
             self.look = look
             self.keeper.send(Watch(look))
-
-    def choose_substructure(self, number: int) -> None:
-        """Choose the substructure whose modes are looked at, counted from 0."""
-        last = self.settings.n_substructures - 1
-        self.watch(substructure=None if number >= last else max(number, 0))
 
     def close(self) -> None:
         """Leave: the process of the run ends, and so do the reports."""
@@ -231,7 +215,7 @@ class Session:
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody sees the page, and let it go on afterwards."""
-        self._alone, self._alone_since = alone, time.monotonic()
+        self.keeper.rest(alone)
         if not alone and self.keeper.link is None and self.ticket and not self.is_over:
             self._work()
         else:
@@ -239,17 +223,16 @@ class Session:
 
     def attend(self) -> bool:
         """Do what is due: hear the reports, hold the run while one is timed; tell if it is new."""
-        if self._alone and time.monotonic() - self._alone_since > LEFT_ALONE:
-            self.keeper.part()
+        if self.keeper.give_back():
             self.facts = None
-        if self._follows_hand and time.monotonic() - self._moved_at > HELD_STILL:
+        if self.follows_hand and time.monotonic() - self._moved_at > HELD_STILL:
             self.let_go()
         heard = [errand.collect() for errand in self._errands]
-        if self.study.is_begun != self._held:
-            self._held = self.study.is_begun
-            self.crowd = self.crowd if not self._held else 0
+        if self.study.is_begun != self.is_held:
+            self.is_held = not self.is_held
+            self.crowd = 0 if self.is_held else self.crowd
             self._keep_pace()
-        if self._held:
+        if self.is_held:
             self.crowd = max(self.crowd, self._pages.at_work_beside(self))
         return any(heard)
 
@@ -269,45 +252,24 @@ class Session:
         return self.keeper.link is not None and not self.is_over and self._is_free
 
     @property
-    def follows_hand(self) -> bool:
-        """Whether the run is one of many while a slider is dragged."""
-        return self._follows_hand
-
-    @property
-    def is_held(self) -> bool:
-        """Whether the run stands still for a study that is timed."""
-        return self._held
-
-    @property
     def wanted(self) -> Settings:
         """The settings that the user sees: of the run at work, or of the one about to start."""
         return self._pending or self.settings
 
     @property
-    def _errands(self) -> tuple[Errand, ...]:
-        return self.figures, self.study, self.stability
-
-    @property
     def _is_free(self) -> bool:
         """Whether iterations go on by themselves at present."""
-        return self.running and not self._alone and not self._held
+        return self.running and not self.keeper.is_alone and not self.is_held
 
     def _start_pending(self) -> None:
         """Start with what is wanted, once the run before was shown."""
         if self._pending is not None and (self.facts is not None or self.ticket == 0):
-            by_hand = self._pending_follows_hand
-            self.start(self._pending, warm=self.warm_start, follows_hand=by_hand)
+            self.start(self._pending, warm=self.warm_start, follows_hand=self._pending_by_hand)
 
     def _keep_pace(self) -> None:
         if self.goes_on:
             pace = self.pace if self._is_free else 0.0
-            self.keeper.send(Pace(self.ticket, pace, is_held=self._held))
-
-    def _leave_scene(self) -> None:
-        """Keep the settings for a return."""
-        self._left[self.settings.scene] = self.wanted
-        self._label = ""
-        self.watch(interface="", substructure=None)
+            self.keeper.send(Pace(self.ticket, pace, self.is_held))
 
     def _work(self, *, warm: bool = False) -> None:
         """Have a process do the run from its beginning."""
@@ -318,20 +280,18 @@ class Session:
                 self.settings.scene,
                 self.settings.values(),
                 label=self._label,
-                notice=AGAIN if self._deaths else "",
-                pace=None if self._follows_hand else self.pace,
+                notice=AGAIN if self.keeper.deaths else "",
+                pace=None if self.follows_hand else self.pace,
                 pause_after=None if self._is_free else 1,
-                is_held=self._held,
+                is_held=self.is_held,
                 warm=warm,
-                follows_hand=self._follows_hand,
+                follows_hand=self.follows_hand,
             )
         )
 
     def _bury(self) -> bytes:
         """Follow the end of a process: start the run again, or give it up; say so."""
-        self._deaths += 1
-        self._died_at = max(self._died_at, self.facts.done if self.facts else 0)
-        again = self._deaths <= RESTARTS
+        again = self.keeper.may_try_again
         words = AGAIN if again else GIVEN_UP
         _log.error("A worker process ended. %s", words)
         self.facts = None if again else Facts(is_broken=True)

@@ -40,8 +40,6 @@ class Tabs:
         Has the reports made.
     live
         The live run.
-    style
-        Style sheet.
     changed
         Called when another one was chosen.
 
@@ -53,15 +51,13 @@ class Tabs:
         What is chosen, of which nothing else is seen.
     """
 
-    def __init__(
-        self, session: Session, live: Any, style: str, changed: Callable[[], None]
-    ) -> None:
+    def __init__(self, session: Session, live: Any, changed: Callable[[], None]) -> None:
         self._live = live
         self._changed = changed
         reports: list[Report] = [
-            PaperFigures(session.figures, style),
-            StudyReport(session, style),
-            StabilityReport(session.stability, style),
+            PaperFigures(session.figures),
+            StudyReport(session),
+            StabilityReport(session.stability),
         ]
         self._beside = dict(zip(TABS[1:], reports, strict=True))
         self.bar = pmui.RadioButtonGroup(

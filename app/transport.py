@@ -8,7 +8,8 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.address import PACES
-from app.scrubber import Scrubber
+from app.panes import button
+from app.scrubber import scrubber
 from app.session import Session
 from solver.settings import Settings
 
@@ -36,7 +37,6 @@ class Transport:
         self._session = session
         self._make_buttons()
         self._make_sliders()
-        self._listen()
         self._sliders = pn.FlexBox(
             self._iteration,
             self._instant,
@@ -77,11 +77,13 @@ class Transport:
     def choose_time(self, time: float) -> None:
         """Look at the instant nearest to a time, s."""
         if self._session.facts is not None:
-            self._session.look_at(time / self._session.facts.duration)
+            phase = time / self._session.facts.duration
+            self._session.watch(phase=min(max(phase, 0.0), 1.0))
 
     def choose_substructure(self, number: float) -> None:
         """Look at the modes of another substructure, counted from 1."""
-        self._session.choose_substructure(round(number) - 1)
+        last, place = self._session.settings.n_substructures - 1, round(number) - 1
+        self._session.watch(substructure=None if place >= last else max(place, 0))
         self.show()
 
     def arrange(self, settings: Settings) -> None:
@@ -117,27 +119,15 @@ class Transport:
             self._show_substructure(self._session.settings)
 
     def _make_buttons(self) -> None:
-        self._run = pmui.Button(
-            label="Pause",
-            icon="pause",
-            width=104,
-            color="primary",
-            size="small",
-            description="Run or pause the iteration (space).",
+        does = "Run or pause the iteration (space)."
+        self._run = button(
+            "Pause", "pause", self.toggle, width=104, color="primary", description=does
         )
-        self._step = pmui.Button(
-            label="Step",
-            icon="skip_next",
-            variant="outlined",
-            size="small",
-            description="Do one iteration and wait (s).",
-        )
-        self._reset = pmui.Button(
-            label="Reset",
-            icon="restart_alt",
-            variant="outlined",
-            size="small",
-            description="Start the run again, as its settings say and not from the run before (r).",
+        does = "Do one iteration and wait (s)."
+        self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
+        does = "Start the run again, as its settings say and not from the run before (r)."
+        self._reset = button(
+            "Reset", "restart_alt", self.reset, variant="outlined", description=does
         )
         self._pace = pmui.Select(
             label="Pace",
@@ -147,49 +137,30 @@ class Transport:
             size="small",
             description="Iterations per second that are shown; the method itself is not slowed.",
         )
+        self._pace.param.watch(lambda event: self._session.set_pace(PACES[event.new]), "value")
 
     def _make_sliders(self) -> None:
-        self._iteration = _slider(
+        self._iteration = scrubber(
             155,
+            self._session.seek,
             label="Iteration",
             help="Go back to any iteration done; at the right end it follows the run.",
         )
-        self._instant = _slider(
+        self._instant = scrubber(
             125,
+            lambda place: self._session.watch(phase=place / max(self._instant.end, 1)),
             label="Instant",
             help="The instant at which forces are drawn; a tap on the map chooses it too.",
         )
-        self._substructure = _slider(
+        self._substructure = scrubber(
             118,
+            self.choose_substructure,
             label="Substructure",
             help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
             start=1,
         )
 
-    def _listen(self) -> None:
-        self._run.on_click(lambda event: self.toggle())
-        self._step.on_click(lambda event: self.step())
-        self._reset.on_click(lambda event: self.reset())
-        self._pace.param.watch(lambda event: self._session.set_pace(PACES[event.new]), "value")
-        self._iteration.param.watch(lambda event: self._session.seek(event.new), "wanted")
-        self._instant.param.watch(self._on_instant, "wanted")
-        self._substructure.param.watch(lambda event: self.choose_substructure(event.new), "wanted")
-
     def _show_substructure(self, settings: Settings) -> None:
         last, chosen = settings.n_substructures, self._session.look.substructure
         at = last if chosen is None else min(chosen + 1, last)
         self._substructure.param.update(end=max(last, 2), shown=at, text=str(at))
-
-    def _on_instant(self, event: Any) -> None:
-        self._session.look_at(event.new / max(self._instant.end, 1))
-
-
-def _slider(width: int, **options: Any) -> Scrubber:
-    """Make a slider whose label needs this width, px."""
-    return Scrubber(
-        margin=(0, 8),
-        min_width=width,
-        sizing_mode="stretch_width",
-        styles={"flex": f"1 1 {width}px"},
-        **options,
-    )

@@ -330,7 +330,7 @@ def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand:
     ]
     assert "1 of 2 runs pass" in page
     assert rows[1].outcome.advice.split(".")[0] in page
-    report = StabilityReport(errand, "")
+    report = StabilityReport(errand)
     report._put(Found("any", sections))
     assert [pane.object for pane in report._sheet] == sections
     report._filter(WRONG)
@@ -354,7 +354,7 @@ def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: 
     for layers, refused in ((3, False), (20, True)):
         settings = LayersSettings.checked({"layers": layers, "instants": 11})
         page = SimpleNamespace(study=errand, wanted=settings, crowd=0)
-        report = StudyReport(cast(Session, page), "")
+        report = StudyReport(cast(Session, page))
         report.open()
         assert report._start.disabled == refused
         assert ("would take too long here" in report._progress.object) == refused

@@ -19,8 +19,9 @@ from studios import Shown
 from unpacking import unpack
 
 from app.errand import Errand
+from app.keeper import GIVEN_UP, RESTARTS
 from app.pages import Pages
-from app.session import GIVEN_UP, RESTARTS, Session
+from app.session import Session
 from app.transport import Transport
 from app.worker import bench, link
 from app.worker.bench import STOPPED, Bench
@@ -113,7 +114,7 @@ def test_a_page_left_alone_gives_its_process_back_and_gets_another(
     session.attend()
     assert not lone.is_closed
     assert not session.is_at_work
-    monkeypatch.setattr("app.session.LEFT_ALONE", -1.0)
+    monkeypatch.setattr("app.keeper.LEFT_ALONE", -1.0)
     session.attend()
     assert lone.is_closed
     session.rest(False)

@@ -97,7 +97,7 @@ def errand() -> Iterator[Errand]:
 
 @pytest.fixture
 def view(errand: Errand) -> PaperFigures:
-    made = PaperFigures(errand, "")
+    made = PaperFigures(errand)
     made.view.visible = True
     return made
 

@@ -13,8 +13,9 @@ import sick_workers
 from processes import wait_for
 from unpacking import unpack
 
+from app.keeper import AGAIN
 from app.pages import Pages
-from app.session import AGAIN, Session
+from app.session import Session
 from app.worker import link
 from app.worker.bench import Bench
 from solver.scenes.bar import BarSettings

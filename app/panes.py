@@ -1,0 +1,35 @@
+"""What the page is made of: panes that the style sheet knows by their roles, and buttons."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+STATIC = Path(__file__).resolve().parents[1] / "static"
+STYLE = (STATIC / "style.css").read_text(encoding="utf-8")
+
+
+def column(*parts: Any, role: str, **options: Any) -> pn.Column:
+    """Put parts one below the other."""
+    return pn.Column(*parts, **{"margin": 0, **_looks(role), **options})
+
+
+def text(html: str = "", *, role: str, **options: Any) -> pn.pane.HTML:
+    """Show words; pictures find them by their tag, if they have one."""
+    return pn.pane.HTML(html, **{"margin": (2, 10), **_looks(role), **options})
+
+
+def button(label: str, icon: str, act: Callable[[], None], **options: Any) -> pmui.Button:
+    """Give a small button that does something."""
+    made = pmui.Button(label=label, icon=icon, size="small", **options)
+    made.on_click(lambda event: act())
+    return made
+
+
+def _looks(role: str) -> dict[str, Any]:
+    classes = role.split()
+    return {"css_classes": classes, "stylesheets": [STYLE], "sizing_mode": "stretch_width"}
