@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import panel as pn
 
@@ -13,8 +12,8 @@ from app.views.drawing import View
 from app.views.legend import card_title
 
 
-class Cards:
-    """A card for every view, made when it is first shown.
+class Cards(dict[View, pn.Column]):
+    """A card for every view, made when it is first asked for.
 
     Parameters
     ----------
@@ -25,21 +24,11 @@ class Cards:
 
     def __init__(self, choices: dict[str, Callable[[float], None]]) -> None:
         self._choices = choices
-        self._cards: dict[str, Any] = {}
 
-    def has(self, view: View) -> bool:
-        """Tell whether a view's card is made."""
-        return view.name in self._cards
-
-    def of(self, view: View) -> Any:
-        """Give a view's card."""
-        if view.name not in self._cards:
-            self._cards[view.name] = self._make(view)
-        return self._cards[view.name]
-
-    def _make(self, view: View) -> Any:
+    def __missing__(self, view: View) -> pn.Column:
         words, tags = card_title(view.name, ()), [f"{view.slug}.title"]
         title = text(words, role="title", tags=tags, margin=(4, 6, 0, 12))
         figure = make_figure(view, self._choices.get(view.plot.chooses, lambda height: None))
         plot = pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=(0, 4))
-        return column(title, plot, role="card", sizing_mode="stretch_both")
+        self[view] = column(title, plot, role="card", sizing_mode="stretch_both")
+        return self[view]

@@ -135,10 +135,6 @@ class Dashboard:
             self.session.ask(afresh=True)
         self._keep_address()
 
-    def end(self) -> None:
-        """Leave nothing behind when the page is gone."""
-        self.session.close()
-
     def complain(self, text: str) -> None:
         """Tell the user what was refused and why."""
         if pn.state.notifications is not None:
@@ -193,16 +189,14 @@ class Dashboard:
         self._shown = [view for view in fit if view.name in wanted]
         there = self._shown[: self._room]
         self.transport.arrange(session.wanted)
-        cards = [self._cards.of(view) for view in there]
+        cards = [self._cards[view] for view in there]
         if list(self._plots) != cards:
             self._plots[:] = cards
         holds = session.wanted is self._asked_for
         complaint = session.look.complaint if holds else ""
         # The worker sends what a view had already only when the choice of views changes.
         session.watch(views=tuple(view.name for view in there), complaint=complaint)
-        self._dim()
-        self._offer_looks()
-        self.transport.show()
+        self._show()
         self._tabs.refresh()
 
     def _fill(self) -> None:
@@ -210,24 +204,23 @@ class Dashboard:
 
         In slices, between which other pages are served; shown at once, as every time costs 12 ms.
         """
-        made = next((view for view in self._shown if not self._cards.has(view)), None)
-        if made is not None:
-            self._cards.of(made)
-        else:
-            self._room = len(VIEWS)
-            self._arrange()
+        for view in self._shown:
+            if view not in self._cards:
+                self._cards[view]  # which makes it
+                return
+        self._room = len(VIEWS)
+        self._arrange()
 
-    def _dim(self) -> None:
-        """Tell plots that do not show the run's scene from those that do."""
+    def _show(self) -> None:
+        """Tell plots that do not show the run's scene from those that do; show where the run is."""
         is_dimmed = self.session.facts is None and not self._pulse.frame
         is_dimmed = is_dimmed or self.session.settings.scene != self._painted_scene
         if is_dimmed != self._is_dimmed:
             self._is_dimmed = is_dimmed
             self._plots.styles = DIMMED if is_dimmed else CLEAR
-
-    def _offer_looks(self) -> None:
         bodies = any(view.plot.equal for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
+        self.transport.show()
 
     def _pass_on(self, blocks: list[bytes]) -> None:
         """Give the browser the pictures that came, and show what they say."""
@@ -237,9 +230,7 @@ class Dashboard:
                 self._pulse.param.update(picture=block, frame=self._pulse.frame + 1)
                 if self.session.facts is not None:
                     self._painted_scene = self.session.settings.scene
-                self._dim()
-                self._offer_looks()
-                self.transport.show()
+                self._show()
 
     def _log(self) -> None:
         """Tell whoever serves the page what its run has come to; a drag is no news till its end."""

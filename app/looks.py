@@ -5,8 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-import panel_material_ui as pmui
-
+from app.panes import select
 from app.scrubber import Scrubber, scrubber
 from app.session import Session
 from app.worker.shown import STRESSES
@@ -47,28 +46,19 @@ class Looks:
 
     @cached_property
     def _interface(self) -> Any:
-        made = pmui.Select(
-            label="Interface",
-            options=[],
-            width=145,
-            size="small",
-            description="The interface whose forces and status are drawn.",
-        )
-        made.param.watch(self._on_interface, "value")
-        return made
+        what = "The interface whose forces and status are drawn."
+        return select("Interface", [], self._choose, width=145, description=what)
 
     @cached_property
     def _stress(self) -> Any:
-        made = pmui.Select(
-            label="Stress",
-            options=STRESS_TITLES,
+        return select(
+            "Stress",
+            STRESS_TITLES,
+            lambda stress: self._session.watch(stress=stress),
             value=STRESSES[0],
             width=128,
-            size="small",
             description="What colours the deformed bodies.",
         )
-        made.param.watch(lambda event: self._session.watch(stress=event.new), "value")
-        return made
 
     @cached_property
     def _magnification(self) -> Scrubber:
@@ -92,9 +82,9 @@ class Looks:
         finally:
             self._showing = False
 
-    def _on_interface(self, event: Any) -> None:
-        if not self._showing and event.new:
-            self._session.watch(interface=event.new)
+    def _choose(self, interface: str) -> None:
+        if not self._showing and interface:
+            self._session.watch(interface=interface)
 
     def _magnify(self, place: int) -> None:
         decade, step = divmod(place - 1, len(STEPS))

@@ -1,4 +1,4 @@
-"""What the page is made of: panes that the style sheet knows by their roles, and buttons."""
+"""What the page is made of: panes that the style sheet knows by their roles, buttons and lists."""
 
 from __future__ import annotations
 
@@ -27,6 +27,15 @@ def button(label: str, icon: str, act: Callable[[], None], **options: Any) -> pm
     """Give a small button that does something."""
     made = pmui.Button(label=label, icon=icon, size="small", **options)
     made.on_click(lambda event: act())
+    return made
+
+
+def select(
+    label: str, options: Any, choose: Callable[[Any], None] = lambda value: None, **more: Any
+) -> pmui.Select:
+    """Give a small list to choose from; `choose` is told what is chosen."""
+    made = pmui.Select(label=label, options=options, size="small", **more)
+    made.param.watch(lambda event: choose(event.new), "value")
     return made
 
 

@@ -17,7 +17,7 @@ import panel_material_ui as pmui
 from bokeh.document import Document
 
 from app.errand import Errand, Found
-from app.panes import button, column, text
+from app.panes import button, column, select, text
 from app.views.colors import GREY
 from app.views.legend import Key, card_title
 from solver.study.figure_data import HUES, Panel
@@ -56,8 +56,7 @@ class Report:
         self._role = "report"
         self._progress = _words(role="progress")
         self._heading, self._sheet = _words(), column(role="paper")
-        self._past = pmui.Select(label="Shown", options=[], width=260, size="small", visible=False)
-        self._past.param.watch(lambda event: self._put(event.new), "value")
+        self._past = select("Shown", [], self._put, width=260, visible=False)
         self._files = _row(margin=(0, 6, 8, 6))
         parts = self._heading, self._sheet, self._files
         self._card = column(*parts, role="card paper", visible=False)

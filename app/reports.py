@@ -11,6 +11,7 @@ import panel_material_ui as pmui
 
 from app.errand import Found
 from app.labels import label_of
+from app.panes import select
 from app.report import Report
 from app.session import Session
 from app.worker.shown import has_reference
@@ -88,13 +89,9 @@ class StudyReport(Report):
         self._crowds: WeakKeyDictionary[Found, int] = WeakKeyDictionary()
 
     def _choices(self) -> list[Any]:
-        self._repeats = pmui.Select(
-            label="Timed passes",
-            options=list(REPEATS),
-            value=REPEATS[1],
-            width=130,
-            size="small",
-            description="The median of the passes counts.",
+        what = "The median of the passes counts."
+        self._repeats = select(
+            "Timed passes", list(REPEATS), value=REPEATS[1], width=130, description=what
         )
         self._growth = pmui.Switch(
             label="Growth with the size",
@@ -129,9 +126,7 @@ class StabilityReport(Report):
     )
 
     def _choices(self) -> list[Any]:
-        self._cases = pmui.Select(
-            label="Cases", options=list(CASES), width=230, size="small", value=next(iter(CASES))
-        )
+        self._cases = select("Cases", list(CASES), width=230, value=next(iter(CASES)))
         choice = pmui.RadioButtonGroup(
             options=[EVERY, WRONG], value=EVERY, size="small", margin=(8, 10), sx=PLAIN
         )

@@ -78,7 +78,7 @@ def rehearse() -> None:
 
 def _end(dashboard: Dashboard, document: Document, context: Any) -> None:
     """Leave nothing behind when a page is gone."""
-    dashboard.end()
+    dashboard.session.close()
     forget(document)
     pn.state.log(f"page closed, {len(PAGES)} left")
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import panel as pn
-import panel_material_ui as pmui
 
 from app.address import PACES
-from app.panes import button
+from app.panes import button, select
 from app.scrubber import scrubber
 from app.session import Session
 from solver.settings import Settings
@@ -129,15 +128,14 @@ class Transport:
         self._reset = button(
             "Reset", "restart_alt", self.reset, variant="outlined", description=does
         )
-        self._pace = pmui.Select(
-            label="Pace",
-            options={label: name for name, label in LABELS.items()},
+        self._pace = select(
+            "Pace",
+            {label: name for name, label in LABELS.items()},
+            lambda name: self._session.set_pace(PACES[name]),
             value=next(name for name, pace in PACES.items() if pace == self._session.pace),
             width=160,
-            size="small",
             description="Iterations per second that are shown; the method itself is not slowed.",
         )
-        self._pace.param.watch(lambda event: self._session.set_pace(PACES[event.new]), "value")
 
     def _make_sliders(self) -> None:
         self._iteration = scrubber(

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from app.views.legend import Key
+from app.worker.frames import Fields
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
-from app.worker.shown import Look
+from app.worker.shown import Look, instant_of
 from solver.scenes import kind_of
 from solver.settings import Settings
 
@@ -45,6 +46,14 @@ class Scene:
     frame: Frame
     instant: int
     look: Look
+
+    @property
+    def ghost(self) -> tuple[Recording, Fields, int] | None:
+        """The run before, its last fields and its instant, where they are of the same interface."""
+        fields = self.before.frame if self.before else None
+        if self.before is None or fields is None or fields.interface != self.frame.interface:
+            return None
+        return self.before, fields, instant_of(self.look.phase, fields.friction.shape[1])
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,6 @@ from app.views.colors import BLUE, GREEN, GREY, ORANGE, SKY
 from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import across, decimal_scale, length_of, spanned, upright
-from app.worker.shown import instant_of
 from solver.settings import Settings
 
 
@@ -39,23 +38,15 @@ def draw(scene: Scene, kept: Any) -> Drawing | None:
     if begun.closed_form is not None:
         curves.append(Curve(places, begun.closed_form[:, instant] / factor, GREEN, 6, alpha=0.35))
         keys.append(Key(GREEN, "band", "closed form"))
-    if ghost := _before(scene, factor):
-        curves.append(ghost)
+    if scene.ghost is not None:
+        before, fields, then = scene.ghost
+        curves.append(Curve(before.stand.positions, fields.friction[:, then] / factor, SKY, 2))
         keys.append(Key(SKY, "line", "run before"))
     if run.reference is not None:
         force = run.reference.friction[:, instant] / factor
         curves.append(Curve(places, force, ORANGE, 4, alpha=0.8))
     curves.append(Curve(places, scene.frame.friction[:, instant] / factor, BLUE))
     return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")))
-
-
-def _before(scene: Scene, factor: float) -> Curve | None:
-    before = scene.before
-    if before is None or before.frame is None or before.frame.interface != scene.frame.interface:
-        return None
-    found = before.frame.friction
-    instant = instant_of(scene.look.phase, found.shape[1])
-    return Curve(before.stand.positions, found[:, instant] / factor, SKY, 2)
 
 
 VIEW = View("Friction force", Plot("Position x (m)", "Friction force (N/m)"), draw, applies)

@@ -9,7 +9,6 @@ from app.views.drawing import Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, length_of, spanned, upright
 from app.worker.frames import Fields
-from app.worker.shown import instant_of
 
 KEYS = (
     Key(PURPLE, "line", "pressure p"),
@@ -34,10 +33,9 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     y = spanned(limits[0] / factor, limits[1] / factor, label=f"Traction ({unit})")
     curves = [upright(begun.cuts, y, color=GREY, alpha=0.35, width=1)]
     keys, past = list(KEYS), list[Key]()
-    ghost = scene.before.frame if scene.before else None
-    if scene.before is not None and ghost is not None and ghost.interface == frame.interface:
-        then = instant_of(scene.look.phase, ghost.friction.shape[1])
-        curves += _pair(scene.before.stand.positions, ghost, then, factor, width=2, alpha=0.4)
+    if scene.ghost is not None:
+        before, fields, then = scene.ghost
+        curves += _pair(before.stand.positions, fields, then, factor, width=2, alpha=0.4)
         past.append(Key(BLUE, "pale", "run before"))
     places = begun.positions
     if run.reference is not None:
