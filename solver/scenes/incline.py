@@ -139,7 +139,7 @@ def incline(settings: InclineSettings) -> Stack:
     )
 
 
-def _loop(settings: InclineSettings, problem: Problem) -> Loop:
+def _loop(settings: InclineSettings, _problem: Problem) -> Loop:
     """Give the spring's force over the angle: it lags behind on the way back."""
     return Loop(
         ("Angle of the slope", "°"),
