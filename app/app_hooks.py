@@ -10,7 +10,7 @@ from tornado.ioloop import IOLoop
 ROOT = str(Path(__file__).resolve().parents[1])
 
 
-def on_server_loaded(server_context: Any) -> None:
+def on_server_loaded(_server_context: Any) -> None:
     """Import what pages need, build a page that nobody sees, and watch the event loop."""
     # Here and not above: what a hook's module does to the path while it loads is undone.
     if ROOT not in sys.path:

@@ -76,7 +76,7 @@ def rehearse() -> None:
         session.close()
 
 
-def _end(dashboard: Dashboard, document: Document, context: Any) -> None:
+def _end(dashboard: Dashboard, document: Document, _context: Any) -> None:
     """Leave nothing behind when a page is gone."""
     dashboard.session.close()
     forget(document)

@@ -146,7 +146,7 @@ def _distance(problem: Problem) -> Distance | None:
     return distance_to(reference, problem)
 
 
-def _scenes(chosen: argparse.Namespace) -> int:
+def _scenes(_chosen: argparse.Namespace) -> int:
     for name, entry in CATALOGUE.items():
         print(f"{name:<10} {entry.title} ({entry.source})")
     return 0

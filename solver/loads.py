@@ -43,7 +43,7 @@ def _sine(phase: Array) -> Array:
     return np.where(np.abs(found) < NO_LOAD, 0.0, found)
 
 
-def _delayed(phase: Array, seed: int) -> Array:
+def _delayed(phase: Array, _seed: int) -> Array:
     return np.where(phase > HELD, _sine((phase - HELD) / (1.0 - HELD)), 0.0)
 
 

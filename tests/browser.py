@@ -83,9 +83,10 @@ class Server:
         while time.monotonic() < end:
             try:
                 urllib.request.urlopen(self.health, timeout=1).close()
-                return
             except OSError:
                 time.sleep(0.1)
+            else:
+                return
         raise TimeoutError(self.log)
 
     @property

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import islice, takewhile
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from solver.latin import Ending, solve
+from solver.latin import Ending, iterations, solve
 from solver.laws import Component, Friction
 from solver.laws.compliant import CompliantFriction
 from solver.laws.interface import Region
@@ -95,6 +97,17 @@ def test_every_scene_ends_with_a_certified_solution(scene, stiffness):
     found = run(scene, contact_stiffness=stiffness)
     assert found.is_certified
     assert found.records[-1].error_force < 1e-8
+
+
+@pytest.mark.parametrize("scene", ["bar", "strand"])
+@pytest.mark.parametrize("stiffness", [3.0, 30.0])
+def test_a_soft_contact_is_solved_in_a_few_iterations(scene, stiffness):
+    changes = {**COMPLIANT, "contact_stiffness": stiffness}
+    chosen = CATALOGUE[scene].settings.checked(changes)
+    problem = discretise(chosen)
+    distance = distance_to(reference_of(problem), problem)
+    found = islice(iterations(problem, chosen), 20)
+    assert len(list(takewhile(lambda it: distance.of_friction_force(it) > 1e-6, found))) < 15
 
 
 @pytest.mark.parametrize("scene", ["bar", "block"])

@@ -120,3 +120,15 @@ def test_separated_bases_keep_their_k():
     chosen = options(linear_stage="pgd")
     assert not chosen.applies("k_update")
     assert sample(chosen, 30)[-1].course is None
+
+
+def test_a_compliant_point_below_its_bound_sticks_though_it_moves():
+    chosen = options(**FAST, friction_law="compliant", contact_stiffness=100.0, peak=300.0)
+    found = sample(chosen, 2)[-1]
+    law = found.problem.friction
+    moves = np.diff(law.by_point(law.tangent.jump(found.local_displacement)), axis=1) != 0.0
+    below = np.abs(found.boundary_local_force[law.tangent.above]) < 0.99 * law.bound[:, None]
+    below = law.by_point(~below) == 0
+    assert np.count_nonzero(moves & below[:, 1:]) > 100
+    assert np.array_equal(found.course.status, found.status)
+    assert not found.course.status[below].any()

@@ -31,6 +31,8 @@ LAYERS = [
     ["__main__"],
 ]
 """Parts of the solver; each may import itself and what stands before it."""
+LONGEST_FILE, LONGEST_FUNCTION = 300, 50
+LONGER_FOR_NOW = {"app/dashboard.py", "app/session.py"}
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 
 
@@ -57,6 +59,13 @@ def imports(path):
             found.add(node.module)
             found.update(f"{node.module}.{alias.name}" for alias in node.names)
     return found
+
+
+def functions(path):
+    """Give the name and the length of all functions of a file, docstrings included."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node.name, node.end_lineno - node.lineno + 1
 
 
 def layer(module):
@@ -104,6 +113,13 @@ def test_no_module_of_the_solver_imports_itself_by_detours():
 def test_every_part_of_the_solver_has_its_layer():
     parts = {name.split(".")[1] for name in SOLVER if name != "solver"}
     assert parts == {part for parts in LAYERS for part in parts}
+
+
+@pytest.mark.parametrize("path", [*SOLVER.values(), *modules("app").values()], ids=str)
+def test_files_and_functions_are_of_a_size_to_read(path):
+    if path.relative_to(ROOT).as_posix() not in LONGER_FOR_NOW:
+        assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE
+    assert {name: lines for name, lines in functions(path) if lines > LONGEST_FUNCTION} == {}
 
 
 def test_the_code_is_linted_formatted_and_typed():

@@ -13,7 +13,7 @@ MOST_COLUMNS = 240
 """Iterations that are drawn at most; a small plot has no more pixels."""
 
 
-def draw(scene: Scene, kept: None) -> Drawing | None:
+def draw(scene: Scene, _kept: None) -> Drawing | None:
     """Draw the numbers of modes of all iterations done as a map."""
     run, frame = scene.run, scene.frame
     if not run.sizes or frame.bases is None:

@@ -27,7 +27,7 @@ KEYS = tuple(
 )
 
 
-def draw(scene: Scene, kept: None) -> Drawing:
+def draw(scene: Scene, _kept: None) -> Drawing:
     """Draw what the method knows of itself (dashed), and how far it really is (solid).
 
     The ghost is the run before, or with separated bases, the full linear stage beside them.

@@ -16,7 +16,7 @@ def applies(settings: Settings) -> bool:
     return not is_plane(settings)
 
 
-def draw(scene: Scene, kept: Any) -> Drawing | None:
+def draw(scene: Scene, _kept: Any) -> Drawing | None:
     """Draw the force per length, with its bounds, the reference, the closed form and the ghost."""
     run, begun, instant = scene.run, scene.run.stand, scene.instant
     if begun.bound is None:

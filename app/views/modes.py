@@ -27,7 +27,7 @@ def applies_in_time(settings: Settings) -> bool:
     return settings.is_reduced and has_instants(settings)
 
 
-def draw_space(scene: Scene, kept: None) -> Drawing | None:
+def draw_space(scene: Scene, _kept: None) -> Drawing | None:
     """Draw displacement modes along the chosen substructure, dashed when just born."""
     bases = scene.frame.bases
     if bases is None:
@@ -42,7 +42,7 @@ def draw_space(scene: Scene, kept: None) -> Drawing | None:
     return Drawing(x, UP, _curves(modes.positions, modes.space_modes, modes), keys=keys)
 
 
-def draw_time(scene: Scene, kept: None) -> Drawing | None:
+def draw_time(scene: Scene, _kept: None) -> Drawing | None:
     """Draw the time functions of the same modes, each over its largest value, which is told."""
     bases, instants = scene.frame.bases, scene.run.stand.instants
     if bases is None:

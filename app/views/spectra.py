@@ -16,7 +16,7 @@ LEAST = 1e-30
 CROSS, RING = Marks((), (), GREY, "cross"), Marks((), (), VERMILION, "ring")
 
 
-def draw(scene: Scene, kept: None) -> Drawing:
+def draw(scene: Scene, _kept: None) -> Drawing:
     """Draw how fast the singular values fall, each over the largest of all.
 
     Rings are the sizes of the chosen separated basis's modes; crosses are the singular values of

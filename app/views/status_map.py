@@ -20,7 +20,7 @@ CHOSEN = Key(VERMILION, "line", "chosen instant")
 OPENED = (Key(OPEN, "square", "open"), Key(VERMILION, "line", "instant"))
 
 
-def draw(scene: Scene, kept: Any) -> Drawing:
+def draw(scene: Scene, _kept: Any) -> Drawing:
     """Draw the contact status, the cuts, and the chosen instant."""
     begun, places, instants = scene.run.stand, scene.run.stand.positions, scene.run.stand.instants
     half_x, half_t = 0.5 * _step(places), 0.5 * _step(instants)

@@ -40,8 +40,8 @@ class ConstantDirection:
     def __init__(self, k: Array) -> None:
         self.k = k
 
-    def see(self, position: Array) -> None:
-        """Nothing depends on W^."""
+    def see(self, local_displacement: Array, incoming: Array) -> None:
+        """Nothing depends on the local stage."""
 
     def turn(self, displacement: Array, force: Array) -> tuple[Array, Array] | None:
         """Nothing changes."""
@@ -71,6 +71,7 @@ class DirectionUpdate:
     def __init__(self, problem: Problem, k: Array, course: Course | None) -> None:
         self._problem = problem
         self._first = k
+        self._gives_way = any(law.compliance.any() for law in problem.rubbing.values())
         self.course = course or Course("first", k)
 
     @property
@@ -84,14 +85,23 @@ class DirectionUpdate:
         wait = {"first": CALM, "updated": TRIAL}.get(self.course.phase)
         return wait is not None and self.course.count >= wait
 
-    def see(self, position: Array) -> None:
-        """Take in W^ of an iteration, shape (n_rows, n_instants)."""
+    def see(self, local_displacement: Array, incoming: Array) -> None:
+        """Take in a local stage.
+
+        Parameters
+        ----------
+        local_displacement, incoming
+            Its W^, and W - F/k that it read, shape (n_rows, n_instants).
+        """
         course = self.course
         if course.phase == "updated":
             self.course = replace(course, count=course.count + 1)
         if course.phase != "first":
             return
-        status = contact_status(self._problem, position)
+        # a point that gives way moves while it sticks: its force tells whether it slips
+        reads = self._gives_way
+        force = course.k[:, None] * (local_displacement - incoming) if reads else None
+        status = contact_status(self._problem, local_displacement, force)
         changed = 1.0 if course.status is None else float(np.mean(status != course.status))
         is_calm = changed <= SETTLED
         self.course = replace(course, status=status, count=course.count + 1 if is_calm else 0)

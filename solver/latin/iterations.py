@@ -118,7 +118,7 @@ class Method:
         """Obey the interface laws."""
         self._read = self.cycle.incoming
         self._local_error = self.cycle.local_stage(number)
-        self._direction.see(self.cycle.parts.local.stage.displacement)
+        self._direction.see(self.cycle.parts.local.stage.displacement, self._read)
 
     def linear_stage(self, number: int) -> None:
         """Solve the elasticity of all substructures."""

@@ -30,7 +30,7 @@ class Dirichlet(Interface):
         """Take the displacement as it is."""
         rows, given = region.of(self.rows), self.displacement[:, region.instants]
 
-        def prescribe(incoming: Array, displacement: Array, some: slice) -> None:
+        def prescribe(_incoming: Array, displacement: Array, some: slice) -> None:
             displacement[rows] = given[:, some]
 
         return prescribe

@@ -83,7 +83,7 @@ class Region:
 class Rule(Protocol):
     """A law that is ready for one region: it obeys in the local stage (paper, problem 2.1)."""
 
-    def __call__(self, incoming: Array, displacement: Array, some: slice) -> None:
+    def __call__(self, incoming: Array, displacement: Array, some: slice, /) -> None:
         """Write W^ of the interface's rows.
 
         Parameters

@@ -48,7 +48,7 @@ class Perfect(Interface):
         k, other = region.k[self.first], region.k[self.second]
         share = (k / (k + other))[:, None]
 
-        def glue(incoming: Array, displacement: Array, some: slice) -> None:
+        def glue(incoming: Array, displacement: Array, _some: slice) -> None:
             common = perfect(incoming[first], incoming[second], share)
             displacement[first] = common
             displacement[second] = common

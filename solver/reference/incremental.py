@@ -89,37 +89,40 @@ class IncrementalRod:
             As soon as `stop` gives True.
         """
         start = time.perf_counter()
-        problem, structure = self._problem, self._structure
+        structure = self._structure
         guesses = None if guess is None else structure.at_dofs(guess)
         before = structure.band.solutions
-        increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
-        balance, status = np.zeros((2, problem.n_dofs))
-        residual = unbalanced = 0.0
-        converged = np.zeros(problem.n_instants, dtype=bool)
-        for instant in range(problem.n_instants):
+        found: list[_Minimum] = []
+        balance, status = np.zeros((2, self._problem.n_dofs))
+        for instant in range(self._problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
             if most is not None and structure.band.solutions - before >= most:
                 break
             status = status if guesses is None else guesses[instant]
             load = structure.load_steps[instant] + balance
-            found = structure.minimise(load, structure.moves[instant], status)
-            increments[instant], pulls[instant] = found.increment, found.pull
-            balance, status = found.pull, found.status
-            residual = max(residual, found.residual)
-            unbalanced = max(unbalanced, found.violation)
-            converged[instant] = True
+            found.append(structure.minimise(load, structure.moves[instant], status))
+            balance, status = found[-1].pull, found[-1].status
+        steps = structure.band.solutions - before
+        return self._gathered(found, steps, time.perf_counter() - start)
+
+    def _gathered(self, found: list[_Minimum], steps: int, seconds: float) -> Reference:
+        """Put together the minima of the first instants, from which on nothing moves."""
+        problem, dofs = self._problem, self._structure.point_dofs
+        increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
+        for instant, one in enumerate(found):
+            increments[instant], pulls[instant] = one.increment, one.pull
         return Reference(
             problem=problem,
             displacement=np.cumsum(increments, axis=0).T * problem.scales.displacement,
-            contact_force=0.0 - pulls.T[structure.point_dofs] * problem.scales.force,
-            status=np.sign(increments.T[structure.point_dofs]).astype(np.int8),
-            residual=residual,
-            unbalanced=unbalanced * problem.scales.force,
-            converged=converged,
+            contact_force=0.0 - pulls.T[dofs] * problem.scales.force,
+            status=np.sign(increments.T[dofs]).astype(np.int8),
+            residual=max([0.0, *(one.residual for one in found)]),
+            unbalanced=max([0.0, *(one.violation for one in found)]) * problem.scales.force,
+            converged=np.arange(problem.n_instants) < len(found),
             ambiguous=np.zeros(problem.n_instants, dtype=bool),
-            steps=structure.band.solutions - before,
-            seconds=time.perf_counter() - start,
+            steps=steps,
+            seconds=seconds,
         )
 
 

@@ -43,35 +43,41 @@ def _has_size(side: str, component: str, prescribed: bool) -> Callable[..., bool
     return applies
 
 
-def _of_component(side: str, component: str) -> dict[str, Parameter]:
-    group, along = side.capitalize(), "x" if side == "top" else "y"
+def _sizes(side: str, component: str) -> dict[str, Parameter]:
+    """Define how large a traction and a displacement are."""
+    along = "x" if side == "top" else "y"
     towards = "outward" if component == "normal" else f"along {along}"
-    name = f"{side}_{component}"
-    title = f"{group} {component}"
-    given = _is_given(side)
+    common = {"group": side.capitalize(), "essential": True}
     return {
-        f"{name}_traction": quantity(
+        f"{side}_{component}_traction": quantity(
             0.0,
             (-1e15, 1e15),
             (-2e8, 2e8),
             f"Mean {component} traction on the {side} side, positive {towards}.",
-            group=group,
             title=f"{component.capitalize()} traction",
             unit="Pa",
             applies=_has_size(side, component, prescribed=False),
-            essential=True,
+            **common,
         ),
-        f"{name}_displacement": quantity(
+        f"{side}_{component}_displacement": quantity(
             0.0,
             (-1e12, 1e12),
             (-1e-4, 1e-4),
             f"Mean {component} displacement of the {side} side, positive {towards}.",
-            group=group,
             title=f"{component.capitalize()} displacement",
             unit="m",
             applies=_has_size(side, component, prescribed=True),
-            essential=True,
+            **common,
         ),
+    }
+
+
+def _shapes(side: str, component: str) -> dict[str, Parameter]:
+    """Define how what is given varies along the side, and over time."""
+    name, group = f"{side}_{component}", side.capitalize()
+    title = f"{group} {component}"
+    given = _is_given(side)
+    return {
         f"{name}_slope": quantity(
             0.0,
             (-1e6, 1e6),
@@ -138,7 +144,8 @@ def _define(side: str) -> None:
         ),
     )
     for component in COMPONENTS:
-        for name, definition in _of_component(side, component).items():
+        own = _sizes(side, component) | _shapes(side, component)
+        for name, definition in own.items():
             SideSettings.param.add_parameter(name, definition)
 
 

@@ -93,9 +93,9 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
     law = problem.friction
     lengths = law.by_point(law.weights)[1:]
     moments = {time: int(np.argmin(np.abs(problem.instants - time))) for time in INSTANTS}
-    forces = {label: fields.contact_force[1:] for label, fields in solutions.items()}
-    displacements = {label: fields.displacement[1:] for label, fields in solutions.items()}
     root = np.sqrt(lengths)[:, None]
+    forces = {label: fields.contact_force[1:] for label, fields in solutions.items()}
+    weighted = {label: fields.displacement[1:] * root for label, fields in solutions.items()}
     panels = tuple(
         Panel(
             f"t = {instant:g} s",
@@ -116,12 +116,7 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
         "while the monoscale one is far from the reference, the load not fully propagated.",
         (
             findings.balance(solutions, moments[INSTANTS[0]]),
-            findings.distances(
-                "displacement",
-                "the displacement",
-                {label: field * root for label, field in displacements.items()},
-                moments,
-            ),
+            findings.distances("displacement", "the displacement", weighted, moments),
             findings.distances(
                 "force",
                 "the friction force",

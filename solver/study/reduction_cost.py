@@ -118,24 +118,13 @@ def reduction_cost(
     target = np.asfortranarray(generator.normal(size=shape))
     smallest = min(len(part.rows) for part in problem.substructures)
     sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
-    stages: list[Callable[[], None]] = [
-        _step(FullLinearStage(problem, k, multiscale=True), start, target)
-    ]
+    stages: list[LinearStage[Any]] = [FullLinearStage(problem, k, multiscale=True)]
     for threshold in (1.0, 0.0):
-        for size in sizes:
-            chosen = settings.replace(
-                linear_stage="pgd",
-                pgd_modes=size,
-                pgd_enrichment=threshold,
-                pgd_pairs=1,
-                pgd_tolerance=1e-14,
-            )
-            stages.append(_step(ReducedLinearStage(problem, k, chosen), start, target))
-    samples: list[list[float]] = [[] for _ in stages]
-    for _ in range(repeats):
-        for stage, times in zip(stages, samples, strict=True):
-            times.append(_seconds(stage, max(3, int(2e6 / np.prod(shape)))))
-    full, *rest = (statistics.median(times) for times in samples)
+        stages += [
+            ReducedLinearStage(problem, k, _with_modes(settings, size, threshold)) for size in sizes
+        ]
+    steps = [_step(stage, start, target) for stage in stages]
+    full, *rest = _medians(steps, repeats, max(3, int(2e6 / np.prod(shape))))
     return ReductionCost(
         operator,
         smallest,
@@ -151,6 +140,26 @@ def reduction_cost(
             for size in sizes
         },
     )
+
+
+def _with_modes(settings: Settings, size: int, threshold: float) -> Settings:
+    """Choose bases of that many modes, enriched where they leave more than the threshold."""
+    return settings.replace(
+        linear_stage="pgd",
+        pgd_modes=size,
+        pgd_enrichment=threshold,
+        pgd_pairs=1,
+        pgd_tolerance=1e-14,
+    )
+
+
+def _medians(steps: Sequence[Callable[[], None]], repeats: int, calls: int) -> list[float]:
+    """Measure steps in turns, each so many calls long; give the median seconds of each."""
+    samples: list[list[float]] = [[] for _ in steps]
+    for _ in range(repeats):
+        for step, times in zip(steps, samples, strict=True):
+            times.append(_seconds(step, calls))
+    return [statistics.median(times) for times in samples]
 
 
 WHOLE = ((51, 101), (201, 101), (1001, 101), (1001, 1001), (4001, 401))
