@@ -17,6 +17,9 @@ TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 hv.extension("bokeh")
 # Where there is no graphics card, canvas is faster, and its lines are clean.
 hv.renderer("bokeh").webgl = False
+# Plots are drawn on a thread. As in a notebook, each has a document of its own: otherwise it takes
+# that of the page which the server is at work on, and changes it there and then.
+hv.renderer("bokeh").notebook_context = True
 
 
 def plot(panel: Panel) -> pn.pane.Bokeh:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
 import param
@@ -26,13 +28,15 @@ class Checked(param.Parameterized):
     """Name of one of the methods."""
 
     @classmethod
-    def definitions(cls) -> dict[str, Parameter]:
+    @cache
+    def definitions(cls) -> Mapping[str, Parameter]:
         """Give the definition of every setting, by name, in the order of their groups."""
-        return {
+        found = {
             name: cls.param[name]
             for name in cls.param
             if (cls.param[name].metadata or {}).get("about") is not None
         }
+        return MappingProxyType(found)
 
     @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:

@@ -24,6 +24,7 @@ from solver.files import (
     summary,
 )
 from solver.latin import Ending, Solution, solve
+from solver.lessons.command import add_lesson
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
@@ -71,6 +72,7 @@ def _parser() -> argparse.ArgumentParser:
     settings.add_argument("scene")
     settings.set_defaults(command=_settings)
     add_reports(commands)
+    add_lesson(commands)
     return parser
 
 

@@ -20,9 +20,36 @@ from worker_line import Line
 
 from solver.study.paper_runs import PaperRuns
 
+LONGEST_FIRST = (
+    "test_page_controls_of_block_and_layers",
+    "test_page_tabs",
+    "test_page_survives_its_server",
+    "test_page_controls_of_bar_and_strand",
+    "test_page_in_a_browser",
+    "test_every_setting_can_be_moved",
+    "test_random_settings",
+    "test_nothing_is_kept_of_closed_pages",
+    "test_a_hundred_kills_and_drops",
+    "test_stability",
+    "test_page_scenes",
+    "test_page_shows_the_bases",
+    "test_converged_means_it",
+    "test_server_leaves_nothing_behind",
+    "test_random_scenes",
+    "test_page_paper_figures",
+)
+"""Files of a quarter of a minute or more. A worker has a file to itself, so that whoever came to
+one of these last would work on alone."""
+
 # Hypothesis also draws numbers that stand in our modules, those that happen to be loaded: which
 # examples a test sees would depend on the tests that ran before it in the same process
 draws._get_local_constants = Constants
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files that take longest, and keep the order of all else."""
+    places = {name: place for place, name in enumerate(LONGEST_FIRST)}
+    items.sort(key=lambda item: places.get(item.path.stem, len(places)))
 
 
 @pytest.fixture(scope="session")

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from browser import Server
 from playwright.sync_api import Browser, Locator, Page, expect
+from processes import PATIENCE
 
 ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
 IGNORED = ("Failed to load resource", "favicon")
@@ -30,6 +31,7 @@ def visits(server: Server, chrome: Browser) -> Iterator[Visit]:
 
     def visit(query: str = "", width: int = 1280, height: int = 720) -> Page:
         page = chrome.new_page(viewport={"width": width, "height": height})
+        page.set_default_timeout(1e3 * PATIENCE)
         page.on(
             "console",
             lambda message: (

@@ -9,11 +9,9 @@ import threading
 from contextlib import closing
 from pathlib import Path
 
-import panel as pn
 import pytest
-from panel.io.server import get_server
 from processes import is_alive, wait_for
-from web_pages import WebPage, run_apart, until
+from web_pages import WebPage, run_apart, serve_pages, until
 
 from app import serve
 from app.pages import Pages
@@ -78,15 +76,7 @@ def test_a_hundred_kills_in_a_row_leave_nothing_and_the_run_goes_on() -> None:
 @pytest.mark.filterwarnings("ignore")
 def test_a_hundred_drops_in_a_row_leave_nothing_and_pictures_come() -> None:
     async def drops() -> None:
-        pn.extension(notifications=True)
-        server = get_server(
-            {"/app": lambda: serve.open_page()},
-            port=0,
-            show=False,
-            start=True,
-            unused_session_lifetime_milliseconds=5000,
-            check_unused_sessions_milliseconds=500,
-        )
+        server = serve_pages()
         page = WebPage(f"http://localhost:{server.port}/app?method=paper&tolerance=1e-30")
         await page.open()
         for _ in range(TIMES):

@@ -26,7 +26,7 @@ LAYERS = [
     ["reduction"],
     ["latin"],
     ["files", "study"],
-    ["report_commands"],
+    ["lessons", "report_commands"],
     ["cli"],
     ["__main__"],
 ]

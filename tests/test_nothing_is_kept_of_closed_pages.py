@@ -5,12 +5,10 @@ from __future__ import annotations
 import asyncio
 import gc
 
-import panel as pn
 import pytest
 from bokeh.document import Document
 from bokeh.server.server import Server
-from panel.io.server import get_server
-from web_pages import WebPage, run_apart, until
+from web_pages import WebPage, run_apart, serve_pages, until
 
 from app import serve
 from app.dashboard import Dashboard
@@ -46,15 +44,7 @@ async def visit(server: Server, address: str) -> None:
 @pytest.mark.filterwarnings("ignore")
 def test_waves_of_pages_leave_nothing() -> None:
     async def waves() -> list[dict[str, int]]:
-        pn.extension(notifications=True)
-        server = get_server(
-            {"/app": lambda: serve.open_page()},
-            port=0,
-            show=False,
-            start=True,
-            unused_session_lifetime_milliseconds=5000,
-            check_unused_sessions_milliseconds=500,
-        )
+        server = serve_pages()
         counts = []
         for _ in range(WAVES):
             await visit(server, f"http://localhost:{server.port}/app")

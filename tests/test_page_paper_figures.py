@@ -12,13 +12,14 @@ import holoviews as hv
 import numpy as np
 import pytest
 from bokeh.document import Document
+from bokeh.io.doc import patch_curdoc
 from jobs import refuse, sleep
 from panel.io.state import set_curdoc
 from processes import PATIENCE, wait_for
 
 from app import reports
 from app.errand import Errand, Found
-from app.report_plots import overlay
+from app.report_plots import overlay, plot
 from app.reports import PaperFigures
 from app.worker.bench import Bench
 from app.worker.desk import SECTIONS, Desk, said
@@ -131,6 +132,22 @@ def test_a_plot_can_be_read_and_enlarged_but_does_not_hold_a_page_that_is_scroll
     assert {"HoverTool", "BoxZoomTool", "PanTool", "WheelZoomTool", "ResetTool"} <= kinds
     assert drawn.toolbar.active_drag is None
     assert drawn.toolbar.active_scroll in (None, "auto")
+
+
+def test_a_plot_is_drawn_without_a_touch_to_the_page_that_the_server_is_at_work_on(
+    panels: list[Panel],
+) -> None:
+    class Untouched(Document):
+        def __setattr__(self, name: str, value: Any) -> None:
+            assert not self.__dict__.get("is_made"), name
+            super().__setattr__(name, value)
+
+    page = Untouched()
+    callbacks = set(page.callbacks.session_destroyed_callbacks)
+    page.is_made = True
+    with patch_curdoc(page):
+        plot(panels[0])
+    assert set(page.callbacks.session_destroyed_callbacks) == callbacks
 
 
 def test_the_report_of_the_command_is_shown_where_they_are_found_computed(

@@ -13,7 +13,8 @@ from solver.cli import main
 ROOT = Path(__file__).resolve().parents[1]
 FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"
 MATHEMATICS, MEASUREMENTS = ROOT / "solver" / "README.md", ROOT / "solver" / "study" / "README.md"
-READMES = [FRONT, PAGE, MATHEMATICS, MEASUREMENTS]
+LESSONS = ROOT / "app" / "lessons" / "README.md"
+READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, MEASUREMENTS]
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
 LONGEST = 150
 """Lines of the first page."""

@@ -31,8 +31,8 @@ def test_seek_shows_the_exact_iterate(number: int) -> None:
     shown.obey(Seek(1, number))
     frame, other = shown.frame(), expected(number, SHORT)
     assert frame.iteration == shown.pictures[-1].facts.iteration == number
-    assert np.array_equal(frame.friction, other.friction)
-    assert np.array_equal(frame.status, other.status)
+    assert np.array_equal(frame.fields.friction, other.fields.friction)
+    assert np.array_equal(frame.fields.status, other.fields.status)
     assert f"showing iteration {number}" in shown.words
 
 

@@ -51,7 +51,8 @@ def test_fields_are_those_of_the_interface_that_is_looked_at(scene: str) -> None
     for name in shown.recording.stand.interfaces:
         look = replace(ALL, interface=name)
         shown.obey(Watch(look))
-        frame, stand, law = shown.frame(look), shown.recording.stand, iterate.problem.rubbing[name]
+        frame, stand = shown.frame(look).fields, shown.recording.stand
+        law = iterate.problem.rubbing[name]
         fields = iterate.contact(name)
         lengths = law.by_point(law.weights)[:, None]
         assert frame.interface == stand.interface == shown.pictures[-1].facts.interface == name
@@ -70,7 +71,7 @@ def test_a_name_that_no_interface_has_shows_the_first() -> None:
 
 
 def test_a_block_that_lifts_off_is_open_there() -> None:
-    status = told("block", {"max_iterations": 40}).frame().status
+    status = told("block", {"max_iterations": 40}).frame().fields.status
     assert (status[[0, -1]] == STATUS_OPEN).all()
     assert (status != STATUS_OPEN).any()
 
@@ -83,7 +84,7 @@ def test_what_few_views_show_is_computed_when_one_looks(
     assert not {"mesh", "axial", "spectra", "bases"} & set(vars(frame))
     assert (frame.mesh is not None) == (scene in ("block", "layers", "incline"))
     assert (frame.axial is not None) == (scene == "strand")
-    assert (frame.load is None) == (scene in ("bar", "strand"))
+    assert (frame.fields.load is None) == (scene in ("bar", "strand"))
     monkeypatch.setattr("app.worker.sampler.friction_spectra", asked.append)
     monkeypatch.setattr(Sampler, "axial", lambda *given: asked.append(given))
     monkeypatch.setattr(Sampler, "mesh_field", lambda *given: asked.append(given))

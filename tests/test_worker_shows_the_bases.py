@@ -54,15 +54,13 @@ def test_modes_and_their_sizes_are_computed_only_for_views_that_are_seen(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked: list[str] = []
-    for name in ("_modes", "_values"):
-        monkeypatch.setattr(
-            f"app.worker.bases.{name}", lambda *given, name=name: asked.append(name)
-        )
+    for name in ("modes", "values"):
+        monkeypatch.setattr(Bases, name, property(lambda bases, name=name: asked.append(name)))
     shown = Shown(Look(views=("Convergence", "PGD basis size")))
     shown.run(1, "bar", SMALL)
     assert asked == []
     bases = bases_of(shown)
-    assert (bases.modes, bases.values, asked) == (None, None, ["_modes", "_values"])
+    assert (bases.modes, bases.values, asked) == (None, None, ["modes", "values"])
 
 
 @pytest.mark.parametrize(("wanted", "found"), [(None, 3), (0, 0), (2, 2), (99, 3)])

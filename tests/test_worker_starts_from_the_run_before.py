@@ -54,7 +54,7 @@ def test_warm_run_starts_from_the_run_that_it_takes_the_place_of() -> None:
         iterate = iterates[number - 1]
         expected = Sampler(iterate.problem, BarSettings.checked(NEAR), ALL)
         other = expected.frame(iterate, ALL)
-        assert np.array_equal(shown.frame().friction, other.friction)
+        assert np.array_equal(shown.frame().fields.friction, other.fields.friction)
 
 
 def test_warm_run_that_is_replaced_at_once_hands_on_what_it_was_given() -> None:

@@ -11,10 +11,29 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any
 
+import panel as pn
+from bokeh.server.server import Server
+from panel.io.server import get_server
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, websocket_connect
 
+from app import serve
+
 READY = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
+
+
+def serve_pages() -> Server:
+    """Serve pages from this process, each given up soon after it was closed."""
+    pn.extension(notifications=True)
+    served: Server = get_server(
+        {"/app": lambda: serve.open_page()},
+        port=0,
+        show=False,
+        start=True,
+        unused_session_lifetime_milliseconds=5000,
+        check_unused_sessions_milliseconds=500,
+    )
+    return served
 
 
 class WebPage:

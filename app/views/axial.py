@@ -30,7 +30,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     wires, axial = scene.run.stand.wires, scene.frame.axial
     if wires is None or axial is None:
         return None
-    load = scene.run.stand.load if scene.run.stand.load is not None else scene.frame.load
+    load = scene.run.stand.load if scene.run.stand.load is not None else scene.frame.fields.load
     assert load is not None
     top = max(SHARED * float(np.abs(load).max()), float(axial.max()))
     limits = held(kept, min(-0.1 * top, float(axial.min())), top)

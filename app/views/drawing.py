@@ -51,7 +51,7 @@ class Scene:
     def ghost(self) -> tuple[Recording, Fields, int] | None:
         """The run before, its last fields and its instant, where they are of the same interface."""
         fields = self.before.frame if self.before else None
-        if self.before is None or fields is None or fields.interface != self.frame.interface:
+        if self.before is None or fields is None or fields.interface != self.frame.fields.interface:
             return None
         return self.before, fields, instant_of(self.look.phase, fields.friction.shape[1])
 

@@ -19,15 +19,15 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
 
     A run on separated bases has the full linear stage beside it, on a clock of its own.
     """
-    run, reference = scene.run, scene.run.reference
+    run = scene.run
     past = [one for one in scene.past if len(one.history)]
     colors = _colors(kept or {}, [one.ticket for one in past])
     every = [one.history for one in [*past, run]] + [run.beside]
     histories = [one.thinned(MOST_POINTS) for one in every if len(one)]
     times = [one["seconds"][place] for one in histories for place in (0, -1)]
     errors = [one["error_force"][-1] for one in histories] + [0.1]
-    if reference is not None:
-        times.append(reference.seconds)
+    if run.reference is not None:
+        times.append(run.reference_seconds)
     x = in_decades(*decades(times, 1e-6))
     y = in_decades(decades(errors, FLOOR)[0], 2.0)
     curves = [_curve(one.history, colors[one.ticket], 2) for one in past]
@@ -37,9 +37,9 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
         curves.append(_curve(run.beside, BLUE, 2.5, "dashed"))
     curves.append(_curve(run.history, BLUE, 3))
     keys += [Key(colors[one.ticket], "line", one.title) for one in reversed(past)]
-    if reference is not None:
+    if run.reference is not None:
         keys.append(Key(GREY, "dotted", "incremental"))
-        curves.append(upright([reference.seconds], y, color=GREY, dash="dotted", width=2))
+        curves.append(upright([run.reference_seconds], y, color=GREY, dash="dotted", width=2))
     return Drawing(x, y, curves, keys=keys, kept=colors)
 
 

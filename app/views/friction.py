@@ -45,7 +45,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing | None:
     if run.reference is not None:
         force = run.reference.friction[:, instant] / factor
         curves.append(Curve(places, force, ORANGE, 4, alpha=0.8))
-    curves.append(Curve(places, scene.frame.friction[:, instant] / factor, BLUE))
+    curves.append(Curve(places, scene.frame.fields.friction[:, instant] / factor, BLUE))
     return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")))
 
 

@@ -24,7 +24,7 @@ STILL = 1e-6
 def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     """Draw the loop of the shown iterate, beside its reference and the run before."""
     run, begun, axes = scene.run, scene.run.stand, scene.run.stand.loop
-    now = _pair(run, scene.frame)
+    now = _pair(run, scene.frame.fields)
     limits = _limits(run, now, kept)
     (x, across), (y, up) = (
         _axis(quantity, one) for quantity, one in zip((axes.across, axes.up), limits, strict=True)

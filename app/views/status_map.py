@@ -29,7 +29,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
     x = spanned(0.0, length_of(scene.run.settings))
     y = spanned(first_t - half_t, last_t + half_t)
     image = Image(
-        np.ascontiguousarray((scene.frame.status + 1).astype(np.uint8).T),
+        np.ascontiguousarray((scene.frame.fields.status + 1).astype(np.uint8).T),
         left=first_x - half_x,
         low=first_t - half_t,
         width=last_x - first_x + 2 * half_x,

@@ -22,13 +22,13 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
 
     The scale holds all instants.
     """
-    run, begun, frame, instant = scene.run, scene.run.stand, scene.frame, scene.instant
-    if begun.coefficient is None or frame.pressure is None:
+    run, begun, now, instant = scene.run, scene.run.stand, scene.frame.fields, scene.instant
+    if begun.coefficient is None or now.pressure is None:
         return None
-    bound = begun.coefficient[:, None] * np.maximum(frame.pressure, 0.0)
+    bound = begun.coefficient[:, None] * np.maximum(now.pressure, 0.0)
     top = float(bound.max())
-    low = float(min(frame.pressure.min(), frame.friction.min(), -top))
-    limits = held(kept, low, float(max(frame.pressure.max(), frame.friction.max(), top)))
+    low = float(min(now.pressure.min(), now.friction.min(), -top))
+    limits = held(kept, low, float(max(now.pressure.max(), now.friction.max(), top)))
     factor, unit = decimal_scale(max(-limits[0], limits[1]), "Pa")
     y = spanned(limits[0] / factor, limits[1] / factor, label=f"Traction ({unit})")
     curves = [upright(begun.cuts, y, color=GREY, alpha=0.35, width=1)]
@@ -43,7 +43,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         curves += _pair(places, run.reference, instant, factor, ORANGE, width=4, alpha=0.8)
     for sign in (1.0, -1.0):
         curves.append(Curve(places, sign * bound[:, instant] / factor, GREY, 1.5, "dashed"))
-    curves += _pair(places, frame, instant, factor)
+    curves += _pair(places, now, instant, factor)
     return Drawing(
         spanned(0.0, length_of(run.settings)), y, curves, keys=(*keys, *past), kept=limits
     )

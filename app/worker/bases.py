@@ -55,7 +55,28 @@ class Bases:
     @cached_property
     def modes(self) -> ShownModes:
         """The modes of the chosen substructure."""
-        return _modes(self.iterate, self.found, self.before, self.substructure)
+        problem, place, before = self.iterate.problem, self.substructure, self.before
+        modes, record = self.found.modes[place], self.found.records[place]
+        past = before.reduction.modes[place] if before and before.reduction else None
+        rows = problem.substructures[place].rows
+        # Rows of two interfaces that meet at a point move together.
+        dofs, first = np.unique(problem.row_dofs[rows], return_index=True)
+        positions = problem.positions[dofs]
+        places = positions if positions.ndim == 1 else positions[:, 0]
+        order = np.argsort(places, kind="stable")
+        points = order[thinned(len(order))]
+        space = modes.displacement_modes[first[points], :MOST_MODES].T
+        size = _signed_size(space)
+        instants = thinned(problem.n_instants)
+        time = modes.time_functions[:MOST_MODES, instants] * problem.scales.displacement
+        return ShownModes(
+            positions=_floats(places[points]),
+            space_modes=_floats(space / size[:, None]),
+            time_functions=_floats(time * size[:, None]),
+            born=_outside(modes, past)[:MOST_MODES] > BORN,
+            record=record,
+            lost=max((past.n_modes if past else 0) + record.added - record.modes, 0),
+        )
 
     @cached_property
     def values(self) -> tuple[Floats, Floats]:
@@ -65,7 +86,15 @@ class Bases:
         singular values, at most `MOST_VALUES`, of what the local stage asks for, W^ + F^/k, in the
         same inner product.
         """
-        return _values(self.iterate, self.found.modes[self.substructure], self.substructure)
+        iterate, modes = self.iterate, self.found.modes[self.substructure]
+        problem = iterate.problem
+        rows, weights = problem.substructures[self.substructure].rows, problem.time_weights
+        wanted = 2.0 * iterate.local_displacement[rows] - iterate.local_incoming[rows]
+        weighted = np.sqrt(modes.k)[:, None] * wanted * np.sqrt(weights)
+        values = np.linalg.svd(weighted, compute_uv=False)[:MOST_VALUES]
+        own = np.sqrt(modes.time_functions**2 @ weights)
+        largest = max(float(values.max()), float(own.max(initial=0.0))) or 1.0
+        return _floats(own / largest), _floats(values / largest)
 
 
 def bases_of(iterate: Iterate, before: Checkpoint | None, substructure: int | None) -> Bases | None:
@@ -84,31 +113,6 @@ def sizes(entry: Record) -> Counts | None:
         return None
     shown = thinned(len(entry.reduction), MOST_SIZES)
     return np.array([entry.reduction[place].modes for place in shown], dtype=np.int16)
-
-
-def _modes(
-    iterate: Iterate, reduction: Reduction, before: Checkpoint | None, place: int
-) -> ShownModes:
-    problem, modes, record = iterate.problem, reduction.modes[place], reduction.records[place]
-    past = before.reduction.modes[place] if before and before.reduction else None
-    rows = problem.substructures[place].rows
-    # Rows of two interfaces that meet at a point move together.
-    dofs, first = np.unique(problem.row_dofs[rows], return_index=True)
-    places = problem.positions[dofs] if problem.positions.ndim == 1 else problem.positions[dofs, 0]
-    order = np.argsort(places, kind="stable")
-    points = order[thinned(len(order))]
-    space = modes.displacement_modes[first[points], :MOST_MODES].T
-    size = _signed_size(space)
-    instants = thinned(problem.n_instants)
-    time = modes.time_functions[:MOST_MODES, instants] * problem.scales.displacement
-    return ShownModes(
-        positions=_floats(places[points]),
-        space_modes=_floats(space / size[:, None]),
-        time_functions=_floats(time * size[:, None]),
-        born=_outside(modes, past)[:MOST_MODES] > BORN,
-        record=record,
-        lost=max((past.n_modes if past else 0) + record.added - record.modes, 0),
-    )
 
 
 def _signed_size(space: Array) -> Array:
@@ -131,17 +135,6 @@ def _outside(modes: Modes, past: Modes | None) -> Array:
         return np.ones(modes.n_modes)
     inside = (modes.k[:, None] * past.outgoing).T @ modes.outgoing
     return np.asarray(1.0 - np.sum(inside**2, axis=0))
-
-
-def _values(iterate: Iterate, modes: Modes, place: int) -> tuple[Floats, Floats]:
-    problem = iterate.problem
-    rows, weights = problem.substructures[place].rows, problem.time_weights
-    wanted = 2.0 * iterate.local_displacement[rows] - iterate.local_incoming[rows]
-    weighted = np.sqrt(modes.k)[:, None] * wanted * np.sqrt(weights)
-    values = np.linalg.svd(weighted, compute_uv=False)[:MOST_VALUES]
-    own = np.sqrt(modes.time_functions**2 @ weights)
-    largest = max(float(values.max()), float(own.max(initial=0.0))) or 1.0
-    return _floats(own / largest), _floats(values / largest)
 
 
 def _floats(values: NDArray[np.floating[Any]]) -> Floats:

@@ -39,8 +39,3 @@ class Beside:
                 self._number = iterate.number
                 records.append(record(iterate, verdict, distance))
         return records
-
-
-def beside(problem: Problem, settings: Settings, start: Start | None) -> Beside | None:
-    """Give what is iterated beside a run, if anything is."""
-    return Beside(problem, settings, start) if settings.is_reduced else None

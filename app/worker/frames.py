@@ -61,7 +61,7 @@ class Stand:
     is_idle: bool = False
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Fields:
     """What is drawn of an iterate and of a reference alike, thinned, in SI.
 
@@ -87,10 +87,3 @@ class Fields:
     status: Bytes
     end_displacement: Floats
     load: Floats | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Reference(Fields):
-    """The reference, and the time that it took, s."""
-
-    seconds: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.frames import Fields, Reference, Stand
+from app.worker.frames import Fields, Stand
 from app.worker.shown import Counts, thinned
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
@@ -73,6 +74,8 @@ class Recording:
         As in a Run.
     stand, reference
         Of the interface that is looked at; a run has no reference before it is found.
+    reference_seconds
+        Time that the reference took, s.
     last
         Record of the newest iteration.
     history, beside
@@ -91,7 +94,8 @@ class Recording:
     label: str
     notice: str
     stand: Stand
-    reference: Reference | None = None
+    reference: Fields | None = None
+    reference_seconds: float = math.nan
     last: Record | None = None
     history: History = field(default_factory=History)
     beside: History = field(default_factory=History)

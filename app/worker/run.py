@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from app.worker.bases import sizes
-from app.worker.beside import beside
+from app.worker.beside import Beside
 from app.worker.orders import Pace, Run, Seek, Step
 from app.worker.recording import Recording
 from app.worker.rivals import References
@@ -184,7 +184,8 @@ class WorkerRun:
             self._start, self._generator = choose_start(problem, settings, self._previous)
             self._previous = None
         self.recording.choice = self._start.choice if self._start else None
-        self._full_stage = beside(problem, settings, self._start)
+        reduced = settings.is_reduced
+        self._full_stage = Beside(problem, settings, self._start) if reduced else None
         newest = next(self._generator)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(
@@ -217,8 +218,9 @@ class WorkerRun:
         self.has_news = True
 
     def _show_reference(self) -> None:
-        found = self._reference
-        self.recording.reference = self._sampler.reference(found) if found is not None else None
+        if self._reference is not None:
+            self.recording.reference = self._sampler.reference(self._reference)
+            self.recording.reference_seconds = self._reference.seconds
 
     def _iterate(self, newest: Iterate) -> None:
         self._tempo.count()

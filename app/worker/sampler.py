@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.worker.bases import Bases, bases_of
 from app.worker.frames import Fields as Shown
-from app.worker.frames import Reference, Stand
+from app.worker.frames import Stand
 from app.worker.meshes import Thinned
 from app.worker.portrait import Pose, Sitter
 from app.worker.shown import (
@@ -19,7 +19,6 @@ from app.worker.shown import (
     MOST_SPECTRA,
     MOST_VALUES,
     Axes,
-    Bytes,
     Floats,
     Look,
     MeshField,
@@ -32,7 +31,7 @@ from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import Fields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
-from solver.reference import solution
+from solver.reference.solution import Reference
 from solver.scenes import broken_wire_of, closed_form_of, data_of, kind_of, loop_of
 from solver.settings import Settings
 
@@ -119,26 +118,18 @@ class Sampler:
             return replace(stand, wires=self._wires.completed(exact, self._columns))
         return stand
 
-    def reference(self, found: solution.Reference) -> Reference:
+    def reference(self, found: Reference) -> Shown:
         """Show a reference."""
         fields = found.contact(self.interface)
-        shown = self._fields(found, fields.tangential_force, fields.normal_force, fields.status)
-        return Reference(**shown, seconds=found.seconds)
+        return self._shown(found, fields.tangential_force, fields.normal_force, fields.status)
 
     def frame(self, iterate: Iterate, look: Look, before: Checkpoint | None = None) -> Frame:
         """Show an iterate; the one `before` tells what became of its modes."""
         *normal, tangential = self._problem.contact_places[self.interface]
         force, status = iterate.contact_force, iterate.status[self._points]
         pressure = force[normal[0]] if normal else None
-        shown = self._fields(iterate, force[tangential], pressure, status)
-        return Frame(
-            **shown,
-            iteration=iterate.number,
-            iterate=iterate,
-            before=before,
-            look=look,
-            sampler=self,
-        )
+        shown = self._shown(iterate, force[tangential], pressure, status)
+        return Frame(shown, iterate, before, look, self)
 
     def mesh_field(self, iterate: Iterate, look: Look) -> MeshField | None:
         """Show the inside of plane bodies at the chosen instant."""
@@ -162,25 +153,22 @@ class Sampler:
     def _column(self, look: Look) -> int:
         return int(self._columns[instant_of(look.phase, len(self._columns))])
 
-    def _fields(
+    def _shown(
         self,
         fields: Fields,
         friction: NDArray[np.float64],
         pressure: NDArray[np.float64] | None,
         status: NDArray[np.int8],
-    ) -> dict[str, Any]:
-        return {
-            "interface": self.interface,
-            "friction": self._density(friction),
-            "pressure": None if pressure is None else self._density(pressure),
-            "status": self._status(status),
-            "end_displacement": _floats(self._loop.displacement(fields.displacement)[self._curve]),
-            "load": self._load(fields),
-        }
-
-    def _load(self, fields: Fields) -> Floats | None:
+    ) -> Shown:
         force = self._loop.force
-        return None if isinstance(force, np.ndarray) else _floats(force(fields)[self._curve])
+        return Shown(
+            interface=self.interface,
+            friction=self._density(friction),
+            pressure=None if pressure is None else self._density(pressure),
+            status=np.ascontiguousarray(self._thin(status)),
+            end_displacement=_floats(self._loop.displacement(fields.displacement)[self._curve]),
+            load=None if isinstance(force, np.ndarray) else _floats(force(fields)[self._curve]),
+        )
 
     def _thin(self, field: NDArray[Any]) -> NDArray[Any]:
         return field[np.ix_(self._rows, self._columns)]
@@ -188,24 +176,21 @@ class Sampler:
     def _density(self, force: NDArray[np.float64]) -> Floats:
         return _floats(self._thin(force) / self._lengths[:, None])
 
-    def _status(self, status: NDArray[np.int8]) -> Bytes:
-        return np.ascontiguousarray(self._thin(status))
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Frame(Shown):
+@dataclass(frozen=True, eq=False)
+class Frame:
     """One iterate as views see it; what only some of them show is computed when one looks."""
 
-    iteration: int
+    fields: Shown
     iterate: Iterate
     before: Checkpoint | None
     look: Look
     sampler: Sampler
 
     @property
-    def alone(self) -> Shown:
-        """Its fields, without the run that they are of."""
-        return Shown(**{one.name: getattr(self, one.name) for one in fields(Shown)})
+    def iteration(self) -> int:
+        """Number of the iterate."""
+        return self.iterate.number
 
     @cached_property
     def spectra(self) -> Floats:

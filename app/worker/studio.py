@@ -80,7 +80,8 @@ class Studio:
             case Ready():
                 if order.afresh:
                     self._easel.packer.forget()
-                    self._touch()
+                    if run is not None:
+                        run.has_news = True
                 self._paint_at = time.monotonic() + order.rest
             case Watch():
                 self._watch(order.look)
@@ -105,7 +106,7 @@ class Studio:
         self._last = run.last
         if run.recording.is_worth_keeping:
             run.obey(Seek(run.ticket, None))
-            run.recording.frame = run.frame(self._look).alone
+            run.recording.frame = run.frame(self._look).fields
             self._before = run.recording
             self._past.append(run.recording)
 
@@ -117,10 +118,6 @@ class Studio:
         run = self._run
         if run is not None:
             self._attempt(run.ticket, lambda: run.look_at(look))
-
-    def _touch(self) -> None:
-        if self._run is not None:
-            self._run.has_news = True
 
     def _rest_of_paint(self, run: WorkerRun) -> float | None:
         if self._paint_at is None or not (run.has_news and run.is_presentable):

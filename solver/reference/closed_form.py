@@ -19,6 +19,8 @@ from solver.laws.play import play
 
 SECTIONS = 4096
 """Sections, at least, over which the strain is integrated along the bar."""
+AT_ONCE = 60_000
+"""Forces, at sections and instants, that are found in one go: few enough to stay in a cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +77,11 @@ def closed_form(scene: Rods) -> ClosedForm | None:
     return ClosedForm(nodal, -np.diff(sections, axis=0), displacement)
 
 
-def _grip_beyond(scene: Rods, share: float, *, with_end: bool = False) -> Array:
-    """Give R at a share of every element's length, shape (n_elements,), N; then at L if wanted."""
+def _grip_beyond(scene: Rods, share: float | Array, *, with_end: bool = False) -> Array:
+    """Give R at a share of every element's length, shape (n_elements,), N; then at L if wanted.
+
+    Of shares of shape (n_shares, 1) it gives (n_shares, n_elements).
+    """
     size = scene.length / scene.elements
     left, right = scene.bound[:-1], scene.bound[1:]
     whole = 0.5 * size * (left + right)
@@ -94,7 +99,11 @@ def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
     """Average over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])
-    for part in range(1, parts):
-        total += _normal_force(scene, _grip_beyond(scene, part / parts))
+    shares = np.arange(1, parts)[:, None] / parts
+    size = max(AT_ONCE // nodal.size, 1)
+    for first in range(0, parts - 1, size):
+        reach = _grip_beyond(scene, shares[first : first + size])
+        forces = _normal_force(scene, reach.ravel())
+        total += forces.reshape(-1, *total.shape).sum(axis=0)
     mean: Array = total / parts
     return mean

@@ -96,25 +96,8 @@ class BarSettings(SceneSettings):
         title="Path of the body force",
         applies=lambda settings: settings.body_force != 0.0,
     )
-    friction = quantity(
-        0.3,
-        (0.0, 1e6),
-        (0.0, 1.0),
-        "Coefficient of friction mu between bar and support.",
-        group="Contact",
-        title="Friction coefficient μ",
-        essential=True,
-    )
-    pressure = quantity(
-        5000.0,
-        (0.0, 1e15),
-        (0.0, 10_000.0),
-        "Pressure p of the bar on its support, per length.",
-        group="Contact",
-        title="Pressure p",
-        unit="N/m",
-        essential=True,
-    )
+    friction = shared.friction("mu between bar and support")
+    pressure = shared.pressure("the bar on its support", 10_000.0)
     friction_profile = curve(
         "uniform",
         PROFILES,

@@ -111,24 +111,11 @@ def block(settings: BlockSettings) -> Stack:
     free = Given(False, rest, rest)
     sides = {side: settings.side(side) for side in ("left", "right", "top")}
     gap = _gap(settings, np.linspace(0.0, settings.length, settings.nodes[0]))
-    return Stack(
-        length=settings.length,
-        height=settings.height,
-        bodies=1,
-        elements=(settings.elements, settings.elements_up),
-        substructures=(settings.substructures, settings.substructures_up),
-        order=settings.order,
-        macro_degree=settings.macro_degree,
-        young=settings.young,
-        poisson=settings.poisson,
-        state=settings.plane,
+    return settings.stack(
         stiffness=np.ones(1),
-        friction=settings.friction,
         support=Support(gap, settings.friction),
         sides={**sides, "bottom": Side(free, free)},
         body_force=_body_force(settings),
-        instants=settings.times(),
-        duration=settings.duration,
     )
 
 

@@ -116,24 +116,11 @@ def incline(settings: InclineSettings) -> Stack:
     free = Side(Given(False, rest, rest), Given(False, rest, rest))
     angle = np.radians(settings.path("slope_load"))
     density = settings.weight / (settings.length * settings.height)
-    return Stack(
-        length=settings.length,
-        height=settings.height,
-        bodies=1,
-        elements=(settings.elements, settings.elements_up),
-        substructures=(settings.substructures, settings.substructures_up),
-        order=settings.order,
-        macro_degree=settings.macro_degree,
-        young=settings.young,
-        poisson=settings.poisson,
-        state=settings.plane,
+    return settings.stack(
         stiffness=np.ones(1),
-        friction=settings.friction,
         support=Support(np.zeros(settings.nodes[0]), settings.friction),
         sides=dict.fromkeys(("left", "right", "top", "bottom"), free),
         body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
-        instants=settings.times(),
-        duration=settings.duration,
         spring=Spring(settings.slack, settings.spring),
         tilt=angle,
     )

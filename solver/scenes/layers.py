@@ -154,19 +154,8 @@ def layers(settings: LayersSettings) -> Stack:
         moment = settings.path("bend_load")
         extreme = -6.0 * moment / (settings.layers * settings.thickness**2)
         right = Side(Given(False, pull, extreme, each_body=True), free)
-    return Stack(
-        length=settings.length,
-        height=settings.thickness,
-        bodies=settings.layers,
-        elements=(settings.elements, settings.elements_up),
-        substructures=(settings.substructures, settings.substructures_up),
-        order=settings.order,
-        macro_degree=settings.macro_degree,
-        young=settings.young,
-        poisson=settings.poisson,
-        state=settings.plane,
+    return settings.stack(
         stiffness=np.where(np.arange(settings.layers) % 2, settings.contrast, 1.0),
-        friction=settings.friction,
         support=None,
         sides={
             "left": Side(held, held),
@@ -175,8 +164,6 @@ def layers(settings: LayersSettings) -> Stack:
             "bottom": Side(free, Given(False, pressing, rest)),
         },
         body_force=None,
-        instants=settings.times(),
-        duration=settings.duration,
     )
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import param
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, quantity, redefined
+from solver.discrete.stack import Stack
 from solver.scenes.base import SceneSettings
 from solver.settings import Settings
 
@@ -29,15 +30,7 @@ class PlaneSettings(SceneSettings):
     duration = shared.duration()
     instants = shared.instants(81)
     seed = shared.seed(lambda settings: settings.is_random, essential=False)
-    friction = quantity(
-        0.3,
-        (0.0, 10.0),
-        (0.0, 1.0),
-        "Coefficient of friction mu.",
-        group="Contact",
-        title="Friction coefficient μ",
-        essential=True,
-    )
+    friction = shared.friction("mu", largest=10.0)
     plane = choice(
         "strain",
         ["strain", "stress"],
@@ -176,6 +169,32 @@ class PlaneSettings(SceneSettings):
     def is_random(self) -> bool:
         """Whether any load path is random."""
         return any(getattr(self, name) == "random" for name in self.paths)
+
+    def stack(self, **others: Any) -> Stack:
+        """Make the bodies.
+
+        Parameters
+        ----------
+        others
+            Attributes of the stack that scenes do not have alike.
+        """
+        own: Any = self  # every scene defines the sizes, where it shows them
+        return Stack(
+            length=own.length,
+            height=getattr(self, self.across),
+            bodies=self.n_bodies,
+            elements=(self.elements, self.elements_up),
+            substructures=(self.substructures, self.substructures_up),
+            order=self.order,
+            macro_degree=self.macro_degree,
+            young=self.young,
+            poisson=self.poisson,
+            state=self.plane,
+            friction=self.friction,
+            instants=self.times(),
+            duration=self.duration,
+            **others,
+        )
 
     def _check_shape(self) -> None:
         """Refuse elements so flat that their stiffness has no digits left."""

@@ -64,6 +64,33 @@ def instants(default: int) -> param.Integer[int]:
     )
 
 
+def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
+    """Define a coefficient of friction."""
+    return quantity(
+        0.3,
+        (0.0, largest),
+        (0.0, 1.0),
+        f"Coefficient of friction {which}.",
+        group="Contact",
+        title="Friction coefficient μ",
+        essential=True,
+    )
+
+
+def pressure(which: str, slider: float) -> param.Number[float]:
+    """Define the pressure of rods, per length, up to that value on its slider."""
+    return quantity(
+        5000.0,
+        (0.0, 1e15),
+        (0.0, slider),
+        f"Pressure p of {which}, per length.",
+        group="Contact",
+        title="Pressure p",
+        unit="N/m",
+        essential=True,
+    )
+
+
 def size(
     default: float, slider: tuple[float, float], title: str, doc: str, group: str
 ) -> param.Number[float]:

@@ -63,25 +63,8 @@ class StrandSettings(SceneSettings):
     seed = shared.seed(lambda settings: settings.load == "random", essential=True)
     duration = shared.duration()
     instants = shared.instants(101)
-    friction = quantity(
-        0.3,
-        (0.0, 1e6),
-        (0.0, 1.0),
-        "Coefficient of friction mu between neighbouring wires.",
-        group="Contact",
-        title="Friction coefficient μ",
-        essential=True,
-    )
-    pressure = quantity(
-        5000.0,
-        (0.0, 1e15),
-        (0.0, 20_000.0),
-        "Pressure p of neighbouring wires on each other, per length.",
-        group="Contact",
-        title="Pressure p",
-        unit="N/m",
-        essential=True,
-    )
+    friction = shared.friction("mu between neighbouring wires")
+    pressure = shared.pressure("neighbouring wires on each other", 20_000.0)
     wires = count(
         3,
         (2, 200),

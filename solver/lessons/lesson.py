@@ -1,0 +1,133 @@
+"""What a lesson is: a question, a prediction, a run with one or two controls, an explanation."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from solver.settings import Settings
+from solver.study.quantities import Reading, reading
+
+PLACEHOLDER = re.compile(r"\{(.*?)\}")
+
+
+@dataclass(frozen=True)
+class Control:
+    """A place in a sentence where the widget of a setting stands."""
+
+    setting: str
+
+
+@dataclass(frozen=True)
+class Value:
+    """A place in a sentence where a quantity of the present run stands."""
+
+    reading: Reading
+
+
+Piece = str | Control | Value
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a checkpoint is to measure.
+
+    Attributes
+    ----------
+    low, high
+        Both ends of what holds; both infinite for what never comes.
+    words
+        The same in words.
+    """
+
+    low: float
+    high: float
+    words: str
+
+    def holds(self, value: float) -> bool:
+        """Tell whether a measured value is as expected; NaN never is."""
+        return self.low <= value <= self.high
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """A claim of a lesson, and how it is tested.
+
+    Attributes
+    ----------
+    claim
+        One sentence.
+    settings
+        Of the run that it is about.
+    reading
+        The quantity of that run.
+    """
+
+    claim: str
+    settings: Settings
+    reading: Reading
+    expected: Expected
+
+
+@dataclass(frozen=True, eq=False)
+class Lesson:
+    """A lesson as its file says.
+
+    Attributes
+    ----------
+    name
+        That of its file, without the ending.
+    order
+        Its place among the lessons.
+    title, question
+        What it is called, and what it asks.
+    choices
+        Answers to predict from, two or more.
+    right
+        Index of the right one.
+    why
+        Why it is right, shown after the choice.
+    settings
+        Of the run that it starts with.
+    controls, views
+        Names of the settings that can still be moved, one or two, and of the plots that stay.
+    text
+        Paragraphs to read before the choice.
+    explanation
+        Paragraphs that follow it.
+    """
+
+    name: str
+    order: int
+    title: str
+    question: str
+    choices: tuple[str, ...]
+    right: int
+    why: str
+    settings: Settings
+    controls: tuple[str, ...]
+    views: tuple[str, ...]
+    text: tuple[str, ...]
+    explanation: tuple[str, ...]
+    checkpoints: tuple[Checkpoint, ...]
+
+
+def kind_of_place(place: str) -> tuple[Literal["control", "value", ""], str]:
+    """Split what stands between braces; an empty kind is none that there is."""
+    kind, _, name = place.partition(":")
+    if kind == "control":
+        return "control", name
+    return ("value", name) if kind == "value" else ("", name)
+
+
+def pieces(paragraph: str) -> list[Piece]:
+    """Split a paragraph at its placeholders; what is between them is Markdown."""
+    found: list[Piece] = []
+    for number, part in enumerate(PLACEHOLDER.split(paragraph)):
+        if number % 2 == 0:
+            found.extend([part] if part else [])
+        else:
+            kind, name = kind_of_place(part)
+            found.append(Control(name) if kind == "control" else Value(reading(name)))
+    return found

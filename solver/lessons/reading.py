@@ -1,0 +1,201 @@
+"""Reading lesson files; what is wrong with one is said in a line."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from solver.definitions import SettingError
+from solver.files import scene_settings
+from solver.lessons.lesson import (
+    PLACEHOLDER,
+    Checkpoint,
+    Expected,
+    Lesson,
+    kind_of_place,
+)
+from solver.settings import Settings
+from solver.study.quantities import reading
+
+KEYS = {
+    "title": str,
+    "order": int,
+    "question": str,
+    "choices": list,
+    "right": int,
+    "why": str,
+    "scene": str,
+    "settings": dict,
+    "controls": list,
+    "views": list,
+    "text": str,
+    "explanation": str,
+    "checkpoints": list,
+}
+"""Keys of a lesson, all needed, and the type of each."""
+OF_CHECKPOINT = {
+    "claim": str,
+    "settings": dict,
+    "quantity": str,
+    "expected": (int, float, list, str),
+    "tolerance": (int, float),
+}
+"""Keys of a checkpoint; `settings` and `tolerance` may be left out."""
+WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
+MOST_CONTROLS = 2
+
+
+class LessonError(SettingError):
+    """A refused lesson: the file, or the place in it, stands before what is refused."""
+
+    def __init__(self, place: str, refusal: SettingError) -> None:
+        ValueError.__init__(self, f"{place}: {refusal}")
+        self.name = refusal.name
+
+
+def lesson_from_file(path: Path) -> Lesson:
+    """Read a lesson.
+
+    Raises
+    ------
+    SettingError
+        For a file that cannot be read, or that is refused; the message begins with its name.
+    """
+    with _in(path.name):
+        try:
+            values = tomllib.loads(path.read_text(encoding="utf-8"))
+        except OSError as problem:
+            reason = problem.strerror or type(problem).__name__
+            raise SettingError("lesson", str(path), "a file that can be read", reason) from None
+        except (ValueError, RecursionError) as problem:
+            reason = " ".join(str(problem).split())
+            raise SettingError("lesson", str(path), "TOML", f"mend it: {reason}") from None
+        return _lesson(path.stem, values)
+
+
+@contextlib.contextmanager
+def _in(place: str) -> Iterator[None]:
+    """Say of a refusal where it is."""
+    try:
+        yield
+    except SettingError as refusal:
+        raise LessonError(place, refusal) from None
+
+
+def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
+    _check_keys(values, KEYS)
+    kind = scene_settings(values["scene"])
+    with _in("settings"):
+        settings = kind.checked(values["settings"])
+    choices, controls = _names("choices", values), _names("controls", values)
+    if not 1 <= values["right"] <= len(choices) or len(choices) < 2:
+        allowed = f"the number of one of at least two choices, of which there are {len(choices)}"
+        raise SettingError("right", values["right"], allowed, "count from 1")
+    _check_controls(controls, settings)
+    with _in("text"):
+        text = _paragraphs(values["text"], controls)
+    with _in("explanation"):
+        explanation = _paragraphs(values["explanation"], controls)
+    return Lesson(
+        name=name,
+        order=values["order"],
+        title=values["title"],
+        question=values["question"],
+        choices=choices,
+        right=values["right"] - 1,
+        why=values["why"],
+        settings=settings,
+        controls=controls,
+        views=_names("views", values),
+        text=text,
+        explanation=explanation,
+        checkpoints=tuple(_checkpoints(values["checkpoints"], settings)),
+    )
+
+
+def _check_keys(
+    values: Mapping[str, Any], keys: Mapping[str, Any], optional: tuple[str, ...] = ()
+) -> None:
+    """Refuse keys that there are not, keys that lack, and values of a wrong type."""
+    known = ", ".join(keys)
+    for name, value in values.items():
+        if name not in keys:
+            raise SettingError(name, value, known, "there is no such key: leave it out")
+        if not isinstance(value, keys[name]) or isinstance(value, bool):
+            raise SettingError(name, value, WORDS.get(keys[name], "a number"), "mend the value")
+    for name in keys:
+        if name not in values and name not in optional:
+            raise SettingError(name, None, known, "this key is needed: write it")
+
+
+def _names(key: str, values: Mapping[str, Any]) -> tuple[str, ...]:
+    found = values[key]
+    if not found or not all(isinstance(one, str) and one for one in found):
+        raise SettingError(key, found, "a list of texts, at least one", "write them in quotes")
+    return tuple(found)
+
+
+def _check_controls(controls: tuple[str, ...], settings: Settings) -> None:
+    """Refuse controls that are no settings, that do nothing, and more than a few."""
+    if len(controls) > MOST_CONTROLS:
+        allowed = f"at most {MOST_CONTROLS} settings"
+        raise SettingError("controls", controls, allowed, "a lesson is about one thing")
+    working = [one for one in settings.definitions() if settings.applies(one)]
+    for one in controls:
+        if one not in working:
+            remedy = "name a setting that does something with the lesson's settings"
+            raise SettingError("controls", one, ", ".join(working), remedy)
+
+
+def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
+    """Split text at empty lines, and refuse placeholders that stand for nothing."""
+    for place in PLACEHOLDER.findall(text):
+        kind, name = kind_of_place(place)
+        if kind == "value":
+            reading(name)
+        elif kind != "control" or name not in controls:
+            known = ", ".join(f"{{control:{one}}}" for one in controls)
+            remedy = "correct what stands in braces"
+            raise SettingError("placeholder", place, f"{known}, {{value:QUANTITY}}", remedy)
+    return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
+
+
+def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Checkpoint]:
+    if not values:
+        raise SettingError("checkpoints", values, "at least one", "say what the lesson claims")
+    for number, entry in enumerate(values, start=1):
+        with _in(f"checkpoint {number}"):
+            if not isinstance(entry, dict):
+                raise SettingError("checkpoints", entry, "a table", "write [[checkpoints]]")
+            _check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
+            yield Checkpoint(
+                claim=entry["claim"],
+                settings=settings.replace(**entry.get("settings", {})),
+                reading=reading(entry["quantity"]),
+                expected=_expected(entry["expected"], entry.get("tolerance")),
+            )
+
+
+def _expected(value: Any, tolerance: float | None) -> Expected:
+    """Read what is expected: a number and its relative tolerance, a range, or "never"."""
+    allowed = 'a number with a tolerance, a range [low, high], or "never"'
+    if value == "never" and tolerance is None:
+        return Expected(math.inf, math.inf, "never")
+    if isinstance(value, list) and tolerance is None and len(value) == 2:
+        if all(_is_number(one) for one in value) and value[0] <= value[1]:
+            return Expected(value[0], value[1], f"{value[0]:g} to {value[1]:g}")
+    elif _is_number(value) and tolerance is not None:
+        if not 0.0 <= tolerance < 1.0:
+            raise SettingError("tolerance", tolerance, "a share from 0 to below 1", "mend it")
+        off = abs(value) * tolerance
+        return Expected(value - off, value + off, f"{value:g} within {100 * tolerance:g} %")
+    remedy = "write a tolerance beside a number, and only there"
+    raise SettingError("expected", value, allowed, remedy)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

@@ -1,0 +1,225 @@
+"""How the quantities of a run follow from it; NaN where a run has none, infinity for never."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array
+from solver.discrete.probes import AxialForce
+from solver.latin import Record
+from solver.reduction.svd import InterfaceField, decompositions
+from solver.scenes.strand import StrandSettings, strand
+from solver.study.finished import FinishedRun
+
+SMALLEST_SWING = 0.05
+"""Share of the whole range that a path must turn back by to begin another half cycle."""
+EQUAL = 1e-6
+"""Relative difference up to which two loads count as equally large."""
+UNLOADED = 1e-3
+"""Share of the largest force below which a structure counts as unloaded."""
+REGAINED = 0.9
+"""Share of its tension up to which a broken wire is watched; it regains the rest at that rate. The
+element in which the rest is regained would blur the place."""
+
+
+def recorded(name: str) -> Callable[[FinishedRun, float | None], float]:
+    """Make the reading of one scalar of the records, at an iteration or at the end."""
+
+    def of(run: FinishedRun, at: float | None) -> float:
+        records = run.solution.records
+        if at is not None:
+            records = [entry for entry in records if entry.iteration == at]
+        return float(getattr(records[-1], name)) if records else math.nan
+
+    return of
+
+
+def until(column: str, error: str) -> Callable[[FinishedRun, float | None], float]:
+    """Make the reading of what a run spends until an error is as small as it is asked to be."""
+
+    def of(run: FinishedRun, at: float | None) -> float:
+        if not run.has_errors:
+            return math.nan
+        reached = (one for one in run.solution.records if getattr(one, error) <= (at or 0.0))
+        first: Record | None = next(reached, None)
+        return math.inf if first is None else float(getattr(first, column))
+
+    return of
+
+
+def modes(run: FinishedRun, at: float | None) -> float:
+    """Give the largest separated basis of a substructure at the end; NaN without bases."""
+    reduction = run.iterate.reduction
+    return math.nan if reduction is None else max(one.modes for one in reduction.records)
+
+
+def singular(field: InterfaceField) -> Callable[[FinishedRun, float | None], float]:
+    """Make the count of singular vectors that leave an error, where a substructure needs most.
+
+    NaN in the plane, where most substructures do not rub.
+    """
+
+    def of(run: FinishedRun, at: float | None) -> float:
+        if run.problem.inside is not None:
+            return math.nan
+        return max(one.modes_for(at or 0.0) for one in decompositions(run.iterate, field))
+
+    return of
+
+
+def peak_displacement(run: FinishedRun, at: float | None) -> float:
+    """Give the largest displacement of any node at any instant, m."""
+    inside, moved = run.problem.inside, run.iterate.displacement
+    if inside is None:
+        return float(np.abs(moved).max())
+    return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
+
+
+def peak_friction(run: FinishedRun, at: float | None) -> float:
+    """Give the largest sum over all points of the sizes of the friction force, N."""
+    return float(np.abs(run.iterate.friction_force).sum(axis=0).max())
+
+
+def peak_pressing(run: FinishedRun, at: float | None) -> float:
+    """Give the largest sum over all points of the pressing force, N; NaN where it is given."""
+    pressing = [
+        normal
+        for name in run.problem.rubbing
+        if (normal := run.iterate.contact(name).normal_force) is not None
+    ]
+    return float(sum(one.sum(axis=0) for one in pressing).max()) if pressing else math.nan
+
+
+def end_displacement(run: FinishedRun, at: float | None) -> float:
+    """Give the loop's displacement where its force first is largest, m; NaN for an angle."""
+    if not run.measures_displacement:
+        return math.nan
+    size = np.abs(run.force)
+    return float(run.displacement[np.argmax(size >= (1.0 - EQUAL) * size.max())])
+
+
+def residual_displacement(run: FinishedRun, at: float | None) -> float:
+    """Give what is left of the loop's displacement without load, m; NaN if the end is loaded."""
+    size = np.abs(run.force)
+    if not run.measures_displacement or size[-1] > UNLOADED * size.max():
+        return math.nan
+    return float(run.displacement[-1])
+
+
+def dissipation(run: FinishedRun, at: float | None) -> float:
+    """Give the energy that friction takes, J: of the whole run, or of one cycle.
+
+    Cycles go from one turning point of the drive to the next but one; NaN if there are fewer.
+    """
+    if at is None:
+        return float(run.dissipated.sum())
+    turns, number = turning_points(run.drive), int(at)
+    if len(turns) <= 2 * number:
+        return math.nan
+    first, last = turns[2 * number - 2], turns[2 * number]
+    return float(run.dissipated[first + 1 : last + 1].sum())
+
+
+def turning_points(path: Array) -> list[int]:
+    """Find where a path turns back by more than a small swing, and its end if it is as far out.
+
+    Parameters
+    ----------
+    path
+        Shape (n_instants,).
+
+    Returns
+    -------
+    Indices, the first of each extreme that is held.
+    """
+    least = SMALLEST_SWING * float(np.ptp(path))
+    found: list[int] = []
+    outmost, way = 0, 0.0
+    for place, value in enumerate(path):
+        if way == 0.0:
+            outmost = place
+            if abs(value - path[0]) > least:
+                way = math.copysign(1.0, value - path[0])
+        elif way * (value - path[outmost]) > 0.0:
+            outmost = place
+        elif way * (path[outmost] - value) > least:
+            found.append(outmost)
+            outmost, way = place, -way
+    is_closed = len(found) > 1 and way * (path[found[-2]] - path[outmost]) <= least
+    return [*found, outmost] if is_closed else found
+
+
+def slipped_share(run: FinishedRun, at: float | None) -> float:
+    """Give the share of the points that slip at any instant."""
+    return float(_has_slipped(run)[:, -1].mean())
+
+
+def _has_slipped(run: FinishedRun) -> NDArray[np.bool_]:
+    """Tell which points have slipped by every instant, shape (n_points, n_instants)."""
+    return np.logical_or.accumulate(np.abs(run.iterate.status) == 1, axis=1)
+
+
+def _first_slip(run: FinishedRun, at: float | None) -> int | None:
+    """Find the instant by which a share of the points, or any, has slipped."""
+    share = _has_slipped(run).mean(axis=0)
+    slips = (share > 0.0) & (share >= (at or 0.0))
+    return int(np.argmax(slips)) if slips.any() else None
+
+
+def first_slip_time(run: FinishedRun, at: float | None) -> float:
+    """Give the first instant by which points have slipped, s; infinite if none do."""
+    place = _first_slip(run, at)
+    return math.inf if place is None else float(run.problem.instants[place])
+
+
+def first_slip_displacement(run: FinishedRun, at: float | None) -> float:
+    """Give the loop's displacement at that instant, m; NaN for an angle."""
+    if not run.measures_displacement:
+        return math.nan
+    place = _first_slip(run, at)
+    return math.inf if place is None else float(run.displacement[place])
+
+
+def recovery_length(run: FinishedRun, at: float | None) -> float:
+    """Give how far from its break a wire carries its tension again, at the largest tension, m.
+
+    NaN without a broken wire; infinite if it does so on neither side.
+    """
+    settings = run.settings
+    scene = strand(settings) if isinstance(settings, StrandSettings) else None
+    if scene is None or scene.broken is None:
+        return math.nan
+    wire, node = scene.broken
+    instant = int(np.argmax(run.force))
+    axial = AxialForce(run.problem)
+    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire - 1]
+    share = force / run.force[instant]
+    size = scene.length / scene.elements
+    sides = share[node:], share[:node][::-1]
+    return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
+
+
+def _reached(share: Array, level: float) -> float:
+    """Find where a share of the tension, known in the middles of elements, reaches a level.
+
+    Parameters
+    ----------
+    share
+        From the break on, where it is nothing, shape (n,).
+    level
+        Above nothing.
+
+    Returns
+    -------
+    Distance in elements, linear between their middles; infinite if it is not reached.
+    """
+    places = np.concatenate([[0.0], np.arange(len(share)) + 0.5])
+    values = np.concatenate([[0.0], share])
+    above = int(np.argmax(values >= level))
+    if above == 0:
+        return math.inf
+    return float(np.interp(level, values[above - 1 : above + 1], places[above - 1 : above + 1]))

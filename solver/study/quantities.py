@@ -1,0 +1,216 @@
+"""Quantities of a run, each defined once: lessons, sweeps and charts derive from these.
+
+A quantity is asked for by its name, and with a parameter as `NAME@PARAMETER`: `error_force@10` is
+the error of the contact force at iteration 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from solver.definitions import SettingError
+from solver.reduction.svd import InterfaceField
+from solver.study import measures
+from solver.study.finished import FinishedRun
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """The number that a quantity may be asked with.
+
+    Attributes
+    ----------
+    words
+        What it adds to the title, with a place for the number.
+    bounds
+        Smallest and largest.
+    whole
+        Whether only whole numbers have a meaning.
+    needed
+        Whether the quantity has no meaning without it.
+    """
+
+    words: str
+    bounds: tuple[float, float]
+    whole: bool = False
+    needed: bool = False
+
+
+ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
+CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
+SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
+WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """A number that a finished run has.
+
+    Attributes
+    ----------
+    title
+        What it is called, in words.
+    unit
+        SI unit, empty for a pure number.
+    of
+        Gives it, with the parameter or None: NaN where the run has none, infinity where what is
+        waited for never comes.
+    parameter
+        What it may be asked with.
+    reads
+        What the records must hold for it, which takes its time: distances to a reference, or the
+        indicators of every iteration.
+    """
+
+    name: str
+    title: str
+    unit: str
+    of: Callable[[FinishedRun, float | None], float]
+    parameter: Parameter | None = None
+    reads: Literal["errors", "indicators"] | None = None
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A quantity with its parameter, ready to be taken of a run."""
+
+    quantity: Quantity
+    at: float | None
+
+    @property
+    def title(self) -> str:
+        """What it is called, in words."""
+        if self.quantity.parameter is None or self.at is None:
+            return self.quantity.title
+        return self.quantity.title + self.quantity.parameter.words.format(self.at)
+
+    def __call__(self, run: FinishedRun) -> float:
+        """Take it of a finished run, in the quantity's unit."""
+        return self.quantity.of(run, self.at)
+
+
+def _recorded(column: str, title: str, reads: Literal["errors", "indicators"]) -> Quantity:
+    return Quantity(column, title, "", measures.recorded(column), ITERATION, reads)
+
+
+def _until(name: str, title: str, column: str, error: str, unit: str = "") -> Quantity:
+    return Quantity(name, title, unit, measures.until(column, error), WITHIN, "errors")
+
+
+_ALL = (
+    Quantity("iterations", "Iterations", "", lambda run, at: run.iterate.number),
+    Quantity("seconds", "Run time", "s", measures.recorded("seconds")),
+    _recorded("indicator", "LATIN indicator", "indicators"),
+    _recorded("behaviour", "k-free indicator", "indicators"),
+    _recorded("estimated_error", "Estimated error of the contact force", "indicators"),
+    _recorded("error_displacement", "Error of the displacement", "errors"),
+    _recorded("error_force", "Error of the contact force", "errors"),
+    _until(
+        "iterations_to_displacement",
+        "Iterations to an error of the displacement of",
+        "iteration",
+        "error_displacement",
+    ),
+    _until(
+        "iterations_to_force",
+        "Iterations to an error of the contact force of",
+        "iteration",
+        "error_force",
+    ),
+    _until(
+        "seconds_to_displacement",
+        "Run time to an error of the displacement of",
+        "seconds",
+        "error_displacement",
+        "s",
+    ),
+    _until(
+        "seconds_to_force",
+        "Run time to an error of the contact force of",
+        "seconds",
+        "error_force",
+        "s",
+    ),
+    Quantity("modes", "Modes of the largest separated basis", "", measures.modes),
+    Quantity(
+        "svd_modes_displacement",
+        "Singular vectors of the displacement for an error of",
+        "",
+        measures.singular(InterfaceField.DISPLACEMENT),
+        WITHIN,
+    ),
+    Quantity(
+        "svd_modes_force",
+        "Singular vectors of the friction force for an error of",
+        "",
+        measures.singular(InterfaceField.FRICTION_FORCE),
+        WITHIN,
+    ),
+    Quantity("peak_displacement", "Largest displacement", "m", measures.peak_displacement),
+    Quantity("peak_friction", "Largest friction, all points", "N", measures.peak_friction),
+    Quantity("peak_pressing", "Largest pressing force, all points", "N", measures.peak_pressing),
+    Quantity(
+        "end_displacement", "Displacement at the largest load", "m", measures.end_displacement
+    ),
+    Quantity(
+        "residual_displacement",
+        "Displacement left without load",
+        "m",
+        measures.residual_displacement,
+    ),
+    Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
+    Quantity("slipped_share", "Share of the points that slip", "", measures.slipped_share),
+    Quantity("first_slip_time", "Time of the first slip", "s", measures.first_slip_time, SHARE),
+    Quantity(
+        "first_slip_displacement",
+        "Displacement at the first slip",
+        "m",
+        measures.first_slip_displacement,
+        SHARE,
+    ),
+    Quantity(
+        "recovery_length",
+        "Length over which a broken wire regains its force",
+        "m",
+        measures.recovery_length,
+    ),
+)
+QUANTITIES = {one.name: one for one in _ALL}
+"""All quantities by name."""
+
+
+def reading(text: object) -> Reading:
+    """Read what is asked for, `NAME` or `NAME@PARAMETER`.
+
+    Raises
+    ------
+    SettingError
+        For a quantity that there is not, or a parameter that it does not take.
+    """
+    name, at_sign, number = text.partition("@") if isinstance(text, str) else ("", "", "")
+    quantity = QUANTITIES.get(name)
+    if quantity is None:
+        raise SettingError("quantity", text, ", ".join(QUANTITIES), "choose one of these")
+    parameter = quantity.parameter
+    if parameter is None:
+        if at_sign:
+            raise SettingError("quantity", text, name, "it takes no parameter")
+        return Reading(quantity, None)
+    if not at_sign and not parameter.needed:
+        return Reading(quantity, None)
+    return Reading(quantity, _number(parameter, quantity.name, text, number))
+
+
+def _number(parameter: Parameter, name: str, text: object, number: str) -> float:
+    low, high = parameter.bounds
+    kind = "a whole number" if parameter.whole else "a number"
+    allowed = f"{name}@ and {kind} from {low:g} to {high:g}"
+    try:
+        found = float(number)
+    except ValueError:
+        raise SettingError("quantity", text, allowed, "write the parameter") from None
+    if not low <= found <= high or (parameter.whole and found != int(found)):
+        raise SettingError("quantity", text, allowed, "mend the parameter")
+    return found

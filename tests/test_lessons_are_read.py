@@ -1,0 +1,191 @@
+"""A lesson file is read as it is meant, and what is wrong with it is said in one line."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from solver.cli import main
+from solver.definitions import SettingError
+from solver.lessons.lesson import Control, Value, pieces
+from solver.lessons.reading import lesson_from_file
+
+PARTS: dict[str, str] = {
+    "title": '"A title"',
+    "order": "1",
+    "question": '"What?"',
+    "choices": '["this", "that"]',
+    "right": "2",
+    "why": '"Because."',
+    "scene": '"bar"',
+    "settings": "{ elements = 10, instants = 11, substructures = 2 }",
+    "controls": '["peak"]',
+    "views": '["Friction force"]',
+    "text": '"One {value:error_force@3} and\\n\\ntwo."',
+    "explanation": '"Move {control:peak}."',
+}
+CLAIM: dict[str, str] = {
+    "claim": '"It ends."',
+    "settings": "{ peak = 600 }",
+    "quantity": '"iterations"',
+    "expected": "[1, 100]",
+}
+
+
+def written(parts: dict[str, str | None], claim: dict[str, str | None]) -> str:
+    """Give a small lesson with some parts changed, or left out where they are None."""
+    lines = [f"{key} = {value}" for key, value in {**PARTS, **parts}.items() if value is not None]
+    own = [f"{key} = {value}" for key, value in {**CLAIM, **claim}.items() if value is not None]
+    return "\n".join([*lines, "[[checkpoints]]", *own, ""])
+
+
+def lesson(folder: Path, **parts: str | None) -> Path:
+    path = folder / "small.toml"
+    path.write_text(written(parts, {}), encoding="utf-8")
+    return path
+
+
+def refusal(folder: Path, text: str) -> str:
+    path = folder / "small.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SettingError) as refused:
+        lesson_from_file(path)
+    return str(refused.value)
+
+
+def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
+    found = lesson_from_file(lesson(tmp_path))
+    assert (found.name, found.order, found.right) == ("small", 1, 1)
+    assert found.settings.values()["elements"] == 10
+    assert found.text == ("One {value:error_force@3} and", "two.")
+    (one,) = found.checkpoints
+    assert one.settings.values() == {**found.settings.values(), "peak": 600.0}
+
+
+def test_a_paragraph_falls_into_words_controls_and_values() -> None:
+    first, value, second, control = pieces("At {value:error_force@3} move {control:peak}")
+    assert (first, second) == ("At ", " move ")
+    assert isinstance(value, Value)
+    assert (value.reading.quantity.name, value.reading.at) == ("error_force", 3)
+    assert control == Control("peak")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("colour", '"red"', ['colour = "red"', "title, order", "no such key"]),
+        ("why", None, ["why = null", "this key is needed"]),
+        ("order", '"first"', ['order = "first"', "a whole number"]),
+        ("order", "true", ["order = true", "a whole number"]),
+        ("choices", '["this"]', ["right = 2", "at least two choices"]),
+        ("choices", "[1, 2]", ["choices = [1, 2]", "a list of texts"]),
+        ("right", "3", ["right = 3", "there are 2"]),
+        ("scene", '"moon"', ['scene = "moon"', "bar, block"]),
+        ("settings", "{ peek = 3 }", ["settings: peek = 3", "did you mean peak?"]),
+        ("settings", '{ peak = "much" }', ['settings: peak = "much"', "a number from"]),
+        ("controls", '["k"]', ['controls = "k"', "k_scale"]),
+        ("controls", '["seed"]', ['controls = "seed"', "does something"]),
+        ("controls", '["peak", "friction", "pressure"]', ["at most 2 settings"]),
+        ("views", "[]", ["views = []", "at least one"]),
+        ("text", '"{control:friction}"', ["text: placeholder", "{control:peak}, {value:"]),
+        ("text", '"{peak}"', ['placeholder = "peak"', "{control:peak}, {value:"]),
+        ("text", '"{value:luck}"', ['quantity = "luck"', "iterations, seconds"]),
+        ("explanation", '"{value:indicator@x}"', ["explanation: quantity", "indicator@ and"]),
+        ("explanation", '"{value:modes@2}"', ['quantity = "modes@2"', "takes no parameter"]),
+    ],
+)
+def test_what_is_wrong_with_a_lesson_is_said_with_file_key_value_and_what_is_allowed(
+    tmp_path: Path, key: str, value: str | None, words: list[str]
+) -> None:
+    said = refusal(tmp_path, written({key: value}, {}))
+    assert said.startswith("small.toml: ")
+    assert "\n" not in said
+    assert not [word for word in words if word not in said], said
+
+
+@pytest.mark.parametrize(
+    ("claim", "words"),
+    [
+        ({"because": '"so"'}, ["checkpoint 1: because", "claim, settings, quantity"]),
+        ({"claim": None}, ["checkpoint 1: claim", "needed"]),
+        ({"settings": "{ elements = 0 }"}, ["checkpoint 1: elements = 0"]),
+        ({"quantity": '"iterations_to_force"'}, ["iterations_to_force@ and a number"]),
+        ({"quantity": '"iterations_to_force@2"'}, ["from 1e-12 to 1"]),
+        ({"quantity": '"error_force@1.5"'}, ["a whole number"]),
+        ({"expected": "3"}, ["expected = 3", "beside a number"]),
+        ({"expected": "[3, 2]"}, ["expected = [3, 2]", "[low, high]"]),
+        ({"expected": "inf", "tolerance": "0.1"}, ["expected = Infinity"]),
+        ({"expected": '"ever"'}, ['expected = "ever"', '"never"']),
+        ({"expected": '"never"', "tolerance": "0.1"}, ["beside a number, and only there"]),
+        ({"expected": "3", "tolerance": "-1"}, ["tolerance = -1"]),
+    ],
+)
+def test_what_is_wrong_with_a_checkpoint_is_said_with_its_number(
+    tmp_path: Path, claim: dict[str, str | None], words: list[str]
+) -> None:
+    said = refusal(tmp_path, written({}, claim))
+    assert said.startswith("small.toml: checkpoint 1: ")
+    assert not [word for word in words if word not in said], said
+
+
+def test_what_is_no_lesson_at_all_is_refused_in_a_line(tmp_path: Path) -> None:
+    assert "small.toml: lesson" in refusal(tmp_path, "no TOML")
+    claims_nothing = written({}, {}).partition("[[")[0] + "checkpoints = []"
+    assert "checkpoints = []" in refusal(tmp_path, claims_nothing)
+    with pytest.raises(SettingError, match="a file that can be read"):
+        lesson_from_file(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize(
+    ("claim", "holds", "fails"),
+    [
+        ({"expected": "3", "tolerance": "0.1"}, [2.71, 3.0, 3.29], [2.69, 3.31, math.nan]),
+        ({"expected": "-2", "tolerance": "0.5"}, [-3.0, -1.0], [-3.1, -0.9, 2.0]),
+        ({"expected": "[1, 2]"}, [1.0, 2.0], [0.99, 2.01, math.inf]),
+        ({"expected": '"never"'}, [math.inf], [1e300, math.nan, -math.inf]),
+    ],
+)
+def test_a_value_holds_within_what_is_expected_and_not_beyond(
+    tmp_path: Path, claim: dict[str, str | None], holds: list[float], fails: list[float]
+) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(written({}, claim), encoding="utf-8")
+    (one,) = lesson_from_file(path).checkpoints
+    assert all(one.expected.holds(value) for value in holds)
+    assert not any(one.expected.holds(value) for value in fails)
+
+
+def run(folder: Path, capsys: pytest.CaptureFixture[str], **claim: Any) -> tuple[int, str, str]:
+    path = folder / "small.toml"
+    path.write_text(written({}, claim), encoding="utf-8")
+    code = main(["lesson", str(path)])
+    return (code, *capsys.readouterr())
+
+
+def test_the_command_prints_what_it_measures_and_says_whether_all_holds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, printed, _ = run(tmp_path, capsys)
+    assert code == 0
+    assert printed.splitlines()[0] == "small: A title"
+    assert printed.splitlines()[1].startswith("  + It ends. Iterations: ")
+    code, printed, _ = run(tmp_path, capsys, expected='"never"')
+    assert code == 1
+    assert printed.splitlines()[1].startswith("  - It ends.")
+    assert printed.endswith("expected never\n")
+
+
+def test_the_command_refuses_what_is_no_lesson_and_runs_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good = lesson(tmp_path)
+    bad = tmp_path / "bad.toml"
+    bad.write_text("title = 3", encoding="utf-8")
+    assert main(["lesson", str(good), str(bad)]) == 2
+    printed, said = capsys.readouterr()
+    assert printed == ""
+    assert said.startswith("slipfront: bad.toml: title = 3 is refused")
+    assert said.count("\n") == 1
