@@ -88,6 +88,7 @@ def test_factors_on_k_are_foolish_together_or_alone():
         (changed(error_force=0.5, ending=Ending.STALLED), Verdict.TOLD),
         (changed(error_force=0.5, doubt="several", certified=True, residual=1e-13), Verdict.RIGHT),
         (changed(certified=True, residual=2.0 * AT_ROUNDING), Verdict.WRONG),
+        (changed(certified=True, residual=3e-7, floor=3e-7), Verdict.RIGHT),
         (changed(certified=True), Verdict.WRONG),
         (changed(finite=False), Verdict.WRONG),
         (Outcome(BROKEN, "ValueError: no"), Verdict.WRONG),
