@@ -15,7 +15,7 @@ def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_rese
     page = open_page(f"?{ENDLESS}")
     expect(status(page)).to_contain_text("running")
     expect(status(page)).to_contain_text("10 substructures, multiscale")
-    expect(page.locator(".card")).to_have_count(6)
+    expect(page.locator(".card")).to_have_count(8)
     expect(status(page)).to_contain_text(re.compile("friction force error [0-9.]+ %"))
     first = iteration(page)
     expect(status(page)).to_contain_text(re.compile(rf"iteration (?!{first}\b)"))
@@ -32,7 +32,7 @@ def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_rese
     page.get_by_role("button", name="Run or pause").click()
     expect(status(page)).to_contain_text("running")
     page.get_by_role("checkbox", name="Singular values").click()
-    expect(page.locator(".card")).to_have_count(5)
+    expect(page.locator(".card")).to_have_count(7)
 
 
 def test_a_run_that_has_converged_stays_beside_the_next_one_which_may_start_from_it(

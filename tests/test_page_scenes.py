@@ -7,7 +7,7 @@ import re
 from pages import Visit, bodies_drawn, choose, slider, status
 from playwright.sync_api import expect
 
-CARDS = {"bar": 6, "strand": 7, "block": 7, "layers": 7, "incline": 7}
+CARDS = {"bar": 8, "strand": 9, "block": 9, "layers": 9, "incline": 9}
 PARTS = {"bar": 10, "strand": 18, "block": 8, "layers": 16, "incline": 8}
 TITLES = {
     "bar": "Clamped bar",
