@@ -8,6 +8,7 @@ from textwrap import shorten
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
+from app.classroom import ROOMS, Room
 from app.session import DEFAULT_PACE
 from app.worker.shown import Look
 from solver.definitions import SettingError, checked_value, choice, parse, quantity
@@ -20,6 +21,8 @@ TAB_OF = {tab.lower(): tab for tab in TABS}
 """Who writes an address by hand need not mind their case."""
 PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
 """Iterations per second."""
+CLASS = "class"
+"""Names in an address the class that a page follows."""
 MOST_TOLD = 3
 LONGEST_NAME = 40
 
@@ -72,7 +75,7 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
     definitions = kind.definitions()
     values, refused = {}, []
     for name, text in pairs.items():
-        if name in SIGHT:
+        if name in SIGHT or name == CLASS:
             continue
         if name not in definitions:
             refused.append(f"there is no setting {shorten(name, LONGEST_NAME)}")
@@ -119,10 +122,19 @@ def complaint_of(refused: list[str]) -> str:
     return f"From the address: {'; '.join(refused[:MOST_TOLD])}{rest}."
 
 
-def query_of(settings: Settings, sight: Sight | None = None) -> str:
+def class_from_query(query: str) -> tuple[Room | None, str]:
+    """Find the class that an address names; with what was refused, or nothing."""
+    code = dict(parse_qsl(query.lstrip("?"))).get(CLASS, "")
+    room = ROOMS.find(code)
+    missing = [f"there is no class {shorten(code, LONGEST_NAME)} at present: ask for its code"]
+    return room, complaint_of(missing if code and room is None else [])
+
+
+def query_of(settings: Settings, sight: Sight | None = None, room: Room | None = None) -> str:
     """Write what differs from the defaults as a page's address."""
-    pairs = [("scene", settings.scene)]
-    pairs += [(name, json.dumps(value)) for name, value in settings.changed().items()]
+    pairs = [("scene", settings.scene)] if room is None else [(CLASS, room.code)]
+    if room is None:
+        pairs += [(name, json.dumps(value)) for name, value in settings.changed().items()]
     looked_at = asdict(sight or Sight()).items()
     pairs += [(name, str(value)) for name, value in looked_at if value != getattr(Sight, name)]
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)

@@ -10,7 +10,9 @@ import panel as pn
 from panel_material_ui.template.base import Page
 
 from app.address import PACES, Sight, query_of
+from app.banner import Banner
 from app.cards import Cards
+from app.classroom import Room
 from app.innards import connections, ignore_business, send_without_delay
 from app.looks import Looks
 from app.panes import STATIC, column, text
@@ -71,7 +73,7 @@ class Dashboard:
         self._sent_at = 0.0
         self._heard_at = math.inf
         self._sockets: set[Any] = set()
-        self._stood: tuple[Settings, Sight] | None = None
+        self._stood: tuple[Settings, Sight, Room | None] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
         self._pulse = Pulse()
@@ -85,6 +87,7 @@ class Dashboard:
             "substructure": self.transport.choose_substructure,
         }
         self._cards = Cards(chosen)
+        self._banner = Banner(session, self._follow)
         self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
         self._plots = column(role="plots")
         self._live = self._make_live()
@@ -105,7 +108,8 @@ class Dashboard:
         """
         self._loaded = True
         self._alone = False
-        self.session.start()
+        room = self.session.attendance.follows
+        self.session.start(room.settings if room else None)
         self._on_narrow()
         self._tabs.bar.value = self._first_tab
 
@@ -128,6 +132,7 @@ class Dashboard:
         if self.session.attend():
             self._tabs.refresh()
         self._sidebar.obey()
+        self._banner.catch_up()
         self._pass_on(self.session.collect())
         self._log()
         is_lost = self._pulse.painted < self._pulse.frame
@@ -149,7 +154,7 @@ class Dashboard:
 
     def _make_live(self) -> pn.Column:
         words = [text(role=role, tags=[role]) for role in ("status", "figures")]
-        parts = self.transport.view, *words, self._plots, self._pulse
+        parts = self._banner.view, self.transport.view, *words, self._plots, self._pulse
         return column(*parts, role="live", margin=(4, 10))
 
     def _make_page(self) -> Page:
@@ -170,25 +175,32 @@ class Dashboard:
     def _keep_address(self) -> None:
         """Have the address say where the page stands."""
         if self._stood != (stands := self._stands()):
-            self._stood, self._pulse.query = stands, query_of(*stands)
+            self._stood, self._pulse.query = (
+                stands,
+                query_of(*stands),
+            )
 
     def _copy(self) -> None:
         self._keep_address()
         self._pulse.copy += 1
 
-    def _stands(self) -> tuple[Settings, Sight]:
+    def _stands(self) -> tuple[Settings, Sight, Room | None]:
         """Give what an address has to say to come back to this."""
         session = self.session
         pace = next(name for name, pace in PACES.items() if pace == session.pace)
-        return session.wanted, Sight(self._tabs.bar.value, round(session.look.phase, 4), pace)
+        sight = Sight(self._tabs.bar.value, round(session.look.phase, 4), pace)
+        return session.wanted, sight, session.attendance.follows
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
         session = self.session
         fit = fitting(session.wanted)
-        wanted = self._sidebar.offer([view.name for view in fit])
+        room = session.attendance.follows
+        own = self._sidebar.offer([view.name for view in fit])
+        wanted = (room.views if room else ()) or own
         self._shown = [view for view in fit if view.name in wanted]
         there = self._shown[: self._room]
+        self.transport.view.visible = room is None
         self.transport.arrange(session.wanted)
         cards = [self._cards[view] for view in there]
         if list(self._plots) != cards:
@@ -199,6 +211,10 @@ class Dashboard:
         session.watch(views=tuple(view.name for view in there), complaint=complaint)
         self._show()
         self._tabs.refresh()
+
+    def _follow(self) -> None:
+        self._sidebar.show(self.session.wanted)
+        self._arrange()
 
     def _fill(self) -> None:
         """Make one of the cards below the first row, or show them all.

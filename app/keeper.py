@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
 from functools import partial
 
+from app.classroom import Seat
 from app.worker.link import Link
 from app.worker.orders import Order
 from app.worker.reports import Died, Report
@@ -21,8 +23,9 @@ GIVEN_UP = (
     "The worker stopped unexpectedly several times; the run was given up. Lower the numbers of "
     "elements and instants, or start it again."
 )
-Hire = Callable[[Callable[[Report], None]], Link]
-"""Gives a worker process, whose reports go to what it is called with."""
+_log = logging.getLogger(__name__)
+Hire = Callable[[Callable[[Report], None]], Link | Seat]
+"""Gives a worker process, or a seat in a class; its reports go to what it is called with."""
 
 
 class Keeper:
@@ -39,7 +42,7 @@ class Keeper:
     """
 
     def __init__(self, hire: Hire) -> None:
-        self.link: Link | None = None
+        self.link: Link | Seat | None = None
         self.wake: Callable[[], object] = lambda: None
         self.deaths = self._reached = 0
         self._alone_since: float | None = None
@@ -70,7 +73,18 @@ class Keeper:
         if any(isinstance(report, Died) for report in reports):
             self.link = None
             self.deaths += 1
+            _log.error("A worker process ended, %d in a row.", self.deaths)
         return reports
+
+    def change(self, hire: Hire) -> None:
+        """Have the work done elsewhere."""
+        self.part()
+        self._hire = hire
+
+    @property
+    def has_process(self) -> bool:
+        """Whether a process works for this page alone."""
+        return isinstance(self.link, Link)
 
     def renew(self) -> None:
         """Take it that another run begins."""

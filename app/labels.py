@@ -8,6 +8,13 @@ from solver.definitions import about
 from solver.settings import Settings
 
 
+def label_since(settings: Settings, before: Settings) -> str:
+    """Name settings by what has changed since others, or by the first few of it."""
+    old = before.values()
+    changed = {name: value for name, value in settings.values().items() if value != old[name]}
+    return label_of(settings, changed)
+
+
 def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:
     """Name settings by what is new in them, or by the first few of it."""
     definitions = settings.definitions()

@@ -45,7 +45,7 @@ class Pages:
     @property
     def workers(self) -> int:
         """Count the worker processes of the pages."""
-        return sum(page.keeper.link is not None for page in self._open)
+        return sum(page.keeper.has_process for page in self._open)
 
     @property
     def is_full(self) -> bool:

@@ -5,14 +5,14 @@ All of it happens on the page's own event loop. No field comes here: pictures go
 
 from __future__ import annotations
 
-import logging
 import time
 from dataclasses import replace
 from typing import Any
 
+from app.attendance import Attendance
 from app.errand import Errand
 from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
-from app.labels import label_of
+from app.labels import label_since
 from app.pages import Pages
 from app.worker.bench import Bench
 from app.worker.block import said
@@ -26,8 +26,6 @@ from solver.settings import Settings
 DEFAULT_PACE = 20.0
 HELD_STILL = 0.5
 """Seconds after which a slider that does not move counts as let go."""
-
-_log = logging.getLogger(__name__)
 
 
 class Session:
@@ -66,13 +64,14 @@ class Session:
         The reports that this page has asked for.
     crowd
         Most runs of other pages that were at work at a time during the last study.
-    keeper
-        Has the worker process.
+    keeper, attendance
+        Have the worker process, and the page's part in a class.
     """
 
     def __init__(self, pages: Pages, bench: Bench, settings: Settings, hire: Hire = Link) -> None:
         self.settings = settings
         self.keeper = Keeper(hire)
+        self.attendance = Attendance(self.keeper, hire)
         self.ticket = 0
         self.facts: Facts | None = None
         self.look = Look()
@@ -99,14 +98,13 @@ class Session:
         that follows a hand is shown at its end, if that is near, and is nothing to compare with.
         """
         settings = settings or self.wanted
+        self.attendance.heed(settings)
         if settings.scene != self.settings.scene:
             self._left[self.settings.scene] = self.wanted
             self._label = ""
             self.watch(interface="", substructure=None)
         elif self.ticket:
-            before, values = self.settings.values(), settings.values()
-            changed = {name: value for name, value in values.items() if value != before[name]}
-            self._label = label_of(settings, changed) if changed else self._label
+            self._label = label_since(settings, self.settings) or self._label
         self.settings = settings
         self.ticket += 1
         self.facts, self._pending = None, None
@@ -157,6 +155,7 @@ class Session:
                 blocks.append(self._bury())
             else:
                 blocks.append(report.block)
+                self.attendance.share(self.settings, self.look.views, report)
                 if report.ticket == self.ticket:
                     self.facts = report.facts
                     self.keeper.note(report.facts.done)
@@ -165,7 +164,7 @@ class Session:
 
     def ask(self, *, rest: float = 0.0, afresh: bool = False) -> None:
         """Have the next picture made, after some seconds of rest."""
-        self.keeper.send(Ready(afresh, rest))
+        self.keeper.send(Ready(afresh, rest, whole=self.attendance.leads is not None))
 
     def go(self) -> None:
         """Let iterations go on by themselves; a run that ended, or broke, starts again."""
@@ -209,6 +208,7 @@ class Session:
     def close(self) -> None:
         """Leave: the process of the run ends, and so do the reports."""
         self.keeper.close()
+        self.attendance.end()
         self._pages.remove(self)
         for errand in self._errands:
             errand.cancel()
@@ -292,9 +292,7 @@ class Session:
     def _bury(self) -> bytes:
         """Follow the end of a process: start the run again, or give it up; say so."""
         again = self.keeper.may_try_again
-        words = AGAIN if again else GIVEN_UP
-        _log.error("A worker process ended. %s", words)
         self.facts = None if again else Facts(is_broken=True)
         if again:
             self._work()
-        return said(words)
+        return said(AGAIN if again else GIVEN_UP)

@@ -50,7 +50,7 @@ WARM_ITEM = {
     "group": METHOD,
 }
 VIEWS_ITEM = {"name": VIEWS, "kind": "checks", "help": "What is drawn.", "group": "Views"}
-LINK, SAVE, DEFAULTS = "Link", "Save", "Defaults"
+LINK, SAVE, DEFAULTS, CLASS = "Link", "Save", "Defaults", "Class"
 SHARE_ITEM = {
     "name": SHARE,
     "kind": "share",
@@ -59,6 +59,7 @@ SHARE_ITEM = {
         [LINK, "Copy the address, which has the settings and what is looked at."],
         [SAVE, "Save the settings; the command line reads them too."],
         [DEFAULTS, "Bring all settings back to their defaults."],
+        [CLASS, "Begin a class: whoever joins by its code sees what you see."],
     ],
     "label": "Open settings (.toml) or load (.csv)",
 }
@@ -177,6 +178,9 @@ class Sidebar:
             self.view.file = [self._saved(), self._heard]
         elif value == DEFAULTS:
             self._adopt(type(self._session.settings).checked({}))
+        elif value == CLASS:
+            self._session.attendance.lead(self._session.wanted)
+            self._session.ask(afresh=True)
         else:
             self._open(*value)
 

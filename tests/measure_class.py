@@ -1,9 +1,11 @@
-"""Measure a server with many pages: `python tests/measure_class.py [PAGES] [SECONDS] [--change]`.
+"""Measure a server with many pages: `python tests/measure_class.py [PAGES] [SECONDS] [--class]`.
 
 The pages are websockets that acknowledge at once, each with a run that goes on. Prints when their
 first pictures came, how many came in a second and the longest gap, how long the server took to
 answer something else meanwhile and how late its event loop was, its memory, and what is left after
 all are closed.
+
+With `--class` all follow one more, whose pictures are computed once.
 
 With `--change` settings are changed at random instead, and now and then a page is closed and
 another opened; prints the memory of the server and of its workers every minute.
@@ -29,6 +31,7 @@ from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
 
 from app.form import POINTS
+from app.sidebar import CLASS, SHARE
 from solver.scenes import CATALOGUE
 
 EXPIRY = 60.0
@@ -72,11 +75,18 @@ async def lateness(health: str) -> str:
     return f"at most {told['most']:.2f} s, 95 % below {told['95%']:.3f} s"
 
 
-async def measure(server: Server, count: int, seconds: float) -> None:
+async def measure(server: Server, count: int, seconds: float, *, follow: bool) -> None:
     idle = server.processes()
+    leader = WebPage(server.address + ENDLESS)
+    if follow:
+        await leader.open()
+        leads = asyncio.create_task(leader.live())
+        await leader.move(SHARE, CLASS)
+        await until(lambda: leader.code)
+    query = f"?class={leader.code}" if follow else ENDLESS
     late: list[float] = []
     probe = asyncio.create_task(answers(server.health, late))
-    pages = [WebPage(server.address + ENDLESS) for _ in range(count)]
+    pages = [WebPage(server.address + query) for _ in range(count)]
     before = cpu(server)
     await asyncio.gather(*(page.open() for page in pages))
     lives = [asyncio.create_task(page.live()) for page in pages]
@@ -102,9 +112,9 @@ async def measure(server: Server, count: int, seconds: float) -> None:
     there = server.processes()
     print(f"memory: {memory(there):.0f} MB in {len(there)} processes ({len(idle)} without pages)")
     probe.cancel()
-    for page in pages:
+    for page in [*pages, leader]:
         page.close()
-    await asyncio.gather(*lives)
+    await asyncio.gather(*lives, *([leads] if follow else []))
     await asyncio.sleep(3.0)
     print(f"processes after closing, before sessions expire: {len(server.processes())}")
     end = time.monotonic() + EXPIRY
@@ -172,13 +182,16 @@ def main() -> None:
     parser.add_argument("pages", type=int, nargs="?", default=10)
     parser.add_argument("seconds", type=float, nargs="?", default=15.0)
     parser.add_argument("--change", action="store_true")
+    parser.add_argument("--class", action="store_true", dest="follow")
     asked = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         server = Server(Path(folder) / "log")
         try:
             server.wait()
-            way = change if asked.change else measure
-            asyncio.run(way(server, asked.pages, asked.seconds))
+            if asked.change:
+                asyncio.run(change(server, asked.pages, asked.seconds))
+            else:
+                asyncio.run(measure(server, asked.pages, asked.seconds, follow=asked.follow))
             print("errors of ours in the log:", len(OURS.findall(server.log)))
         finally:
             server.stop()

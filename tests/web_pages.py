@@ -47,6 +47,8 @@ class WebPage:
         When pictures came.
     size
         Bytes that came with them.
+    code
+        Of the class that it leads, once it does.
     items, shown
         What the controls of its settings are, and what they show, as `Form` has it.
     """
@@ -62,6 +64,7 @@ class WebPage:
         self.began = time.monotonic()
         self.times: list[float] = []
         self.size = 0
+        self.code = ""
         self.items: list[dict[str, Any]] = []
         self.shown: dict[str, Any] = {}
 
@@ -99,6 +102,8 @@ class WebPage:
                 kind, content = await self._message()
                 for event in content.get("events", ()) if kind == "PATCH-DOC" else ():
                     model = event.get("model", {}).get("id")
+                    if led := re.search(r"\?class=(\w+)", str(event.get("new", ""))):
+                        self.code = led[1]
                     if model == self._form_data:
                         self._show({event["attr"]: event["new"]})
                     if model == self._pulse and event["attr"] == "frame":

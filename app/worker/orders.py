@@ -96,10 +96,13 @@ class Ready:
         Whether all of it is to be sent, and not only what changed.
     rest
         Seconds that it wants to be left alone.
+    whole
+        Whether the next is to be sent whole, when there is something new: others follow it too.
     """
 
     afresh: bool = False
     rest: float = 0.0
+    whole: bool = False
 
 
 Order = Run | Pace | Step | Seek | Watch | Ready

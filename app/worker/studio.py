@@ -78,10 +78,10 @@ class Studio:
                 self._retire()
                 self._attempt(order.ticket, lambda: self._begin(order))
             case Ready():
-                if order.afresh:
+                if order.afresh or order.whole:
                     self._easel.packer.forget()
-                    if run is not None:
-                        run.has_news = True
+                if order.afresh and run is not None:
+                    run.has_news = True
                 self._paint_at = time.monotonic() + order.rest
             case Watch():
                 self._watch(order.look)

@@ -1,0 +1,60 @@
+"""The part of a page in a class: it leads one, follows one, or neither."""
+
+from __future__ import annotations
+
+from app.classroom import ROOMS, Room
+from app.keeper import Hire, Keeper
+from app.worker.reports import Picture
+from solver.settings import Settings
+
+
+class Attendance:
+    """What a page leads and follows.
+
+    Parameters
+    ----------
+    keeper
+        Has what does the page's work: a process, or a seat in a class.
+    hire
+        Gives a process.
+
+    Attributes
+    ----------
+    leads, follows
+        The class that sees what this page shows, and the one whose pictures it shows.
+    left
+        The class that was followed last, and may be again.
+    """
+
+    def __init__(self, keeper: Keeper, hire: Hire) -> None:
+        self.leads: Room | None = None
+        self.follows: Room | None = None
+        self.left: Room | None = None
+        self._keeper = keeper
+        self._hire = hire
+
+    def lead(self, settings: Settings) -> None:
+        """Begin a class."""
+        self.leads = self.leads or ROOMS.open(settings)
+
+    def end(self) -> None:
+        """End the class that this page leads."""
+        if self.leads is not None:
+            ROOMS.end(self.leads)
+            self.leads = None
+
+    def follow(self, room: Room) -> None:
+        """Take a seat; what the class shows is given as soon as a run with its settings starts."""
+        self.follows = room
+        self._keeper.change(room.seat)
+
+    def heed(self, settings: Settings) -> None:
+        """Leave the class that is followed for a run of one's own, unless it is the class's."""
+        if self.follows is not None and settings is not self.follows.settings:
+            self.left, self.follows = self.follows, None
+            self._keeper.change(self._hire)
+
+    def share(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:
+        """Give a picture of this page to the class that it leads."""
+        if self.leads is not None:
+            self.leads.show(settings, views, picture)

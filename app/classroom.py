@@ -1,0 +1,141 @@
+"""A class: one page leads, and whoever joins follows its pictures, which are computed once.
+
+Nobody has a name or an account, and nothing is left of a class that has ended.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Callable
+from dataclasses import replace
+
+from app.worker.orders import Order, Ready, Run
+from app.worker.reports import Picture, Report
+from solver.settings import Settings
+
+LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
+"""Of a code; none of them is taken for a digit."""
+LENGTH = 4
+
+
+class Room:
+    """What all pages of a class have in common.
+
+    Parameters
+    ----------
+    code
+        By which one joins.
+    settings
+        Of the leader's run.
+
+    Attributes
+    ----------
+    settings, views
+        Of what is shown, as the leader has chosen.
+    is_over
+        Whether the leader has left.
+    changed
+        Counts who came or went.
+    """
+
+    def __init__(self, code: str, settings: Settings) -> None:
+        self.code = code
+        self.settings = settings
+        self.views: tuple[str, ...] = ()
+        self.is_over = False
+        self.changed = 0
+        self._newest: Picture | None = None
+        self._number = 0
+        self._seats: set[Seat] = set()
+
+    def __len__(self) -> int:
+        return len(self._seats)
+
+    def show(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:
+        """Give all followers a whole picture, each as soon as it has painted the one before."""
+        self.settings, self.views, self._newest = settings, views, picture
+        self._number += 1
+        for seat in list(self._seats):
+            seat.give()
+
+    def seat(self, listener: Callable[[Report], None]) -> Seat:
+        """Let one more follow; reports go to the listener."""
+        found = Seat(self, listener)
+        self._seats.add(found)
+        self.changed += 1
+        return found
+
+    def leave(self, seat: Seat) -> None:
+        """Let one go."""
+        self._seats.discard(seat)
+        self.changed += 1
+
+    def end(self) -> None:
+        """End the class; who follows keeps the last picture."""
+        self.is_over = True
+
+    def newer_than(self, number: int) -> tuple[int, Picture | None]:
+        """Give the newest picture with its number, if there is one after a number."""
+        return self._number, self._newest if self._number > number else None
+
+
+class Seat:
+    """What a page that follows has in place of a worker process: the leader's pictures."""
+
+    pid = None
+
+    def __init__(self, room: Room, listener: Callable[[Report], None]) -> None:
+        self._room = room
+        self._listener = listener
+        self._ticket = self._shown = 0
+        self._is_ready = False
+
+    def send(self, order: Order) -> None:
+        """Heed that the page is ready, and the number that it gives to what it sees."""
+        match order:
+            case Run():
+                self._ticket = order.ticket
+            case Ready():
+                self._is_ready = True
+                self._shown = 0 if order.afresh else self._shown
+            case _:
+                return
+        self.give()
+
+    def give(self) -> None:
+        """Pass the newest picture on, if the page waits for one and has not seen it."""
+        number, picture = self._room.newer_than(self._shown)
+        if picture is not None and self._is_ready and self._ticket:
+            self._is_ready, self._shown = False, number
+            self._listener(replace(picture, ticket=self._ticket))
+
+    def close(self) -> None:
+        """Follow no more."""
+        self._room.leave(self)
+
+
+class Rooms:
+    """The classes of a server, by their codes."""
+
+    def __init__(self) -> None:
+        self._open: dict[str, Room] = {}
+
+    def open(self, settings: Settings) -> Room:
+        """Begin a class."""
+        code = ""
+        while not code or code in self._open:
+            code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
+        self._open[code] = Room(code, settings)
+        return self._open[code]
+
+    def find(self, code: str) -> Room | None:
+        """Give a class that has not ended."""
+        return self._open.get(code.strip().upper())
+
+    def end(self, room: Room) -> None:
+        """End a class."""
+        room.end()
+        self._open.pop(room.code, None)
+
+
+ROOMS = Rooms()

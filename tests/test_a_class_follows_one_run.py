@@ -1,0 +1,160 @@
+"""One page leads a class, and all that join see its pictures, which are computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from lone_link import LoneLink
+
+from app.address import class_from_query, query_of
+from app.classroom import ROOMS, Room, Rooms, Seat
+from app.pages import Pages
+from app.session import Session
+from app.worker.bench import Bench
+from app.worker.orders import Ready, Run
+from app.worker.reports import Facts, Picture, Report
+from solver.scenes.bar import BarSettings
+
+BAR = BarSettings.checked({})
+STEEPER = BAR.replace(friction=0.5)
+
+
+def picture(number: int) -> Picture:
+    return Picture(1, Facts(iteration=number, done=number), bytes([number]))
+
+
+class Follower:
+    """A page that follows, and what it was given."""
+
+    def __init__(self, room: Room) -> None:
+        self.given: list[Report] = []
+        self.seat = room.seat(self.given.append)
+        self.seat.send(Run(7, "bar", {}))
+
+    def paint(self) -> None:
+        self.seat.send(Ready())
+
+
+def test_a_follower_gets_the_newest_picture_as_soon_as_it_has_painted() -> None:
+    room = Room("ABCD", BAR)
+    quick, slow = Follower(room), Follower(room)
+    slow.paint()
+    for number in (1, 2, 3):
+        quick.paint()
+        room.show(BAR, (), picture(number))
+    assert [one.block for one in quick.given] == [b"\1", b"\2", b"\3"]
+    assert [one.block for one in slow.given] == [b"\1"]
+    slow.paint()
+    assert slow.given[-1] == Picture(7, picture(3).facts, b"\3")
+    slow.paint()
+    assert len(slow.given) == 2
+
+
+def test_one_who_comes_late_or_has_lost_a_picture_gets_the_last_again() -> None:
+    room = Room("ABCD", BAR)
+    room.show(BAR, (), picture(1))
+    late = Follower(room)
+    late.paint()
+    assert [one.block for one in late.given] == [b"\1"]
+    late.seat.send(Ready(afresh=True))
+    assert [one.block for one in late.given] == [b"\1", b"\1"]
+
+
+def test_who_leaves_is_given_nothing_more() -> None:
+    room = Room("ABCD", BAR)
+    one = Follower(room)
+    assert len(room) == 1
+    one.paint()
+    one.seat.close()
+    room.show(BAR, (), picture(1))
+    assert len(room) == 0
+    assert one.given == []
+
+
+def test_codes_differ_and_are_found_however_they_are_written_until_the_class_ends() -> None:
+    rooms = Rooms()
+    opened = [rooms.open(BAR) for _ in range(200)]
+    assert len({room.code for room in opened}) == 200
+    first = opened[0]
+    assert rooms.find(f" {first.code.lower()} ") is first
+    rooms.end(first)
+    assert first.is_over
+    assert rooms.find(first.code) is None
+
+
+@pytest.fixture
+def pages() -> Iterator[tuple[Session, LoneLink, Session, LoneLink]]:
+    """Give a page that leads and one that follows, with what would be their processes."""
+    links = LoneLink(), LoneLink()
+    both = Pages(2)
+    leader, follower = (Session(both, Bench(), BAR, link.hire) for link in links)
+    leader.start()
+    leader.attendance.lead(leader.settings)
+    room = leader.attendance.leads
+    assert room is not None
+    follower.attendance.follow(room)
+    follower.start(room.settings)
+    yield leader, links[0], follower, links[1]
+    for session in (leader, follower):
+        session.close()
+    assert ROOMS.find(room.code) is None
+
+
+Two = tuple[Session, LoneLink, Session, LoneLink]
+
+
+def test_a_follower_hires_no_process_and_shows_what_the_leader_shows(pages: Two) -> None:
+    leader, link, follower, idle = pages
+    follower.ask()
+    leader.ask()
+    assert link.orders[-1] == Ready(whole=True)
+    link.say(picture(4))
+    assert leader.collect() == [b"\4"]
+    assert follower.collect() == [b"\4"]
+    assert follower.facts == picture(4).facts
+    assert idle.hired == 0
+    assert not follower.keeper.has_process
+
+
+def test_a_follower_that_changes_a_setting_goes_on_alone_and_can_come_back(pages: Two) -> None:
+    leader, link, follower, own = pages
+    follower.ask()
+    link.say(picture(4))
+    leader.collect()
+    follower.collect()
+    follower.change("friction", 0.4)
+    assert follower.attendance.follows is None
+    assert own.hired == 1
+    room = follower.attendance.left
+    assert room is not None
+    assert len(room) == 0
+    follower.attendance.follow(room)
+    follower.start(room.settings)
+    follower.ask()
+    assert follower.collect() == [b"\4"]
+    assert own.is_closed
+
+
+def test_a_reset_of_the_leader_does_not_send_followers_away(pages: Two) -> None:
+    _, _, follower, _ = pages
+    follower.start()
+    assert follower.attendance.follows is not None
+
+
+def test_the_address_of_a_follower_names_its_class_alone(pages: Two) -> None:
+    leader, _, follower, _ = pages
+    room = follower.attendance.follows
+    assert room is not None
+    query = query_of(STEEPER, None, room)
+    assert query == f"?class={room.code}"
+    assert class_from_query(query) == (room, "")
+    leader.close()
+    found, complaint = class_from_query(query)
+    assert found is None
+    assert room.code in complaint
+    assert class_from_query("?scene=bar") == (None, "")
+
+
+def test_a_seat_stands_for_no_process() -> None:
+    assert Seat(Room("ABCD", BAR), lambda report: None).pid is None
