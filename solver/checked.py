@@ -88,9 +88,14 @@ class Checked(param.Parameterized):
         """Give every setting's plain value by name."""
         return {name: getattr(self, name) for name in self.definitions()}
 
-    def changed(self) -> dict[str, Any]:
-        """Give the settings that differ from their defaults, or from what their method says."""
-        usual = self.usual(self.method)
+    def changed(self, base: Self | None = None) -> dict[str, Any]:
+        """Give the settings that differ from others, or from their defaults.
+
+        Where the method differs too, those that it sets are compared with what it says.
+        """
+        usual = base.values() if base else self.usual(self.method)
+        if base and base.method != self.method:
+            usual.update(self.of_method(self.method))
         return {name: value for name, value in self.values().items() if value != usual[name]}
 
     def replace(self, /, **changes: object) -> Self:

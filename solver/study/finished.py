@@ -26,11 +26,14 @@ class FinishedRun:
     ----------
     has_errors
         Whether its records hold distances to a reference.
+    loop
+        As the scene shows it, where that is at hand: in the plane it takes a solution to make one.
     """
 
     settings: Settings
     solution: Solution
     has_errors: bool
+    loop: Loop | None = None
 
     @property
     def iterate(self) -> Iterate:
@@ -44,7 +47,7 @@ class FinishedRun:
 
     @cached_property
     def _loop(self) -> Loop:
-        return loop_of(self.settings, self.problem)
+        return self.loop or loop_of(self.settings, self.problem)
 
     @property
     def measures_displacement(self) -> bool:

@@ -62,6 +62,8 @@ class Quantity:
     reads
         What the records must hold for it, which takes its time: distances to a reference, or the
         indicators of every iteration.
+    is_share
+        Whether it is a share of a whole, which is told in per cent.
     """
 
     name: str
@@ -70,6 +72,7 @@ class Quantity:
     of: Callable[[FinishedRun, float | None], float]
     parameter: Parameter | None = None
     reads: Literal["errors", "indicators"] | None = None
+    is_share: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,11 @@ class Reading:
 
     quantity: Quantity
     at: float | None
+
+    @property
+    def name(self) -> str:
+        """What it is asked for by."""
+        return self.quantity.name if self.at is None else f"{self.quantity.name}@{self.at!r}"
 
     @property
     def title(self) -> str:
@@ -91,8 +99,14 @@ class Reading:
         return self.quantity.of(run, self.at)
 
 
-def _recorded(column: str, title: str, reads: Literal["errors", "indicators"]) -> Quantity:
-    return Quantity(column, title, "", measures.recorded(column), ITERATION, reads)
+def _recorded(
+    column: str, title: str, reads: Literal["errors", "indicators"], *, is_share: bool = False
+) -> Quantity:
+    return Quantity(column, title, "", measures.recorded(column), ITERATION, reads, is_share)
+
+
+def _error(column: str, title: str) -> Quantity:
+    return _recorded(column, title, "errors", is_share=True)
 
 
 def _until(name: str, title: str, column: str, error: str, unit: str = "") -> Quantity:
@@ -104,9 +118,11 @@ _ALL = (
     Quantity("seconds", "Run time", "s", measures.recorded("seconds")),
     _recorded("indicator", "LATIN indicator", "indicators"),
     _recorded("behaviour", "k-free indicator", "indicators"),
-    _recorded("estimated_error", "Estimated error of the contact force", "indicators"),
-    _recorded("error_displacement", "Error of the displacement", "errors"),
-    _recorded("error_force", "Error of the contact force", "errors"),
+    _recorded(
+        "estimated_error", "Estimated error of the contact force", "indicators", is_share=True
+    ),
+    _error("error_displacement", "Error of the displacement"),
+    _error("error_force", "Error of the contact force"),
     _until(
         "iterations_to_displacement",
         "Iterations to an error of the displacement of",
@@ -161,7 +177,13 @@ _ALL = (
         measures.residual_displacement,
     ),
     Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
-    Quantity("slipped_share", "Share of the points that slip", "", measures.slipped_share),
+    Quantity(
+        "slipped_share",
+        "Share of the points that slip",
+        "",
+        measures.slipped_share,
+        is_share=True,
+    ),
     Quantity("first_slip_time", "Time of the first slip", "s", measures.first_slip_time, SHARE),
     Quantity(
         "first_slip_displacement",
