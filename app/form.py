@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import param
 from panel.custom import JSComponent
 
+from app.panes import script
 from solver.definitions import Curve, Parameter, about
 
 POINTS = "table of points"
@@ -63,7 +64,7 @@ class Form(JSComponent):
     shown = param.Dict(default={})
     file = param.List(default=[])
 
-    _esm = "form.js"
+    _esm = script("controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

@@ -9,7 +9,8 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-STATIC = Path(__file__).resolve().parents[1] / "static"
+APP = Path(__file__).resolve().parent
+STATIC = APP.parent / "static"
 STYLE = (STATIC / "style.css").read_text(encoding="utf-8")
 
 
@@ -37,6 +38,11 @@ def select(
     made = pmui.Select(label=label, options=options, size="small", **more)
     made.param.watch(lambda event: choose(event.new), "value")
     return made
+
+
+def script(*names: str) -> str:
+    """Give the program of a component, of these files one after the other."""
+    return "\n".join((APP / name).read_text(encoding="utf-8") for name in names)
 
 
 def _looks(role: str) -> dict[str, Any]:

@@ -1,0 +1,115 @@
+// Controls of settings, for the components that hold some.
+function controls(model) {
+  const make = (tag, more = {}, ...children) => {
+    const made = Object.assign(document.createElement(tag), more)
+    made.append(...children)
+    return made
+  }
+  const tell = (row, value, hand = false) => {
+    // The time numbers the messages of all components of a page in one order.
+    const count = row.count = performance.now()
+    model.send_msg({name: row.name, value, hand, count})
+  }
+  const written = (value, item) => {
+    const rounded = Number(value.toPrecision(item.log ? 3 : 4)), size = Math.abs(rounded)
+    if (size === 0 || (size >= 1e-3 && size < 1e5)) { return rounded.toString() }
+    const [digits, power] = rounded.toExponential().split("e")
+    const raised = [...power.replace("+", "")].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[one] ?? "⁻").join("")
+    return (digits === "1" ? "" : digits + "·") + "10" + raised
+  }
+  const named = (item, input) => {
+    input.ariaLabel = item.label
+    return input
+  }
+  const filled = (select, options, value) => {
+    select.replaceChildren(...options.map(([text, value]) => new Option(text, value)))
+    select.value = value
+  }
+  const slider = (row, item) => {
+    const step = item.whole && !item.log ? 1 : "any"
+    const range = named(item, make("input", {type: "range", step}))
+    const text = make("output")
+    let {start, end} = item
+    const place = (value) => item.log ? Math.log10(value) : value
+    const read = () => {
+      let value = item.log ? 10 ** range.valueAsNumber : range.valueAsNumber
+      if (item.whole) { value = Math.round(value) }
+      else if (item.log) { value = Number(value.toPrecision(4)) }
+      else { value = Number((Math.round(value / item.step) * item.step).toPrecision(12)) }
+      return Math.min(Math.max(value, start), end)
+    }
+    const say = (value) => {
+      text.textContent = range.ariaValueText = written(value, item)
+      range.ariaValueNow = value
+    }
+    let last
+    range.oninput = () => {
+      if (read() === last) { return }
+      say(last = read())
+      tell(row, last, true)
+    }
+    range.onchange = () => tell(row, null)
+    row.show = (value) => {
+      start = Math.min(start, value)
+      end = Math.max(end, value)
+      range.min = place(start)
+      range.max = place(end)
+      // Between two whole numbers a logarithmic slider would never leave the lower one.
+      if (read() !== value || last === undefined) { range.value = place(value) }
+      say(last = value)
+    }
+    return [make("label", {}, item.label + ": ", text), range]
+  }
+  const choice = (row, item) => {
+    const select = named(item, make("select", {onchange: () => tell(row, select.value)}))
+    filled(select, item.options)
+    row.show = (value) => { select.value = value }
+    return [make("label", {}, item.label), select]
+  }
+  const flip = (row, item) => {
+    const box = make("input", {type: "checkbox", onchange: () => tell(row, box.checked)})
+    box.setAttribute("role", "switch")
+    row.show = (value) => { box.checked = value }
+    return [make("label", {}, box, " " + item.label)]
+  }
+  const curve = (row, item) => {
+    const parts = choice(row, item), show = row.show
+    const body = make("tbody"), head = make("tr")
+    head.append(...[...item.columns, "", ""].map((one) => make("td", {}, one)))
+    const table = make("div", {className: "points"},
+      make("table", {}, make("thead", {}, head), body))
+    const read = () => [...body.rows].map((one) =>
+      [...one.querySelectorAll("input")].map((input) => input.valueAsNumber))
+    const send = (rows) => {
+      if (rows.every((one) => one.every(Number.isFinite))) { tell(row, rows) }
+    }
+    const number = (value) => make("input", {
+      type: "number", step: "any", required: true, value, onchange: () => send(read()),
+    })
+    const added = (place) => {
+      const points = read(), [x, y] = points[place], next = points[place + 1]
+      const last = place > 0 ? x - points[place - 1][0] : 1
+      const more = next ? [(x + next[0]) / 2, (y + next[1]) / 2] : [x + last, y]
+      send(points.toSpliced(place + 1, 0, more))
+    }
+    const taken = (place) => {
+      if (body.rows.length > 1) { send(read().toSpliced(place, 1)) }
+    }
+    const button = (text, title, onclick) => make("button", {title, onclick}, text)
+    const line = (pair, place) => make("tr", {}, ...[
+      ...pair.map(number),
+      button("+", "Add a row below", () => added(place)),
+      button("−", "Take this row away", () => taken(place)),
+    ].map((one) => make("td", {}, one)))
+    row.show = (value) => {
+      const points = Array.isArray(value) ? value : []
+      show(points.length ? item.options.at(-1)[1] : value)
+      table.hidden = !points.length
+      if (JSON.stringify(read()) !== JSON.stringify(points)) {
+        body.replaceChildren(...points.map(line))
+      }
+    }
+    return [...parts, table]
+  }
+  return {make, tell, named, kinds: {slider, choice, flip, curve}}
+}
