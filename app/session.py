@@ -90,12 +90,11 @@ class Session:
         pages.add(self)
 
     def start(
-        self, settings: Settings | None = None, *, warm: bool = False, follows_hand: bool = False
+        self, settings: Settings | None = None, *, follows_hand: bool = False, **how: bool
     ) -> None:
         """Start a run, with new settings or those that are wanted, in place of the one at work.
 
-        A `warm` one starts from the last iterate of the run at work, where that is better; one
-        that follows a hand is shown at its end, if that is near, and is nothing to compare with.
+        What it means to follow a hand, to be `warm` or `is_alone` stands with the order `Run`.
         """
         settings = settings or self.wanted
         self.attendance.heed(settings)
@@ -105,12 +104,13 @@ class Session:
             self.watch(interface="", substructure=None)
         elif self.ticket:
             self._label = label_since(settings, self.settings) or self._label
+        self._label = "" if "is_alone" in how else self._label
         self.settings = settings
         self.ticket += 1
         self.facts, self._pending = None, None
         self.keeper.renew()
         self.follows_hand = follows_hand and self._is_free
-        self._work(warm=warm)
+        self._work(**how)
 
     def change(self, name: str, value: Any, *, by_hand: bool = False) -> None:
         """Change one setting; the run starts again as soon as the last change was shown.
@@ -271,7 +271,7 @@ class Session:
             pace = self.pace if self._is_free else 0.0
             self.keeper.send(Pace(self.ticket, pace, self.is_held))
 
-    def _work(self, *, warm: bool = False) -> None:
+    def _work(self, **how: bool) -> None:
         """Have a process do the run from its beginning."""
         self.keeper.begin(Watch(self.look), Ready())
         self.keeper.send(
@@ -284,7 +284,7 @@ class Session:
                 pace=None if self.follows_hand else self.pace,
                 pause_after=None if self._is_free else 1,
                 is_held=self.is_held,
-                warm=warm,
+                **how,
                 follows_hand=self.follows_hand,
             )
         )

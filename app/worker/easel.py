@@ -12,6 +12,7 @@ from app.views.catalogue import fitting
 from app.views.drawing import Axis, Bodies, Drawing, Image, Marks, Scene, View
 from app.views.legend import card_title
 from app.worker.block import Attributes, Packer, Quads
+from app.worker.readings import values
 from app.worker.shown import Look
 from solver.settings import Settings
 
@@ -26,6 +27,8 @@ class Easel:
     def paint(self, scene: Scene, words: Mapping[str, str]) -> bytes:
         """Draw every view that is seen; give what has changed of the page."""
         models: dict[str, Attributes] = {}
+        if scene.look.readings:
+            models["lesson"] = {"values": values(scene)}
         for view in seen(scene.run.settings, scene.look):
             drawing = view.draw(scene, self._kept.get(view.slug))
             if drawing is not None:

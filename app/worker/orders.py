@@ -27,6 +27,8 @@ class Run:
     follows_hand
         Whether a slider moves: then the run hurries to its end before it is shown, and nothing is
         compared with it afterwards.
+    is_alone
+        Whether it is nothing to compare with those before.
     """
 
     ticket: int
@@ -39,6 +41,7 @@ class Run:
     is_held: bool = False
     warm: bool = False
     follows_hand: bool = False
+    is_alone: bool = False
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,14 @@ class History:
         """Give one quantity of all iterations."""
         return self._table[COLUMNS.index(name), : self._count]
 
+    def records(self, count: int) -> list[Record]:
+        """Give the first records, with what is kept of them."""
+        rows = self._table[:, :count].T.tolist()
+        return [
+            Record(int(number), seconds, indicator, behaviour, math.nan, *errors)
+            for number, seconds, indicator, behaviour, *errors in rows
+        ]
+
     def thinned(self, most: int) -> dict[str, NDArray[np.float64]]:
         """Give all columns, of so many iterations at most; the first and the last among them."""
         chosen = thinned(self._count, most) if self._count else slice(0)

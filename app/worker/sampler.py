@@ -50,6 +50,8 @@ class Sampler:
     ----------
     interface
         Name of the interface that is looked at.
+    loop
+        Of the scene.
     """
 
     def __init__(self, problem: Problem, settings: Settings, look: Look) -> None:
@@ -65,7 +67,7 @@ class Sampler:
         self._columns = thinned(problem.n_instants)
         self._curve = thinned(problem.n_instants, LONGEST_CURVE)
         self._lengths = law.by_point(law.weights)[self._rows]
-        self._loop = loop_of(settings, problem)
+        self.loop = loop_of(settings, problem)
         self._mesh: Thinned | None = None
         self._wires: ShownWires | None = None
         if problem.inside is not None:
@@ -77,7 +79,7 @@ class Sampler:
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""
-        problem, law, loop = self._problem, self._law, self._loop
+        problem, law, loop = self._problem, self._law, self.loop
         bound = coefficient = None
         if law.opens:
             coefficient = _floats(law.mean_by_point(law.friction)[self._rows])
@@ -160,13 +162,13 @@ class Sampler:
         pressure: NDArray[np.float64] | None,
         status: NDArray[np.int8],
     ) -> Shown:
-        force = self._loop.force
+        force = self.loop.force
         return Shown(
             interface=self.interface,
             friction=self._density(friction),
             pressure=None if pressure is None else self._density(pressure),
             status=np.ascontiguousarray(self._thin(status)),
-            end_displacement=_floats(self._loop.displacement(fields.displacement)[self._curve]),
+            end_displacement=_floats(self.loop.displacement(fields.displacement)[self._curve]),
             load=None if isinstance(force, np.ndarray) else _floats(force(fields)[self._curve]),
         )
 

@@ -164,6 +164,8 @@ class Look:
         Names of the views that are seen.
     complaint
         What the status line says about the address, or empty.
+    readings
+        Quantities of the run that are told in words, by their names.
     """
 
     interface: str = ""
@@ -173,6 +175,7 @@ class Look:
     magnification: float | None = None
     views: tuple[str, ...] = ()
     complaint: str = ""
+    readings: tuple[str, ...] = ()
 
 
 def instant_of(phase: float, count: int) -> int:

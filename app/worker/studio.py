@@ -91,10 +91,9 @@ class Studio:
     def _begin(self, order: Run) -> None:
         previous = self._last if order.warm else None
         self._run = WorkerRun(order, self._look, self._urgent, self._references, previous)
-        if self._before is not None and type(self._before.settings) is not type(
-            self._run.recording.settings
-        ):
-            # Runs of another scene are nothing to compare with.
+        settings, before = self._run.recording.settings, self._before
+        # Runs of another scene are nothing to compare with.
+        if order.is_alone or (before is not None and type(before.settings) is not type(settings)):
             self._before = None
             self._past.clear()
 

@@ -1,0 +1,57 @@
+"""Quantities of the iterate that is shown, in words, as sentences of a lesson hold them."""
+
+from __future__ import annotations
+
+import math
+
+from app.views.drawing import Scene
+from app.worker.words import number, percent
+from solver.latin import Solution
+from solver.latin.stop import CANCELLED
+from solver.study.finished import FinishedRun
+from solver.study.quantities import Quantity, reading
+
+OPEN = "…"
+"""What only the rest of the run will tell."""
+NONE = "–"
+PREFIXES = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}
+"""Of units, by powers of a thousand."""
+
+
+def values(scene: Scene) -> list[tuple[str, str]]:
+    """Give name and text (HTML) of every quantity that is looked at.
+
+    The run is taken as far as the iterate that is shown, and no further.
+    """
+    run, iterate = scene.run, scene.frame.iterate
+    is_final = run.status is not None and iterate.number == run.iteration
+    solution = Solution(iterate, run.history.records(iterate.number), run.status or CANCELLED)
+    loop, has_errors = scene.frame.sampler.loop, run.reference is not None
+    so_far = FinishedRun(run.settings, solution, has_errors, loop)
+    found = []
+    for name in scene.look.readings:
+        asked = reading(name)
+        value = asked(so_far)
+        known = is_final or math.isfinite(value)
+        found.append((name, written(value, asked.quantity, iterate.number) if known else OPEN))
+    return found
+
+
+def written(value: float, quantity: Quantity, done: int) -> str:
+    """Write a quantity of a run of so many iterations with its unit (HTML)."""
+    if math.isnan(value):
+        return NONE
+    if math.isinf(value):
+        # All that is counted and may never come are iterations.
+        return "not reached" if quantity.unit else f"more than {done}"
+    if quantity.is_share:
+        return percent(value)
+    return measured(value, quantity.unit) if quantity.unit else number(value)
+
+
+def measured(value: float, unit: str) -> str:
+    """Write a value with that prefix of its unit which needs the fewest zeros."""
+    power = math.floor((math.log10(abs(value)) + 1.0) / 3.0) if value else 0
+    if power not in PREFIXES:
+        return f"{number(value)} {unit}"
+    return f"{value / 1e3**power:.3g} {PREFIXES[power]}{unit}"
