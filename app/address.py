@@ -9,10 +9,12 @@ from typing import Any
 from urllib.parse import parse_qsl, quote
 
 from app.classroom import ROOMS, Room
+from app.lesson import LESSONS
 from app.session import DEFAULT_PACE
 from app.worker.shown import Look
 from solver.definitions import SettingError, checked_value, choice, parse, quantity
 from solver.files import scene_settings
+from solver.lessons.lesson import Lesson
 from solver.settings import Settings
 
 DEFAULT_SCENE = "bar"
@@ -29,17 +31,19 @@ LONGEST_NAME = 40
 
 @dataclass(frozen=True)
 class Sight:
-    """What is looked at: a tab, an instant as a share of the interval, and the pace of the run."""
+    """What is looked at: a tab, an instant as a share of the interval, a pace, and any lesson."""
 
     tab: str = TABS[0]
     instant: float = Look().phase
     pace: str = "20"
+    lesson: str = ""
 
 
 SIGHT: dict[str, Any] = {
     "tab": choice(Sight.tab, TABS, "", group="", title=""),
     "instant": quantity(Sight.instant, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
     "pace": choice(Sight.pace, PACES, "", group="", title=""),
+    "lesson": choice(next(iter(LESSONS)), LESSONS, "", group="", title=""),
 }
 
 
@@ -62,17 +66,18 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
     Returns
     -------
     settings
-        Those of the address that are valid together, and the defaults of the others.
+        Those of the address that are valid together; the others as its lesson has them, or their
+        defaults.
     complaint
         What was refused and why, or empty.
     """
-    kind = scene_settings(DEFAULT_SCENE)
     pairs = dict(parse_qsl(query.lstrip("?")))
+    lesson, scene = LESSONS.get(pairs.get("lesson", "")), pairs.pop("scene", "")
     try:
-        kind = scene_settings(pairs.pop("scene", DEFAULT_SCENE))
+        base = _base(lesson, scene)
     except SettingError as refusal:
-        return kind.checked({}), complaint_of([str(refusal)])
-    definitions = kind.definitions()
+        return _base(lesson, ""), complaint_of([str(refusal)])
+    definitions = base.definitions()
     values, refused = {}, []
     for name, text in pairs.items():
         if name in SIGHT or name == CLASS:
@@ -84,14 +89,23 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
             values[name] = checked_value(definitions[name], name, parse(text))
         except SettingError as refusal:
             refused.append(str(refusal))
-    settings, apart = _together(kind, values)
+    settings, apart = _together(base, values)
     return settings, complaint_of([*refused, *apart])
 
 
-def _together(kind: type[Settings], values: dict[str, Any]) -> tuple[Settings, list[str]]:
+def _base(lesson: Lesson | None, scene: str) -> Settings:
+    """Give the settings from which an address says what differs."""
+    if lesson is None:
+        return scene_settings(scene or DEFAULT_SCENE).checked({})
+    if scene not in ("", lesson.settings.scene):
+        raise SettingError("scene", scene, lesson.settings.scene, "the lesson has its own")
+    return lesson.settings
+
+
+def _together(base: Settings, values: dict[str, Any]) -> tuple[Settings, list[str]]:
     """Take as many values as are valid together; give the refusals of the others."""
     try:
-        return kind.checked(values), []
+        return base.replace(**values), []
     except SettingError:
         pass
     taken: dict[str, Any] = {}
@@ -102,7 +116,7 @@ def _together(kind: type[Settings], values: dict[str, Any]) -> tuple[Settings, l
         refused = {}
         for name, value in left.items():
             try:
-                kind.checked({**taken, name: value})
+                base.replace(**{**taken, name: value})
                 taken[name] = value
             except SettingError as refusal:
                 alone = refusal.name == name
@@ -110,7 +124,7 @@ def _together(kind: type[Settings], values: dict[str, Any]) -> tuple[Settings, l
         if len(refused) == len(left):
             break
         left = {name: left[name] for name in refused}
-    return kind.checked(taken), list(refused.values())
+    return base.replace(**taken), list(refused.values())
 
 
 def complaint_of(refused: list[str]) -> str:
@@ -131,10 +145,13 @@ def class_from_query(query: str) -> tuple[Room | None, str]:
 
 
 def query_of(settings: Settings, sight: Sight | None = None, room: Room | None = None) -> str:
-    """Write what differs from the defaults as a page's address."""
-    pairs = [("scene", settings.scene)] if room is None else [(CLASS, room.code)]
+    """Write what differs from the defaults, or from a lesson's settings, as a page's address."""
+    sight = sight or Sight()
+    lesson = LESSONS.get(sight.lesson)
+    pairs = [(CLASS, room.code)] if room else [] if lesson else [("scene", settings.scene)]
     if room is None:
-        pairs += [(name, json.dumps(value)) for name, value in settings.changed().items()]
-    looked_at = asdict(sight or Sight()).items()
+        changed = settings.changed(lesson.settings if lesson else None)
+        pairs += [(name, json.dumps(value)) for name, value in changed.items()]
+    looked_at = asdict(sight).items()
     pairs += [(name, str(value)) for name, value in looked_at if value != getattr(Sight, name)]
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)

@@ -7,19 +7,19 @@ import time
 from typing import Any
 
 import panel as pn
-from panel_material_ui.template.base import Page
 
-from app.address import PACES, Sight, query_of
+from app.address import PACES, TABS, Sight, query_of
 from app.banner import Banner
 from app.cards import Cards
 from app.classroom import Room
-from app.innards import connections, ignore_business, send_without_delay
+from app.innards import connections, send_without_delay
 from app.looks import Looks
-from app.panes import STATIC, column, text
+from app.panes import column, page, text
 from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
+from app.teaching import Teaching
 from app.transport import Transport
 from app.views.catalogue import VIEWS, fitting
 from solver.settings import Settings
@@ -45,8 +45,8 @@ class Dashboard:
         What the page shows.
     complaint
         What was refused in the page's address; it is shown until a setting changes.
-    tab
-        The one that is looked at first.
+    sight
+        What is looked at first; instant and pace are the session's.
     on_phone
         Whether the run comes first, with the settings out of the way and the tabs above it.
 
@@ -61,7 +61,7 @@ class Dashboard:
         session: Session,
         *,
         complaint: str = "",
-        tab: str = Sight.tab,
+        sight: Sight | None = None,
         on_phone: bool = False,
     ) -> None:
         self.session = session
@@ -88,17 +88,21 @@ class Dashboard:
         }
         self._cards = Cards(chosen)
         self._banner = Banner(session, self._follow)
-        self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy)
+        self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy, self._teach)
+        self._teaching = Teaching(session, self._sidebar, self._on_lesson)
         self._plots = column(role="plots")
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, self._on_tab)
-        self._first_tab = tab
-        self.page = self._make_page()
+        self._sight = sight or Sight()
+        self.page = page(self._sidebar.view, self._tabs.bar, self._tabs.main)
         if on_phone:
             self.page.sidebar_open = False
             self._clear_the_header()
         self._sidebar.show(session.wanted)
-        self._arrange()
+        if self._sight.lesson:
+            self._teaching.take(self._sight.lesson)
+        else:
+            self._arrange()
         self._keep_address()
 
     def loaded(self) -> None:
@@ -111,7 +115,7 @@ class Dashboard:
         room = self.session.attendance.follows
         self.session.start(room.settings if room else None)
         self._on_narrow()
-        self._tabs.bar.value = self._first_tab
+        self._tabs.bar.value = self._sight.tab
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
@@ -154,31 +158,14 @@ class Dashboard:
 
     def _make_live(self) -> pn.Column:
         words = [text(role=role, tags=[role]) for role in ("status", "figures")]
-        parts = self._banner.view, self.transport.view, *words, self._plots, self._pulse
+        heads = self._banner.view, self._teaching.view, self.transport.view
+        parts = *heads, *words, self._plots, self._pulse
         return column(*parts, role="live", margin=(4, 10))
-
-    def _make_page(self) -> Page:
-        page = Page(
-            title="Slipfront",
-            favicon=STATIC / "logo.svg",
-            logo=STATIC / "logo.svg",
-            sidebar=[self._sidebar.view],
-            sidebar_width=310,
-            header=[self._tabs.bar],
-            main=[self._tabs.main],
-            busy_indicator=None,
-            meta_description="A laboratory for frictional contact: LATIN iterations, live.",
-        )
-        ignore_business(page)
-        return page
 
     def _keep_address(self) -> None:
         """Have the address say where the page stands."""
         if self._stood != (stands := self._stands()):
-            self._stood, self._pulse.query = (
-                stands,
-                query_of(*stands),
-            )
+            self._stood, self._pulse.query = stands, query_of(*stands)
 
     def _copy(self) -> None:
         self._keep_address()
@@ -188,17 +175,20 @@ class Dashboard:
         """Give what an address has to say to come back to this."""
         session = self.session
         pace = next(name for name, pace in PACES.items() if pace == session.pace)
-        sight = Sight(self._tabs.bar.value, round(session.look.phase, 4), pace)
+        phase = round(session.look.phase, 4)
+        sight = Sight(self._tabs.bar.value, phase, pace, self._teaching.name)
         return session.wanted, sight, session.attendance.follows
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
         session = self.session
+        self._teaching.follow(session.wanted)
         fit = fitting(session.wanted)
         room = session.attendance.follows
         own = self._sidebar.offer([view.name for view in fit])
         wanted = (room.views if room else ()) or own
-        self._shown = [view for view in fit if view.name in wanted]
+        seen = [] if self._teaching.asks else fit
+        self._shown = [view for view in seen if view.name in wanted]
         there = self._shown[: self._room]
         self.transport.view.visible = room is None
         self.transport.arrange(session.wanted)
@@ -271,6 +261,17 @@ class Dashboard:
         self._pulse.heard = event.new
         if event.new < 0:
             self.session.ask(afresh=True)
+
+    def _teach(self, name: str) -> None:
+        self._teaching.open(name)
+
+    def _on_lesson(self) -> None:
+        """Make room for a lesson, for its question alone, or for all else."""
+        classes = ["taught", "asks"] if self._teaching.asks else ["taught"]
+        self._live.css_classes = ["live", *(classes if self._teaching.lesson else ())]
+        self.page.sidebar_open = not (self._teaching.lesson or self._pulse.narrow)
+        self._tabs.bar.value = TABS[0]
+        self._arrange()
 
     def _on_narrow(self) -> None:
         if self._loaded and self._pulse.narrow:

@@ -8,6 +8,9 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
+from panel_material_ui.template.base import Page
+
+from app.innards import ignore_business
 
 APP = Path(__file__).resolve().parent
 STATIC = APP.parent / "static"
@@ -43,6 +46,23 @@ def select(
 def script(*names: str) -> str:
     """Give the program of a component, of these files one after the other."""
     return "\n".join((APP / name).read_text(encoding="utf-8") for name in names)
+
+
+def page(sidebar: Any, header: Any, main: Any) -> Page:
+    """Make a page with one part at each place."""
+    made = Page(
+        title="Slipfront",
+        favicon=STATIC / "logo.svg",
+        logo=STATIC / "logo.svg",
+        sidebar=[sidebar],
+        sidebar_width=310,
+        header=[header],
+        main=[main],
+        busy_indicator=None,
+        meta_description="A laboratory for frictional contact: LATIN iterations, live.",
+    )
+    ignore_business(made)
+    return made
 
 
 def _looks(role: str) -> dict[str, Any]:

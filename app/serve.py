@@ -47,7 +47,7 @@ def open_page() -> Page:
     session.set_pace(PACES[sight.pace])
     session.watch(phase=sight.instant)
     complaint, phone = f"{complaint} {more} {most}".strip(), is_phone(pn.state.headers)
-    dashboard = Dashboard(session, complaint=complaint, tab=sight.tab, on_phone=phone)
+    dashboard = Dashboard(session, complaint=complaint, sight=sight, on_phone=phone)
     pn.state.onload(dashboard.loaded)
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     dashboard.session.keeper.wake = lambda: document.add_next_tick_callback(dashboard.tick)

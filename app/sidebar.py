@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from typing import Any
 
 from app.form import POINTS, Form, item_of
+from app.lesson import LESSONS
 from app.session import Session
 from app.uploads import load_in
+from app.views.catalogue import VIEWS as ALL_VIEWS
 from solver.checked import dump
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
@@ -32,13 +34,21 @@ ORDER = (
 )
 
 # None of these is the name of a setting.
-SCENE, WARM, VIEWS, SHARE = "the-scene", "start-from-before", "the-views", "share"
+SCENE, LESSON, WARM = "the-scene", "the-lesson", "start-from-before"
+VIEWS, SHARE = "the-views", "share"
 SCENE_ITEM = {
     "name": SCENE,
     "kind": "choice",
     "label": "Scene",
     "help": "What is solved; each scene keeps its settings until the page is closed.",
     "options": [[entry.title, name] for name, entry in CATALOGUE.items()],
+}
+LESSON_ITEM = {
+    "name": LESSON,
+    "kind": "choice",
+    "label": "Lesson",
+    "help": "A question to predict the answer of, one thing to change, and why it is so.",
+    "options": [["none", ""], *([one.title, one.name] for one in LESSONS.values())],
 }
 WARM_ITEM = {
     "name": WARM,
@@ -84,9 +94,13 @@ class Sidebar:
         Tells the user what was refused and why.
     copy
         Copies the page's address.
+    teach
+        Opens a lesson by its name; an empty one leaves that which is open.
 
     Attributes
     ----------
+    lesson
+        Name of the one that is open, or empty.
     view
         What stands on the page.
     """
@@ -97,17 +111,20 @@ class Sidebar:
         rearrange: Callable[[], None],
         complain: Callable[[str], None],
         copy: Callable[[], None],
+        teach: Callable[[str], None],
     ) -> None:
         self._session = session
         self._rearrange = rearrange
         self._complain = complain
         self._copy = copy
+        self._teach = teach
+        self.lesson = ""
         self._views: list[str] = []
         self._unwanted: set[str] = set()
         self._asked: dict[str, Any] = {}
         self._in_hand: set[str] = set()
         self._has_obeyed = False
-        self._heard = self._answered = 0
+        self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
         self.view.on_msg(lambda message: self.hear(**message.data))
 
@@ -121,6 +138,7 @@ class Sidebar:
         wanted = [name for name in self._views if name not in self._unwanted]
         own = {
             SCENE: settings.scene,
+            LESSON: self.lesson,
             WARM: self._session.warm_start,
             VIEWS: [self._views, wanted],
             SHARE: None,
@@ -128,11 +146,14 @@ class Sidebar:
         }
         self.view.param.update(items=_items(type(settings)), shown={**values, **own})
 
-    def hear(self, name: str, value: Any, hand: bool, count: int) -> None:
+    def hear(self, name: str, value: Any, hand: bool, count: float) -> None:
         """Follow what the user does with a control."""
         self._heard = count
         if name == SCENE:
             self._on_scene(value)
+        elif name == LESSON:
+            self.obey()
+            self._teach(value)
         elif name == WARM:
             self._session.warm_start = value
         elif name == VIEWS:
@@ -165,6 +186,11 @@ class Sidebar:
             self._views = list(views)
             self.show(self._session.wanted)
         return [name for name in views if name not in self._unwanted]
+
+    def draw(self, views: Iterable[str]) -> None:
+        """Draw these views and no others, until the user wants more."""
+        self._unwanted = {view.name for view in ALL_VIEWS} - set(views)
+        self.show(self._session.wanted)
 
     def _on_scene(self, scene: str) -> None:
         self.obey()
@@ -241,4 +267,4 @@ def _items(settings: type[Settings]) -> list[dict[str, Any]]:
     after = max(i for i, item in enumerate(open_ones) if item["group"] == METHOD) + 1
     open_ones.insert(after, WARM_ITEM)
     more = [item for item in found if item["more"]]
-    return [SCENE_ITEM, *open_ones, *more, VIEWS_ITEM, SHARE_ITEM]
+    return [SCENE_ITEM, LESSON_ITEM, *open_ones, *more, VIEWS_ITEM, SHARE_ITEM]

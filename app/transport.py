@@ -53,6 +53,7 @@ class Transport:
             align_items="center",
             flex_wrap="wrap",
             sizing_mode="stretch_width",
+            css_classes=["transport"],
         )
 
     def toggle(self) -> None:

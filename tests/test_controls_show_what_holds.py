@@ -23,7 +23,7 @@ TABLE = [(0.0, 0.0), (1.0, 500.0)]
 def sidebar() -> Sidebar:
     settings = BarSettings.checked({"method": "paper", "load": TABLE})
     session = Session(Pages(1), Bench(), settings, LoneLink().hire)
-    made = Sidebar(session, lambda: None, lambda text: None, lambda: None)
+    made = Sidebar(session, lambda: None, lambda text: None, lambda: None, lambda name: None)
     made.show(settings)
     return made
 

@@ -43,7 +43,7 @@ def complaints() -> list[str]:
 
 @pytest.fixture
 def sidebar(session: Session, complaints: list[str]) -> Sidebar:
-    return Sidebar(session, lambda: None, complaints.append, lambda: None)
+    return Sidebar(session, lambda: None, complaints.append, lambda: None, lambda name: None)
 
 
 def move(sidebar: Sidebar, name: str, value: Any) -> None:
@@ -129,7 +129,7 @@ def shown(session: Session, link: LoneLink) -> None:
 def test_a_dragged_slider_hurries_and_let_go_it_replays() -> None:
     link = LoneLink()
     session = Session(Pages(1), Bench(), BarSettings.checked({}), link.hire)
-    sidebar = Sidebar(session, lambda: None, lambda text: None, lambda: None)
+    sidebar = Sidebar(session, lambda: None, lambda text: None, lambda: None, lambda name: None)
     session.start()
     shown(session, link)
     move(sidebar, "peak", 910.0)

@@ -1,0 +1,164 @@
+"""The lesson of a page: offered in a line, opened, its question asked and answered, and left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import param
+from panel.custom import JSComponent
+
+from app.form import STYLE
+from app.lesson import LESSONS, OFFERED, content, readings
+from app.panes import script
+from app.session import Session
+from app.sidebar import Sidebar
+from app.views.catalogue import VIEWS
+from solver.lessons.lesson import Lesson
+from solver.settings import Settings
+
+CHOICE = "the-choice"
+"""Name of the message that tells what was predicted; it is none of a setting."""
+OWN_STYLE = """
+:host { font-size: 15px; line-height: 1.45; }
+h2 { margin: 0 0 6px; font-size: 20px; line-height: 1.25; }
+p { margin: 8px 0; }
+article { padding: 2px 10px 10px; }
+summary { margin: 4px 0; }
+small { opacity: 0.8; }
+.question, .why { padding-left: 10px; border-left: 4px solid #1976d2; }
+.question { font-weight: 600; }
+.why { outline: none; }
+.why.right { border-color: #009E73; }
+.why.wrong { border-color: #D55E00; }
+button { width: auto; padding: 5px 12px; margin: 3px 8px 3px 0; text-align: left; }
+button:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
+button.main { color: #fff; background: #1565c0; border-color: #1565c0; }
+.choices button { display: block; width: 100%; padding: 7px 12px; margin: 6px 0; }
+.value { font-weight: 600; white-space: nowrap; font-variant-numeric: tabular-nums; }
+sup { line-height: 0; }
+.control { display: inline-block; vertical-align: bottom; padding: 0 8px; border-radius: 6px;
+  background: color-mix(in srgb, #1976d2 14%, transparent); }
+.control[hidden] { display: none; }
+.control input[type=range] { width: 200px; max-width: 100%; margin: 0 0 4px; }
+.control select { display: inline-block; width: auto; margin: 2px 0; }
+.control label { display: inline-block; margin-right: 6px; white-space: nowrap; }
+.offer { display: flex; align-items: start; padding: 0 10px; }
+.offer details { flex: 1; }
+.offer li { margin: 4px 0; }
+.offer li button { padding: 2px 8px; font-weight: 600; }
+.offer > button { border: 0; padding: 3px 10px; margin: 0; }
+"""
+
+
+class LessonPane(JSComponent):
+    """A lesson, or where there is none, the offer of one.
+
+    Messages from the browser are those of a `Form`; also `CHOICE` with the index of what was
+    predicted, and the sidebar's choice of a lesson.
+
+    Attributes
+    ----------
+    offered
+        Name, title and question of every lesson.
+    lesson
+        What is shown of the one that is open, as `content` says it; empty if there is none.
+    shown
+        As in `Form`, for the controls of the lesson.
+    values
+        Name and text of every quantity in its sentences; pictures bring them.
+    """
+
+    offered = param.List(default=[])
+    lesson = param.Dict(default={})
+    shown = param.Dict(default={})
+    values = param.List(default=[])
+
+    _esm = script("controls.js", "lesson.js")
+    _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
+
+
+class Teaching:
+    """The lesson that a page is in, if it is in one.
+
+    Parameters
+    ----------
+    session
+        Is given the settings of a lesson.
+    sidebar
+        Is told what the controls of a lesson say, and shows what holds.
+    changed
+        Called when a lesson is opened, answered or left.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    lesson
+        The one that is open.
+    """
+
+    def __init__(self, session: Session, sidebar: Sidebar, changed: Callable[[], None]) -> None:
+        self._session = session
+        self._sidebar = sidebar
+        self._changed = changed
+        self._choice: int | None = None
+        self.lesson: Lesson | None = None
+        self.view = LessonPane(
+            name="lesson",
+            offered=OFFERED,
+            css_classes=["lesson"],
+            sizing_mode="stretch_width",
+            margin=0,
+        )
+        self.view.on_msg(lambda message: self._hear(**message.data))
+        sidebar.view.param.watch(lambda event: self._show(), "shown")
+
+    @property
+    def name(self) -> str:
+        """Name of the lesson that is open, or nothing."""
+        return self.lesson.name if self.lesson else ""
+
+    @property
+    def asks(self) -> bool:
+        """Whether a question waits for an answer, which nothing on the page may give away."""
+        return self.lesson is not None and self._choice is None
+
+    def open(self, name: str) -> None:
+        """Begin a lesson, with its scene and settings; without a name, leave all as it is."""
+        if name in LESSONS:
+            self._session.start(LESSONS[name].settings, is_alone=True)
+            self._session.go()
+        self.take(name)
+
+    def take(self, name: str) -> None:
+        """Be in a lesson whose settings are there already, or in none."""
+        self.lesson, self._choice = LESSONS.get(name), None
+        self._tell()
+
+    def follow(self, settings: Settings) -> None:
+        """Leave a lesson as soon as another scene is looked at."""
+        if self.lesson is not None and settings.scene != self.lesson.settings.scene:
+            self.open("")
+
+    def _tell(self) -> None:
+        """Show what there is of the lesson, and have no more drawn and told than it needs."""
+        lesson, choice = self.lesson, self._choice
+        self._sidebar.lesson = self.name
+        self._sidebar.draw(lesson.views if lesson else [view.name for view in VIEWS])
+        self._session.watch(readings=readings(lesson, choice) if lesson else ())
+        self.view.lesson = content(lesson, choice) if lesson else {}
+        self._changed()
+
+    def _hear(self, name: str, value: Any, hand: bool, count: float) -> None:
+        if name != CHOICE:
+            self._sidebar.hear(name, value, hand, count)
+        elif self.asks:
+            self._choice = value
+            self._tell()
+
+    def _show(self) -> None:
+        """Show on the lesson's controls what those of the sidebar show."""
+        holds = self._sidebar.view.shown
+        names = ("", *self.lesson.controls) if self.lesson else ()
+        self.view.shown = {name: holds[name] for name in names if name in holds}

@@ -1,0 +1,94 @@
+"""Lessons in a browser: offered, opened, answered; sliders move the run, and values follow it."""
+
+from __future__ import annotations
+
+import re
+
+from pages import Visit, press, slider, status
+from playwright.sync_api import Locator, Page, expect
+
+from app.lesson import LESSONS
+
+ERROR = re.compile(r"friction force error ([\d.]+ %)")
+
+
+def lesson(page: Page) -> Locator:
+    return page.get_by_role("region", name="Lesson")
+
+
+def value(page: Page, title: str) -> Locator:
+    return lesson(page).get_by_title(title, exact=True)
+
+
+def agreed(page: Page) -> str:
+    """Wait until the run has ended and the sentence says its error; give it."""
+    expect(status(page)).to_contain_text("out of iterations")
+    found = ERROR.search(status(page).locator("div").first.inner_text())
+    assert found
+    expect(value(page, "Error of the contact force")).to_have_text(found[1])
+    return found[1]
+
+
+def test_a_lesson_is_predicted_moved_read_reloaded_and_left(open_page: Visit) -> None:
+    page = open_page("?lesson=moving-front&max_iterations=20")
+    expect(lesson(page)).to_contain_text("How many products of a shape in space")
+    expect(page.locator(".card")).to_have_count(0)
+    expect(status(page)).not_to_be_visible()
+    expect(lesson(page).get_by_role("slider")).to_have_count(0)
+    press(page, "3 to 5")
+    expect(lesson(page)).to_contain_text("Not “3 to 5”, but: About 10.")
+    expect(page.locator(".card")).to_have_count(4)
+    expect(page.locator(".figures")).not_to_be_visible()
+    before = agreed(page)
+    modes = lesson(page).get_by_role("slider", name="Most PGD modes")
+    modes.press("End")
+    expect(modes).not_to_have_js_property("ariaValueNow", "5")
+    expect(status(page)).to_contain_text(re.compile("(?!5 )[0-9]+ modes at most"))
+    assert agreed(page) != before
+    page.wait_for_url(re.compile("(?=.*lesson=moving-front)(?=.*pgd_modes=)"))
+    page.reload()
+    expect(lesson(page)).to_contain_text("How many products of a shape in space")
+    press(page, "Show me")
+    expect(modes).not_to_have_js_property("ariaValueNow", "5")
+    press(page, "Explore freely")
+    expect(slider(page, "Peak load")).to_be_visible()
+    expect(page.locator(".figures")).to_be_visible()
+    page.wait_for_url(re.compile("^((?!lesson).)*pgd_modes=((?!lesson).)*$"))
+
+
+def test_lessons_are_offered_until_one_has_seen_them_and_stay_in_the_sidebar(
+    open_page: Visit,
+) -> None:
+    page = open_page()
+    page.get_by_text("New here?").click()
+    expect(lesson(page).get_by_role("listitem")).to_have_count(len(LESSONS))
+    press(page, "Hide the lessons")
+    expect(page.get_by_text("New here?")).to_have_count(0)
+    page.reload()
+    expect(status(page)).to_contain_text("converged")
+    page.get_by_role("combobox", name="Lesson").select_option("broken-wire")
+    expect(lesson(page)).to_contain_text("Where is a broken wire whole again?")
+    expect(slider(page, "Friction coefficient")).not_to_be_visible()
+    expect(value(page, "Length over which a broken wire regains its force")).to_have_text("0.2 m")
+    expect(page.get_by_text("New here?")).to_have_count(0)
+
+
+def test_a_lesson_that_there_is_not_is_told(open_page: Visit) -> None:
+    page = open_page("?lesson=luck")
+    expect(status(page)).to_contain_text('lesson = "luck" is refused; allowed: how-fast-how-big')
+
+
+def test_one_lesson_leads_to_the_next_and_each_shows_its_views_and_controls(
+    open_page: Visit,
+) -> None:
+    first, *others = LESSONS.values()
+    page = open_page(f"?lesson={first.name}")
+    for one in (first, *others):
+        expect(lesson(page)).to_contain_text(one.question)
+        press(page, "Show me")
+        expect(page.locator(".card")).to_have_count(len(one.views))
+        expect(lesson(page).locator(".control:visible")).to_have_count(len(one.controls))
+        following = page.get_by_role("button", name="Next: ")
+        if one is not others[-1]:
+            following.click()
+    expect(following).to_have_count(0)
