@@ -43,11 +43,12 @@ sup { line-height: 0; }
 .control input[type=range] { width: 200px; max-width: 100%; margin: 0 0 4px; }
 .control select { display: inline-block; width: auto; margin: 2px 0; }
 .control label { display: inline-block; margin-right: 6px; white-space: nowrap; }
-.offer { display: flex; align-items: start; padding: 0 10px; }
+.offer { display: flex; align-items: start; padding: 0 10px; font-size: 14px; line-height: 1.3; }
 .offer details { flex: 1; }
+.offer summary { margin: 2px 0; }
 .offer li { margin: 4px 0; }
 .offer li button { padding: 2px 8px; font-weight: 600; }
-.offer > button { border: 0; padding: 3px 10px; margin: 0; }
+.offer > button { border: 0; padding: 0 10px; margin: 2px 0; }
 """
 
 
