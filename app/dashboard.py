@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from typing import Any
 
@@ -12,9 +11,9 @@ from app.address import PACES, TABS, Sight, query_of
 from app.banner import Banner
 from app.cards import Cards
 from app.classroom import Room
-from app.innards import connections, send_without_delay
 from app.looks import Looks
 from app.panes import column, page, text
+from app.presence import Presence
 from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
@@ -30,8 +29,6 @@ CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
 """Plots that show the scene at work, and those that do not yet."""
 LOST_AFTER = 2.0
 """Seconds after which a picture that was not acknowledged is taken for lost."""
-SILENT = 30.0
-"""Seconds without a sign of life after which nobody is there, though no connection was closed."""
 REST = 0.2
 """Times what a browser needs for a picture, left to it to listen to its user."""
 
@@ -66,17 +63,15 @@ class Dashboard:
     ) -> None:
         self.session = session
         self._asked_for = session.wanted
-        self._alone = True
         self._loaded = False
         self._room = FIRST_ROW
         self._logged = (0, "")
         self._sent_at = 0.0
-        self._heard_at = math.inf
-        self._sockets: set[Any] = set()
         self._stood: tuple[Settings, Sight, Room | None] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
         self._pulse = Pulse()
+        self._presence = Presence(session, self._pulse)
         self._listen()
         session.watch(complaint=complaint)
         self.transport = Transport(session)
@@ -111,7 +106,7 @@ class Dashboard:
         Whoever only asks for the page, as a crawler does, starts no process.
         """
         self._loaded = True
-        self._alone = False
+        self._presence.begin()
         room = self.session.attendance.follows
         self.session.start(room.settings if room else None)
         self._on_narrow()
@@ -121,18 +116,7 @@ class Dashboard:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
         if self._loaded and self._room < len(VIEWS):
             self._fill()
-        is_silent = time.monotonic() - self._heard_at > SILENT
-        sockets = connections()
-        if sockets != self._sockets:
-            # What was on its way in a socket that broke is lost, and nobody says so.
-            self._sockets = sockets
-            send_without_delay(sockets)
-            self.session.ask(afresh=True)
-        alone = not sockets or self._pulse.hidden or not self._loaded or is_silent
-        if alone != self._alone:
-            self._alone = alone
-            self.session.rest(alone)
-            self.session.ask(afresh=True)
+        self._presence.check()
         if self.session.attend():
             self._tabs.refresh()
         self._sidebar.obey()
@@ -153,7 +137,6 @@ class Dashboard:
     def _listen(self) -> None:
         self._pulse.param.watch(self._on_painted, "painted")
         self._pulse.param.watch(self._on_key, "key")
-        self._pulse.param.watch(self._on_beat, "beat")
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
 
     def _make_live(self) -> pn.Column:
@@ -254,13 +237,6 @@ class Dashboard:
             return
         if self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
-
-    def _on_beat(self, event: Any) -> None:
-        """Answer a sign of life; a page that missed some is given all that it has to show."""
-        self._heard_at = time.monotonic()
-        self._pulse.heard = event.new
-        if event.new < 0:
-            self.session.ask(afresh=True)
 
     def _teach(self, name: str) -> None:
         self._teaching.open(name)
