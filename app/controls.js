@@ -76,13 +76,14 @@ function controls(model) {
     const parts = choice(row, item), show = row.show
     const body = make("tbody"), head = make("tr")
     head.append(...[...item.columns, "", ""].map((one) => make("td", {}, one)))
-    const table = make("div", {className: "points"},
-      make("table", {}, make("thead", {}, head), body))
+    const table = make("table", {}, make("thead", {}, head), body)
     const read = () => [...body.rows].map((one) =>
       [...one.querySelectorAll("input")].map((input) => input.valueAsNumber))
     const send = (rows) => {
       if (rows.every((one) => one.every(Number.isFinite))) { tell(row, rows) }
     }
+    const drawn = drawn_points(item, send)
+    const points = make("div", {}, drawn.picture, make("div", {className: "points"}, table))
     const number = (value) => make("input", {
       type: "number", step: "any", required: true, value, onchange: () => send(read()),
     })
@@ -102,14 +103,15 @@ function controls(model) {
       button("−", "Take this row away", () => taken(place)),
     ].map((one) => make("td", {}, one)))
     row.show = (value) => {
-      const points = Array.isArray(value) ? value : []
-      show(points.length ? item.options.at(-1)[1] : value)
-      table.hidden = !points.length
-      if (JSON.stringify(read()) !== JSON.stringify(points)) {
-        body.replaceChildren(...points.map(line))
+      const own = Array.isArray(value) ? value : []
+      show(own.length ? item.options.at(-1)[1] : value)
+      points.hidden = !own.length
+      drawn.show(own)
+      if (JSON.stringify(read()) !== JSON.stringify(own)) {
+        body.replaceChildren(...own.map(line))
       }
     }
-    return [...parts, table]
+    return [...parts, points]
   }
   return {make, tell, named, kinds: {slider, choice, flip, curve}}
 }

@@ -39,6 +39,8 @@ td input:invalid { border-color: #D55E00; }
 button { width: 26px; cursor: pointer; }
 button.wide { width: auto; padding: 4px 12px; margin: 4px 6px 8px 0; }
 input[type=file] { display: block; width: 100%; margin-top: 4px; font: inherit; }
+svg.path { display: block; width: 100%; touch-action: none; cursor: crosshair; }
+svg.path circle { cursor: grab; }
 .points { max-height: 240px; overflow-y: auto; }
 """
 
@@ -64,7 +66,7 @@ class Form(JSComponent):
     shown = param.Dict(default={})
     file = param.List(default=[])
 
-    _esm = script("controls.js", "form.js")
+    _esm = script("points.js", "controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

@@ -75,7 +75,7 @@ class LessonPane(JSComponent):
     shown = param.Dict(default={})
     values = param.List(default=[])
 
-    _esm = script("controls.js", "lesson.js")
+    _esm = script("points.js", "controls.js", "lesson.js")
     _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
 
 

@@ -67,6 +67,32 @@ def test_an_address_carries_settings_and_load_points_are_edited_in_a_table(
     expect(cells.nth(3)).to_have_value("250")
 
 
+def test_load_points_are_dragged_added_and_taken_away_in_a_drawing(open_page: Visit) -> None:
+    page = open_page(f"?load=[[0,0],[0.5,600],[1,0]]&{ENDLESS}")
+    expect(status(page)).to_contain_text("iteration")
+    cells = page.locator("table input")
+    expect(cells).to_have_count(6)
+    drawn = page.locator("svg.path").first
+    box = drawn.locator("circle").nth(1).bounding_box()
+    assert box is not None
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 30.0, y + 20.0, steps=4)
+    page.mouse.up()
+    expect(cells.nth(3)).not_to_have_value("600")
+    assert 0.5 < float(cells.nth(2).input_value()) < 0.8
+    assert 100.0 < float(cells.nth(3).input_value()) < 600.0
+    expect(drawn.locator("circle")).to_have_count(3)
+    page.mouse.dblclick(x - 40.0, y)
+    expect(drawn.locator("circle")).to_have_count(4)
+    expect(cells).to_have_count(8)
+    again = drawn.locator("circle").nth(1).bounding_box()
+    assert again is not None
+    page.mouse.dblclick(again["x"] + 5.0, again["y"] + 5.0)
+    expect(drawn.locator("circle")).to_have_count(3)
+
+
 def test_a_bad_address_is_explained_and_its_scene_is_shown(open_page: Visit) -> None:
     page = open_page("?scene=layers&layers=1")
     expect(page.get_by_text("layers = 1 is refused").first).to_be_visible()
