@@ -168,7 +168,7 @@ def _add_words(made: Plot, view: View) -> None:
         text_color="color",
         text_align="across",
         text_baseline="up",
-        text_font_size="14px",
+        text_font_size="13px",
         text_font_style="bold",
     )
     made.add_glyph(source, glyph)

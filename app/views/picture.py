@@ -23,7 +23,7 @@ ARROW = 0.17
 """Length of the largest arrow, as a share of the size of what is drawn."""
 LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn."""
-HATCH, ROOM, WORDS = 0.03, 0.06, 0.36
+HATCH, ROOM, WORDS = 0.03, 0.06, 0.48
 """Depth of a hatch, room around what is drawn, and for words beside it; shares of the size."""
 DEEPEST = 0.2
 """Gap below a body that is drawn at most, as a share of the size."""
