@@ -22,6 +22,7 @@ def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:
     for name, value in list(changed.items())[:most]:
         unit = about(definitions[name]).unit
         text = f"{value:.4g}" if isinstance(value, float) else str(value)
+        text = ("off", "on")[value] if isinstance(value, bool) else text
         text = "points" if isinstance(value, tuple) else text
         parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
     return ", ".join(parts) + (", ..." if len(changed) > most else "")

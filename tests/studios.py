@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 from unpacking import unpack
@@ -76,9 +77,9 @@ class Shown:
         return self.at_work.frame(look)
 
     def scene(self, look: Look = ALL, instant: int = 5) -> Scene:
-        studio = self.studio
-        past = tuple(studio._past)
-        return Scene(self.recording, studio._before, past, self.frame(look), instant, look)
+        return replace(
+            self.studio._scene(self.at_work, self.frame(look), instant), look=look
+        )
 
     def _paint(self, picture: Picture) -> None:
         self.pictures.append(picture)

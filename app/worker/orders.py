@@ -29,6 +29,8 @@ class Run:
         compared with it afterwards.
     is_alone
         Whether it is nothing to compare with those before.
+    twin
+        Values of a run A, which goes in step with this one, B; None has none.
     """
 
     ticket: int
@@ -42,6 +44,7 @@ class Run:
     warm: bool = False
     follows_hand: bool = False
     is_alone: bool = False
+    twin: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
