@@ -8,11 +8,10 @@ from solver.definitions import about
 from solver.settings import Settings
 
 
-def label_since(settings: Settings, before: Settings) -> str:
-    """Name settings by what has changed since others, or by the first few of it."""
-    old = before.values()
-    changed = {name: value for name, value in settings.values().items() if value != old[name]}
-    return label_of(settings, changed)
+def changes_of(settings: Settings, other: Settings) -> dict[str, Any]:
+    """Give what differs from other settings of the same scene, by name."""
+    before = other.values()
+    return {name: value for name, value in settings.values().items() if value != before[name]}
 
 
 def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:

@@ -12,7 +12,7 @@ from typing import Any
 from app.attendance import Attendance
 from app.errand import Errand
 from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
-from app.labels import label_since
+from app.labels import changes_of, label_of
 from app.pages import Pages
 from app.worker.bench import Bench
 from app.worker.block import said
@@ -46,6 +46,8 @@ class Session:
     ----------
     settings
         Of the run at work.
+    twin
+        Those of run A, which goes in step with it as run B, from the next start on; None has none.
     ticket
         Its number; 0 before the first.
     facts
@@ -72,7 +74,8 @@ class Session:
         self.settings = settings
         self.keeper = Keeper(hire)
         self.attendance = Attendance(self.keeper, hire)
-        self.ticket = 0
+        self.twin: Settings | None = None
+        self.ticket = self.crowd = 0
         self.facts: Facts | None = None
         self.look = Look()
         self.running = True
@@ -80,12 +83,10 @@ class Session:
         self.warm_start = False
         self.follows_hand = self.is_held = False
         self._errands = self.figures, self.study, self.stability = [Errand(bench) for _ in range(3)]
-        self.crowd = 0
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._pending: Settings | None = None
-        self._pending_by_hand = False
-        self._moved_at = 0.0
+        self._pending_by_hand, self._moved_at = False, 0.0
         self._pages = pages
         pages.add(self)
 
@@ -100,10 +101,10 @@ class Session:
         self.attendance.heed(settings)
         if settings.scene != self.settings.scene:
             self._left[self.settings.scene] = self.wanted
-            self._label = ""
+            self._label, self.twin = "", None
             self.watch(interface="", substructure=None)
         elif self.ticket:
-            self._label = label_since(settings, self.settings) or self._label
+            self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
         self._label = "" if "is_alone" in how else self._label
         self.settings = settings
         self.ticket += 1
@@ -286,6 +287,7 @@ class Session:
                 is_held=self.is_held,
                 **how,
                 follows_hand=self.follows_hand,
+                twin=self.twin.values() if self.twin else None,
             )
         )
 

@@ -77,9 +77,7 @@ class Shown:
         return self.at_work.frame(look)
 
     def scene(self, look: Look = ALL, instant: int = 5) -> Scene:
-        return replace(
-            self.studio._scene(self.at_work, self.frame(look), instant), look=look
-        )
+        return replace(self.studio._scene(self.at_work, self.frame(look), instant), look=look)
 
     def _paint(self, picture: Picture) -> None:
         self.pictures.append(picture)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from html import escape
 from typing import Literal
 
-from app.labels import label_of
+from app.labels import changes_of, label_of
 from app.views.drawing import Scene
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
@@ -138,10 +138,8 @@ def key_figures(scene: Scene) -> str:
 
 def _paired(run: Recording, twin: Recording, iteration: int) -> list[tuple[str, Sequence[str]]]:
     """Give the figures of run B, and of run A as far as B in iterations, and in time."""
-    mine, its = run.settings.values(), twin.settings.values()
-    new = [name for name in mine if mine[name] != its[name]]
-    own = label_of(run.settings, {name: mine[name] for name in new})
-    other = label_of(twin.settings, {name: its[name] for name in new})
+    own = label_of(run.settings, changes_of(run.settings, twin.settings))
+    other = label_of(twin.settings, changes_of(twin.settings, run.settings))
     now = run.figures_of(iteration)
     then = twin.last_within(now["seconds"]) if now else 0
     return [
