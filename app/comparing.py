@@ -9,11 +9,17 @@ from solver.settings import Settings
 
 AT_WORK = "the run at work, as A"
 PRESETS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
-    "monoscale | multiscale": ({"multiscale": False}, {"multiscale": True}),
-    "full | PGD": ({"linear_stage": "full"}, {"linear_stage": "pgd"}),
+    "monoscale | multiscale": (
+        {"method": "paper", "multiscale": False},
+        {"method": "paper", "multiscale": True},
+    ),
+    "full | PGD": (
+        {"method": "paper", "linear_stage": "full"},
+        {"method": "paper", "linear_stage": "pgd"},
+    ),
     "paper | fast": ({"method": "paper"}, {"method": "fast"}),
 }
-"""What A and B have, whatever else is set."""
+"""What A and B have, whatever else is set; the method `fast` ends before the first two differ."""
 CHOICES = {"nothing": "", **{name: name for name in (AT_WORK, *PRESETS)}}
 
 

@@ -18,6 +18,7 @@ from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
+from app.takeaway import Saver
 from app.teaching import Teaching
 from app.transport import Transport
 from app.views.catalogue import VIEWS, fitting
@@ -85,11 +86,12 @@ class Dashboard:
             session, self._arrange, self.complain, lambda: self._link.copy(), self._teach
         )
         self._teaching = Teaching(session, self._sidebar, self._on_lesson)
+        self._saver = Saver(session)
         self._plots = column(role="plots")
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, self._on_tab)
         self._sight = sight or Sight()
-        self.page = page(self._sidebar.view, self._tabs.bar, self._tabs.main)
+        self.page = page([self._sidebar.view, self._saver.view], self._tabs.bar, self._tabs.main)
         if on_phone:
             self.page.sidebar_open = False
             self._clear_the_header()
@@ -171,6 +173,7 @@ class Dashboard:
         self.transport.view.visible = room is None
         self.transport.arrange(session.wanted)
         cards = [self._cards[view] for view in there]
+        self._saver.offer(there)
         if list(self._plots) != cards:
             self._plots[:] = cards
         holds = session.wanted is self._asked_for
@@ -206,6 +209,7 @@ class Dashboard:
         bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
         self.transport.show()
+        self._saver.follow()
 
     def _pass_on(self, blocks: list[bytes]) -> None:
         """Give the browser the pictures that came, and show what they say."""

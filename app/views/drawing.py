@@ -56,10 +56,14 @@ class Scene:
         return "B" if self.is_paired else "LATIN"
 
     @property
+    def other(self) -> str:
+        """What it is compared with is called."""
+        return "A" if self.is_paired else "run before"
+
+    @property
     def ghost_name(self) -> str:
-        """What the run before is called in legends, and which of its iterations is drawn."""
-        number = self.before.shown if self.before else 0
-        return f"{'A' if self.is_paired else 'run before'}, iteration {number}"
+        """What it is compared with is called where fields are drawn, with their iteration."""
+        return f"{self.other}, iteration {self.before.shown if self.before else 0}"
 
     @property
     def ghost(self) -> tuple[Recording, Fields, int] | None:

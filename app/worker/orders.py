@@ -93,6 +93,22 @@ class Watch:
 
 
 @dataclass(frozen=True)
+class Tabulate:
+    """Have the browser save a table of what is looked at.
+
+    Attributes
+    ----------
+    what
+        One of `app.worker.tables.TABLES`.
+    number
+        Tells it from those before.
+    """
+
+    what: str
+    number: int
+
+
+@dataclass(frozen=True)
 class Ready:
     """The page has painted what it has, and waits for the next picture.
 
@@ -111,4 +127,4 @@ class Ready:
     whole: bool = False
 
 
-Order = Run | Pace | Step | Seek | Watch | Ready
+Order = Run | Pace | Step | Seek | Watch | Tabulate | Ready

@@ -10,19 +10,22 @@ from html import escape
 
 from app.views.drawing import Scene
 from app.worker.easel import Easel
-from app.worker.orders import Order, Ready, Run, Seek, Watch
+from app.worker.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Facts, Picture
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
+from app.worker.tables import table
 from app.worker.twin import Twin
 from app.worker.words import key_figures, status_line
 from solver.definitions import SettingError
 from solver.latin import Iterate
 
 PAST_RUNS = 6
+TAKE_AWAY = "take-away"
+"""Name of the component that saves files."""
 
 _log = logging.getLogger(__name__)
 
@@ -49,6 +52,7 @@ class Studio:
         self._last: Iterate | None = None
         self._before: Recording | None = None
         self._past: deque[Recording] = deque(maxlen=PAST_RUNS)
+        self._table: Tabulate | None = None
         self._paint_at: float | None = None
 
     def rest(self) -> float | None:
@@ -93,6 +97,10 @@ class Studio:
                 self._paint_at = time.monotonic() + order.rest
             case Watch():
                 self._watch(order.look)
+            case Tabulate():
+                self._table = order
+                if run is not None:
+                    run.has_news = True
             case _ if run is not None and run.ticket == order.ticket:
                 self._attempt(run.ticket, lambda: run.obey(order))
                 if self._twin is not None:
@@ -172,6 +180,12 @@ class Studio:
             was_warm=recording.choice is not None and recording.choice.is_previous,
         )
         self._send(Picture(run.ticket, facts, block))
+        if (asked := self._table) is not None:
+            self._table = None
+            name = f"slipfront-{recording.settings.scene}-{asked.what}.csv"
+            file = [name, table(asked.what, scene), asked.number]
+            block = self._easel.say({}, {TAKE_AWAY: {"file": file}})
+            self._send(Picture(run.ticket, facts, block))
 
     def _scene(self, run: WorkerRun, frame: Frame, instant: int) -> Scene:
         twin, before = self._twin, self._before
