@@ -57,26 +57,30 @@ export function render({model, view}) {
     for (const one of body.querySelectorAll(".key")) {
       put(one.textContent, one.querySelector("i"), 400)
     }
+    put(model.caption, null, 400)
     return [group, y + LINE / 2]
   }
   const pictured = (slug) => {
     const plot = models().find((one) => one.x_range?.name === `${slug}.x`)
-    const {bbox: {width, height}, ...shown} = Bokeh.index.find_one(plot)
-    const inner = Bokeh.index.find_one(plot).export("svg", false).ctx.get_svg()
+    const seen = Bokeh.index.find_one(plot), {width} = seen.bbox
+    const inner = seen.export("svg", false).ctx.get_svg()
     const {backgroundColor: paper, color} = getComputedStyle(document.body)
     const [words, top] = head(slug, width, color)
-    const size = {width, height: height + top}
+    const size = {width, height: seen.bbox.height + top}
     const whole = drawn("svg", {xmlns: SVG, ...size})
     inner.setAttribute("y", top)
     whole.append(drawn("rect", {...size, fill: paper}), words, inner)
-    return {...size, text: new XMLSerializer().serializeToString(whole)}
+    return {...size, paper, text: new XMLSerializer().serializeToString(whole)}
   }
-  const painted = async ({width, height, text}, scale) => {
+  const painted = async ({width, height, paper, text}, scale, size = {width, height}) => {
     const image = new Image(), type = "image/svg+xml"
     image.src = URL.createObjectURL(new Blob([text], {type}))
     await image.decode()
-    const canvas = make("canvas", {width: scale * width | 0, height: scale * height | 0})
-    canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height)
+    const canvas = make("canvas", {width: scale * size.width, height: scale * size.height})
+    const pen = canvas.getContext("2d")
+    pen.fillStyle = paper
+    pen.fillRect(0, 0, canvas.width, canvas.height)
+    pen.drawImage(image, 0, 0, scale * width, scale * height)
     URL.revokeObjectURL(image.src)
     return canvas
   }
@@ -104,8 +108,9 @@ export function render({model, view}) {
     const {shot} = model
     if (shot) {
       await paint()
-      const canvas = await painted(pictured(filmed), 1), {width, height} = frames[0] ?? canvas
-      frames.push(canvas.getContext("2d").getImageData(0, 0, width, height))
+      // All of one size, though a legend may take another line.
+      const canvas = await painted(pictured(filmed), 1, frames[0])
+      frames.push(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height))
       tell("taken")
     } else if (frames.length) {
       const [{width, height}] = frames

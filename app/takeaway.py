@@ -14,10 +14,10 @@ from app.panes import script
 from app.session import Session
 from app.snippet import snippet
 from app.views.drawing import View
+from app.worker.easel import TAKE_AWAY
 from app.worker.orders import Tabulate
 from app.worker.reports import Facts
 from app.worker.shown import thinned
-from app.worker.studio import TAKE_AWAY
 from app.worker.tables import TABLES
 
 MOST_PICTURES = 60
@@ -38,6 +38,8 @@ class TakeAway(JSComponent):
         What there are tables of.
     file
         Name and text to be saved, and a number that tells it from those before.
+    caption
+        Which run and moment is seen; pictures bring it.
     shot
         Number of the picture to be taken for an animation; 0 when all of them are.
     """
@@ -45,6 +47,7 @@ class TakeAway(JSComponent):
     views = param.List(default=[])
     tables = param.List(default=list(TABLES))
     file = param.List(default=[])
+    caption = param.String(default="")
     shot = param.Integer(default=0)
 
     _esm = script("gif.js", "takeaway.js")

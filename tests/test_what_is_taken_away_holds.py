@@ -58,7 +58,7 @@ def test_a_program_gives_the_records_of_the_page_again(scene: str) -> None:
 
 
 def test_a_program_has_no_reference_where_the_page_has_none() -> None:
-    large = BarSettings.checked({"elements": 20_000})
+    large = CATALOGUE["strand"].settings.checked({"elements": 1500})
     assert "reference_of" not in snippet(large)
     assert "reference_of" in snippet(BarSettings.checked({}))
     assert snippet(large, was_warm=True) == NOTE + snippet(large)

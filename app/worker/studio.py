@@ -9,7 +9,7 @@ from collections.abc import Callable
 from html import escape
 
 from app.views.drawing import Scene
-from app.worker.easel import Easel
+from app.worker.easel import TAKE_AWAY, Easel
 from app.worker.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Facts, Picture
@@ -24,8 +24,6 @@ from solver.definitions import SettingError
 from solver.latin import Iterate
 
 PAST_RUNS = 6
-TAKE_AWAY = "take-away"
-"""Name of the component that saves files."""
 
 _log = logging.getLogger(__name__)
 

@@ -140,13 +140,21 @@ def _paired(run: Recording, twin: Recording, iteration: int) -> list[tuple[str, 
     """Give the figures of run B, and of run A as far as B in iterations, and in time."""
     own = label_of(run.settings, changes_of(run.settings, twin.settings))
     other = label_of(twin.settings, changes_of(twin.settings, run.settings))
-    now = run.figures_of(iteration)
-    then = twin.last_within(now["seconds"]) if now else 0
     return [
         (f"B ({escape(own or 'as A')})", _cells(run, iteration)),
         (f"A ({escape(other or 'as B')})", _cells(twin, twin.shown)),
-        ("A at equal run time", _cells(twin, then)),
+        _at_equal_time(run, twin, iteration),
     ]
+
+
+def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> tuple[str, Sequence[str]]:
+    """Give A after the run time of B, or B after that of A where A has not run as long yet."""
+    now, last = run.figures_of(iteration), twin.figures_of(twin.iteration)
+    if now is None or last is None:
+        return "at equal run time", _cells(twin, 0)
+    if twin.status is None and last["seconds"] < now["seconds"]:
+        return "B at A's run time", _cells(run, run.last_within(last["seconds"]))
+    return "A at B's run time", _cells(twin, twin.last_within(now["seconds"]))
 
 
 def _cells(run: Recording, iteration: int) -> Sequence[str]:
