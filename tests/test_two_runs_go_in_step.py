@@ -12,10 +12,12 @@ from studios import ALL, Shown, keys
 from test_worker_process import same
 from unpacking import unpack
 
+from app.comparing import PRESETS, pair
 from app.views import convergence, error_time, friction, loop, tractions
 from app.worker.orders import Pace, Run, Seek, Step, Watch
 from app.worker.sampler import Sampler
 from solver.files import scene_settings
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
 SMALL: dict[str, Any] = {"elements": 20, "instants": 21, "substructures": 4, "method": "paper"}
@@ -122,6 +124,21 @@ def test_tractions_of_plane_bodies_have_a_ghost_too() -> None:
     values = {"elements": 16, "elements_up": 6, "instants": 13, "max_iterations": 4}
     shown.run(1, "block", values, twin=rougher("block", values))
     assert any(name.startswith("A, ") for name in keys(tractions.draw(shown.scene(), None)))
+
+
+@pytest.mark.parametrize("choice", list(PRESETS))
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_presets_set_two_runs_of_every_scene(scene: str, choice: str) -> None:
+    base = {"elements": 12, "instants": 7, "max_iterations": 5}
+    twin, own = pair(choice, CATALOGUE[scene].settings.checked(base))
+    assert twin is not None
+    shown = Shown()
+    shown.run(1, scene, own.values(), twin=twin.values())
+    facts = shown.pictures[-1].facts
+    assert facts.is_over
+    assert not facts.is_broken
+    assert shown.scene().ghost is not None
+    assert "A (" in shown.page["figures"]["text"]
 
 
 @pytest.mark.parametrize("hand", [False, True])
