@@ -170,7 +170,7 @@ class Dashboard:
         seen = [] if self._teaching.asks else fit
         self._shown = [view for view in seen if view.name in wanted]
         there = self._shown[: self._room]
-        self.transport.view.visible = room is None
+        self.transport.view.visible = self._saver.view.visible = room is None
         self.transport.arrange(session.wanted)
         cards = [self._cards[view] for view in there]
         self._saver.offer(there)

@@ -18,7 +18,7 @@ from app.worker.bench import Bench
 from app.worker.block import said
 from app.worker.link import Link
 from app.worker.orders import Pace, Ready, Run, Seek, Step, Watch
-from app.worker.reports import Died, Facts
+from app.worker.reports import Died, Facts, Picture
 from app.worker.shown import Look
 from solver.files import scene_settings
 from solver.settings import Settings
@@ -105,7 +105,8 @@ class Session:
             self.watch(interface="", substructure=None)
         elif self.ticket:
             self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
-        self._label = "" if "is_alone" in how else self._label
+        if "is_alone" in how:
+            self._label, self.twin = "", None
         self.settings = settings
         self.ticket += 1
         self.facts, self._pending = None, None
@@ -152,10 +153,8 @@ class Session:
         """Take the waiting reports; give the pictures that the page has to be given."""
         blocks: list[bytes] = []
         for report in self.keeper.collect():
-            if isinstance(report, Died):
-                blocks.append(self._bury())
-            else:
-                blocks.append(report.block)
+            blocks.append(self._bury() if isinstance(report, Died) else report.block)
+            if isinstance(report, Picture):
                 self.attendance.share(self.settings, self.look.views, report)
                 if report.ticket == self.ticket:
                     self.facts = report.facts

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from studios import Shown
-from unpacking import unpack
 
 from app.snippet import NOTE, snippet
 from app.worker.orders import Tabulate
@@ -108,10 +107,8 @@ def test_tables_of_two_runs_have_both_and_the_settings_of_both() -> None:
 def test_a_table_that_is_asked_for_goes_to_the_browser_alone_and_once() -> None:
     shown = told("bar")
     shown.obey(Tabulate("iterations", 3))
-    name, text, number = unpack(shown.pictures[-1].block)["take-away"]["file"]
+    ((name, text, number),) = shown.files
     assert (name, number) == ("slipfront-bar-iterations.csv", 3)
     assert len(read(text)[1]) == len(shown.recording.history)
-    count = len(shown.pictures)
     shown.obey(Tabulate("iterations", 4))
-    assert len(shown.pictures) == count + 2
-    assert unpack(shown.pictures[-1].block)["take-away"]["file"][2] == 4
+    assert [file[2] for file in shown.files] == [3, 4]

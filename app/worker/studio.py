@@ -12,7 +12,7 @@ from app.views.drawing import Scene
 from app.worker.easel import TAKE_AWAY, Easel
 from app.worker.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.worker.recording import Recording
-from app.worker.reports import Facts, Picture
+from app.worker.reports import Facts, File, Picture
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from app.worker.sampler import Frame
@@ -39,7 +39,7 @@ class Studio:
         Tells whether another run is ordered.
     """
 
-    def __init__(self, send: Callable[[Picture], None], urgent: Callable[[], bool]) -> None:
+    def __init__(self, send: Callable[[Picture | File], None], urgent: Callable[[], bool]) -> None:
         self._send = send
         self._urgent = urgent
         self._references = References()
@@ -183,7 +183,7 @@ class Studio:
             name = f"slipfront-{recording.settings.scene}-{asked.what}.csv"
             file = [name, table(asked.what, scene), asked.number]
             block = self._easel.say({}, {TAKE_AWAY: {"file": file}})
-            self._send(Picture(run.ticket, facts, block))
+            self._send(File(block))
 
     def _scene(self, run: WorkerRun, frame: Frame, instant: int) -> Scene:
         twin, before = self._twin, self._before
