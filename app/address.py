@@ -9,10 +9,11 @@ from typing import Any
 from urllib.parse import parse_qsl, quote
 
 from app.classroom import ROOMS, Room
+from app.labels import changes_of
 from app.lesson import LESSONS
 from app.session import DEFAULT_PACE
 from app.worker.shown import Look
-from solver.definitions import SettingError, checked_value, choice, parse, quantity
+from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
 from solver.files import scene_settings
 from solver.lessons.lesson import Lesson
 from solver.settings import Settings
@@ -25,18 +26,29 @@ PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
 """Iterations per second."""
 CLASS = "class"
 """Names in an address the class that a page follows."""
+MOST_STEPS = 100_000
 MOST_TOLD = 3
 LONGEST_NAME = 40
 
 
 @dataclass(frozen=True)
 class Sight:
-    """What is looked at: a tab, an instant as a share of the interval, a pace, and any lesson."""
+    """What is looked at.
+
+    Attributes
+    ----------
+    instant
+        As a share of the interval.
+    iteration
+        At which the run waits; 0 has it go on.
+    """
 
     tab: str = TABS[0]
     instant: float = Look().phase
     pace: str = "20"
     lesson: str = ""
+    iteration: int = 0
+    theme: str = "light"
 
 
 SIGHT: dict[str, Any] = {
@@ -44,7 +56,12 @@ SIGHT: dict[str, Any] = {
     "instant": quantity(Sight.instant, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
     "pace": choice(Sight.pace, PACES, "", group="", title=""),
     "lesson": choice(next(iter(LESSONS)), LESSONS, "", group="", title=""),
+    "iteration": count(0, (0, MOST_STEPS), (0, MOST_STEPS), "", group="", title=""),
+    "theme": choice(Sight.theme, ("light", "dark"), "", group="", title=""),
 }
+NUMBERS = ("instant", "iteration")
+COMPARED = "compare"
+"""Name in an address of what run A has other than the run at work, B, as a JSON object."""
 
 
 def sight_from_query(query: str) -> tuple[Sight, str]:
@@ -53,7 +70,7 @@ def sight_from_query(query: str) -> tuple[Sight, str]:
     for name, text in parse_qsl(query.lstrip("?")):
         try:
             if name in SIGHT:
-                value = parse(text) if name == "instant" else TAB_OF.get(text.lower(), text)
+                value = parse(text) if name in NUMBERS else TAB_OF.get(text.lower(), text)
                 found[name] = checked_value(SIGHT[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
@@ -80,7 +97,7 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
     definitions = base.definitions()
     values, refused = {}, []
     for name, text in pairs.items():
-        if name in SIGHT or name == CLASS:
+        if name in SIGHT or name in (CLASS, COMPARED):
             continue
         if name not in definitions:
             refused.append(f"there is no setting {shorten(name, LONGEST_NAME)}")
@@ -100,6 +117,35 @@ def _base(lesson: Lesson | None, scene: str) -> Settings:
     if scene not in ("", lesson.settings.scene):
         raise SettingError("scene", scene, lesson.settings.scene, "the lesson has its own")
     return lesson.settings
+
+
+def twin_from_query(query: str, settings: Settings) -> tuple[Settings | None, str]:
+    """Read from an address the settings of run A, if there is one; with what was refused and why.
+
+    Parameters
+    ----------
+    query
+        Of the address.
+    settings
+        Those of it, which hold for run A too where it says nothing else.
+    """
+    text = dict(parse_qsl(query.lstrip("?"))).get(COMPARED)
+    if text is None:
+        return None, ""
+    try:
+        return type(settings).checked({**settings.values(), **_object(text)}), ""
+    except SettingError as refusal:
+        return None, complaint_of([str(refusal)])
+
+
+def _object(text: str) -> dict[str, Any]:
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise SettingError(COMPARED, text, "a JSON object of settings", 'write {"seed":2}')
+    return found
 
 
 def _together(base: Settings, values: dict[str, Any]) -> tuple[Settings, list[str]]:
@@ -144,7 +190,12 @@ def class_from_query(query: str) -> tuple[Room | None, str]:
     return room, complaint_of(missing if code and room is None else [])
 
 
-def query_of(settings: Settings, sight: Sight | None = None, room: Room | None = None) -> str:
+def query_of(
+    settings: Settings,
+    sight: Sight | None = None,
+    room: Room | None = None,
+    twin: Settings | None = None,
+) -> str:
     """Write what differs from the defaults, or from a lesson's settings, as a page's address."""
     sight = sight or Sight()
     lesson = LESSONS.get(sight.lesson)
@@ -152,6 +203,8 @@ def query_of(settings: Settings, sight: Sight | None = None, room: Room | None =
     if room is None:
         changed = settings.changed(lesson.settings if lesson else None)
         pairs += [(name, json.dumps(value)) for name, value in changed.items()]
+        apart = changes_of(twin, settings) if twin else {}
+        pairs += [(COMPARED, json.dumps(apart, separators=(",", ":")))] if twin else []
     looked_at = asdict(sight).items()
     pairs += [(name, str(value)) for name, value in looked_at if value != getattr(Sight, name)]
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)

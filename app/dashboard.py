@@ -7,21 +7,21 @@ from typing import Any
 
 import panel as pn
 
-from app.address import PACES, TABS, Sight, query_of
+from app.address import TABS, Sight
 from app.banner import Banner
 from app.cards import Cards
-from app.classroom import Room
 from app.looks import Looks
+from app.page_link import PageLink
 from app.panes import column, page, text
 from app.presence import Presence
 from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
 from app.tabs import Tabs
+from app.takeaway import Saver
 from app.teaching import Teaching
 from app.transport import Transport
 from app.views.catalogue import VIEWS, fitting
-from solver.settings import Settings
 
 TICK_MS = 25
 FIRST_ROW = 3
@@ -67,7 +67,6 @@ class Dashboard:
         self._room = FIRST_ROW
         self._logged = (0, "")
         self._sent_at = 0.0
-        self._stood: tuple[Settings, Sight, Room | None] | None = None
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
         self._pulse = Pulse()
@@ -83,22 +82,27 @@ class Dashboard:
         }
         self._cards = Cards(chosen)
         self._banner = Banner(session, self._follow)
-        self._sidebar = Sidebar(session, self._arrange, self.complain, self._copy, self._teach)
+        self._sidebar = Sidebar(
+            session, self._arrange, self.complain, lambda: self._link.copy(), self._teach
+        )
         self._teaching = Teaching(session, self._sidebar, self._on_lesson)
+        self._saver = Saver(session)
         self._plots = column(role="plots")
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, self._on_tab)
         self._sight = sight or Sight()
-        self.page = page(self._sidebar.view, self._tabs.bar, self._tabs.main)
+        self.page = page([self._sidebar.view, self._saver.view], self._tabs.bar, self._tabs.main)
         if on_phone:
             self.page.sidebar_open = False
             self._clear_the_header()
+        self.page.dark_theme = self._sight.theme == "dark"
+        self._link = PageLink(session, self._pulse, self._tabs.bar, self.page, self._teaching)
         self._sidebar.show(session.wanted)
         if self._sight.lesson:
             self._teaching.take(self._sight.lesson)
         else:
             self._arrange()
-        self._keep_address()
+        self._link.follow()
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
@@ -107,10 +111,20 @@ class Dashboard:
         """
         self._loaded = True
         self._presence.begin()
-        room = self.session.attendance.follows
-        self.session.start(room.settings if room else None)
+        self._begin(self._sight.iteration)
         self._on_narrow()
         self._tabs.bar.value = self._sight.tab
+
+    def _begin(self, iteration: int) -> None:
+        """Start the run, to go on or to wait at an iteration; in a class, as that is."""
+        session = self.session
+        if room := session.attendance.follows:
+            session.start(room.settings)
+            return
+        session.running = iteration == 0
+        session.start()
+        for _ in range(iteration - 1):
+            session.step()
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
@@ -127,7 +141,7 @@ class Dashboard:
         if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
-        self._keep_address()
+        self._link.follow()
 
     def complain(self, text: str) -> None:
         """Tell the user what was refused and why."""
@@ -145,23 +159,6 @@ class Dashboard:
         parts = *heads, *words, self._plots, self._pulse
         return column(*parts, role="live", margin=(4, 10))
 
-    def _keep_address(self) -> None:
-        """Have the address say where the page stands."""
-        if self._stood != (stands := self._stands()):
-            self._stood, self._pulse.query = stands, query_of(*stands)
-
-    def _copy(self) -> None:
-        self._keep_address()
-        self._pulse.copy += 1
-
-    def _stands(self) -> tuple[Settings, Sight, Room | None]:
-        """Give what an address has to say to come back to this."""
-        session = self.session
-        pace = next(name for name, pace in PACES.items() if pace == session.pace)
-        phase = round(session.look.phase, 4)
-        sight = Sight(self._tabs.bar.value, phase, pace, self._teaching.name)
-        return session.wanted, sight, session.attendance.follows
-
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
         session = self.session
@@ -173,9 +170,10 @@ class Dashboard:
         seen = [] if self._teaching.asks else fit
         self._shown = [view for view in seen if view.name in wanted]
         there = self._shown[: self._room]
-        self.transport.view.visible = room is None
+        self.transport.view.visible = self._saver.view.visible = room is None
         self.transport.arrange(session.wanted)
         cards = [self._cards[view] for view in there]
+        self._saver.offer(there)
         if list(self._plots) != cards:
             self._plots[:] = cards
         holds = session.wanted is self._asked_for
@@ -211,6 +209,7 @@ class Dashboard:
         bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
         self.transport.show()
+        self._saver.follow()
 
     def _pass_on(self, blocks: list[bytes]) -> None:
         """Give the browser the pictures that came, and show what they say."""

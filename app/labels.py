@@ -8,11 +8,10 @@ from solver.definitions import about
 from solver.settings import Settings
 
 
-def label_since(settings: Settings, before: Settings) -> str:
-    """Name settings by what has changed since others, or by the first few of it."""
-    old = before.values()
-    changed = {name: value for name, value in settings.values().items() if value != old[name]}
-    return label_of(settings, changed)
+def changes_of(settings: Settings, other: Settings) -> dict[str, Any]:
+    """Give what differs from other settings of the same scene, by name."""
+    before = other.values()
+    return {name: value for name, value in settings.values().items() if value != before[name]}
 
 
 def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:
@@ -22,6 +21,7 @@ def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:
     for name, value in list(changed.items())[:most]:
         unit = about(definitions[name]).unit
         text = f"{value:.4g}" if isinstance(value, float) else str(value)
+        text = ("off", "on")[value] if isinstance(value, bool) else text
         text = "points" if isinstance(value, tuple) else text
         parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
     return ", ".join(parts) + (", ..." if len(changed) > most else "")

@@ -48,13 +48,13 @@ def script(*names: str) -> str:
     return "\n".join((APP / name).read_text(encoding="utf-8") for name in names)
 
 
-def page(sidebar: Any, header: Any, main: Any) -> Page:
-    """Make a page with one part at each place."""
+def page(sidebar: list[Any], header: Any, main: Any) -> Page:
+    """Make a page with its parts at their places."""
     made = Page(
         title="Slipfront",
         favicon=STATIC / "logo.svg",
         logo=STATIC / "logo.svg",
-        sidebar=[sidebar],
+        sidebar=sidebar,
         sidebar_width=310,
         header=[header],
         main=[main],

@@ -120,7 +120,10 @@ export function render({model, view}) {
   })
   model.on("copy", () => {
     follow()
-    if (navigator.clipboard) { navigator.clipboard.writeText(location.href).catch(() => {}) }
+    const count = model.copy, wrote = navigator.clipboard?.writeText(location.href)
+    // Without https there is no clipboard.
+    const done = wrote ?? Promise.reject()
+    done.then(() => { model.copied = count }, () => { model.copied = -count })
   })
   const look = () => { model.hidden = document.visibilityState === "hidden" }
   const press = (event) => {

@@ -20,6 +20,7 @@ class Pulse(Prompt):
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
     query = param.String(default="", doc="What an address has to say to come back to this.")
     copy = param.Integer(default=0, doc="Counts how often the address was to be copied.")
+    copied = param.Integer(default=0, doc="The last of them that was; negative if it could not be.")
     beat = param.Integer(default=0, doc="Counts signs of life; negative asks for all of a picture.")
     heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 

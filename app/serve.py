@@ -11,7 +11,13 @@ from bokeh.document import Document
 from panel.io.state import set_curdoc
 from panel_material_ui.template.base import Page
 
-from app.address import PACES, class_from_query, settings_from_query, sight_from_query
+from app.address import (
+    PACES,
+    class_from_query,
+    settings_from_query,
+    sight_from_query,
+    twin_from_query,
+)
 from app.dashboard import TICK_MS, Dashboard
 from app.innards import forget
 from app.lateness import Lateness
@@ -41,12 +47,18 @@ def open_page() -> Page:
     settings, complaint = settings_from_query(query)
     sight, more = sight_from_query(query)
     room, most = class_from_query(query)
+    twin, refused = twin_from_query(query, settings)
     session = Session(PAGES, shared_bench(), room.settings if room else settings)
     if room is not None:
         session.attendance.follow(room)
+    else:
+        session.twin = twin
     session.set_pace(PACES[sight.pace])
     session.watch(phase=sight.instant)
-    complaint, phone = f"{complaint} {more} {most}".strip(), is_phone(pn.state.headers)
+    complaint, phone = (
+        " ".join(filter(None, (complaint, more, most, refused))),
+        is_phone(pn.state.headers),
+    )
     dashboard = Dashboard(session, complaint=complaint, sight=sight, on_phone=phone)
     pn.state.onload(dashboard.loaded)
     document.add_periodic_callback(dashboard.tick, TICK_MS)

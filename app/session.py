@@ -12,13 +12,13 @@ from typing import Any
 from app.attendance import Attendance
 from app.errand import Errand
 from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
-from app.labels import label_since
+from app.labels import changes_of, label_of
 from app.pages import Pages
 from app.worker.bench import Bench
 from app.worker.block import said
 from app.worker.link import Link
 from app.worker.orders import Pace, Ready, Run, Seek, Step, Watch
-from app.worker.reports import Died, Facts
+from app.worker.reports import Died, Facts, Picture
 from app.worker.shown import Look
 from solver.files import scene_settings
 from solver.settings import Settings
@@ -46,6 +46,8 @@ class Session:
     ----------
     settings
         Of the run at work.
+    twin
+        Those of run A, which goes in step with it as run B, from the next start on; None has none.
     ticket
         Its number; 0 before the first.
     facts
@@ -72,7 +74,8 @@ class Session:
         self.settings = settings
         self.keeper = Keeper(hire)
         self.attendance = Attendance(self.keeper, hire)
-        self.ticket = 0
+        self.twin: Settings | None = None
+        self.ticket = self.crowd = 0
         self.facts: Facts | None = None
         self.look = Look()
         self.running = True
@@ -80,12 +83,10 @@ class Session:
         self.warm_start = False
         self.follows_hand = self.is_held = False
         self._errands = self.figures, self.study, self.stability = [Errand(bench) for _ in range(3)]
-        self.crowd = 0
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._pending: Settings | None = None
-        self._pending_by_hand = False
-        self._moved_at = 0.0
+        self._pending_by_hand, self._moved_at = False, 0.0
         self._pages = pages
         pages.add(self)
 
@@ -100,11 +101,12 @@ class Session:
         self.attendance.heed(settings)
         if settings.scene != self.settings.scene:
             self._left[self.settings.scene] = self.wanted
-            self._label = ""
+            self._label, self.twin = "", None
             self.watch(interface="", substructure=None)
         elif self.ticket:
-            self._label = label_since(settings, self.settings) or self._label
-        self._label = "" if "is_alone" in how else self._label
+            self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
+        if "is_alone" in how:
+            self._label, self.twin = "", None
         self.settings = settings
         self.ticket += 1
         self.facts, self._pending = None, None
@@ -151,10 +153,8 @@ class Session:
         """Take the waiting reports; give the pictures that the page has to be given."""
         blocks: list[bytes] = []
         for report in self.keeper.collect():
-            if isinstance(report, Died):
-                blocks.append(self._bury())
-            else:
-                blocks.append(report.block)
+            blocks.append(self._bury() if isinstance(report, Died) else report.block)
+            if isinstance(report, Picture):
                 self.attendance.share(self.settings, self.look.views, report)
                 if report.ticket == self.ticket:
                     self.facts = report.facts
@@ -286,6 +286,7 @@ class Session:
                 is_held=self.is_held,
                 **how,
                 follows_hand=self.follows_hand,
+                twin=self.twin.values() if self.twin else None,
             )
         )
 

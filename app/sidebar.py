@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from typing import Any
 
+from app.comparing import CHOICES, choice_of, pair
 from app.form import POINTS, Form, item_of
 from app.lesson import LESSONS
 from app.session import Session
@@ -35,7 +36,7 @@ ORDER = (
 
 # None of these is the name of a setting.
 SCENE, LESSON, WARM = "the-scene", "the-lesson", "start-from-before"
-VIEWS, SHARE = "the-views", "share"
+VIEWS, SHARE, COMPARE = "the-views", "share", "compare"
 SCENE_ITEM = {
     "name": SCENE,
     "kind": "choice",
@@ -49,6 +50,14 @@ LESSON_ITEM = {
     "label": "Lesson",
     "help": "A question to predict the answer of, one thing to change, and why it is so.",
     "options": [["none", ""], *([one.title, one.name] for one in LESSONS.values())],
+}
+COMPARE_ITEM = {
+    "name": COMPARE,
+    "kind": "choice",
+    "label": "Compare with",
+    "help": "Run A goes in step with the run at work, B, on the same axes: the present settings "
+    "are kept as A and you change B, or both are set at once.",
+    "options": [[title, name] for title, name in CHOICES.items()],
 }
 WARM_ITEM = {
     "name": WARM,
@@ -139,6 +148,7 @@ class Sidebar:
         own = {
             SCENE: settings.scene,
             LESSON: self.lesson,
+            COMPARE: choice_of(self._session.twin, settings),
             WARM: self._session.warm_start,
             VIEWS: [self._views, wanted],
             SHARE: None,
@@ -154,6 +164,8 @@ class Sidebar:
         elif name == LESSON:
             self.obey()
             self._teach(value)
+        elif name == COMPARE:
+            self._on_compare(value)
         elif name == WARM:
             self._session.warm_start = value
         elif name == VIEWS:
@@ -195,6 +207,15 @@ class Sidebar:
     def _on_scene(self, scene: str) -> None:
         self.obey()
         self._session.choose_scene(scene)
+        self._after_change()
+
+    def _on_compare(self, choice: str) -> None:
+        self.obey()
+        try:
+            self._session.twin, settings = pair(choice, self._session.wanted)
+            self._session.start(settings)
+        except SettingError as refusal:
+            self._complain(str(refusal))
         self._after_change()
 
     def _on_share(self, value: Any) -> None:
@@ -267,4 +288,4 @@ def _items(settings: type[Settings]) -> list[dict[str, Any]]:
     after = max(i for i, item in enumerate(open_ones) if item["group"] == METHOD) + 1
     open_ones.insert(after, WARM_ITEM)
     more = [item for item in found if item["more"]]
-    return [SCENE_ITEM, LESSON_ITEM, *open_ones, *more, VIEWS_ITEM, SHARE_ITEM]
+    return [SCENE_ITEM, LESSON_ITEM, COMPARE_ITEM, *open_ones, *more, VIEWS_ITEM, SHARE_ITEM]

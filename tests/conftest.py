@@ -37,6 +37,7 @@ LONGEST_FIRST = (
     "test_server_leaves_nothing_behind",
     "test_random_scenes",
     "test_page_paper_figures",
+    "test_page_is_taken_away",
 )
 """Files of a quarter of a minute or more. A worker has a file to itself, so that whoever came to
 one of these last would work on alone."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 from unpacking import unpack
@@ -11,7 +12,7 @@ from app.views.catalogue import VIEWS
 from app.views.drawing import Drawing, Scene
 from app.worker.orders import Order, Ready, Run, Watch
 from app.worker.recording import Recording
-from app.worker.reports import Picture
+from app.worker.reports import File, Picture
 from app.worker.run import WorkerRun
 from app.worker.sampler import Frame
 from app.worker.shown import Look
@@ -26,7 +27,7 @@ class Shown:
 
     Attributes
     ----------
-    pictures
+    pictures, files
         All that it sent.
     models
         What the page has after each of them.
@@ -34,6 +35,7 @@ class Shown:
 
     def __init__(self, look: Look = ALL) -> None:
         self.pictures: list[Picture] = []
+        self.files: list[list[Any]] = []
         self.models: list[Models] = []
         self.studio = Studio(self._paint, lambda: False)
         self.studio.obey(Watch(look))
@@ -76,11 +78,13 @@ class Shown:
         return self.at_work.frame(look)
 
     def scene(self, look: Look = ALL, instant: int = 5) -> Scene:
-        studio = self.studio
-        past = tuple(studio._past)
-        return Scene(self.recording, studio._before, past, self.frame(look), instant, look)
+        return replace(self.studio._scene(self.at_work, self.frame(look), instant), look=look)
 
-    def _paint(self, picture: Picture) -> None:
+    def _paint(self, picture: Picture | File) -> None:
+        if isinstance(picture, File):
+            self.files.append(unpack(picture.block)["take-away"]["file"])
+            self.studio.obey(Ready())
+            return
         self.pictures.append(picture)
         before = self.models[-1] if self.models else {}
         self.models.append({**before, **unpack(picture.block)})

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 from typing import Any
+from urllib.parse import quote, unquote
 
 import pytest
 from studios import ALL, Shown
 
-from app.address import Sight, query_of, settings_from_query, sight_from_query
+from app.address import (
+    Sight,
+    query_of,
+    settings_from_query,
+    sight_from_query,
+    twin_from_query,
+)
+from app.comparing import CHOICES, choice_of, pair
+from app.page_link import waits_at
 from app.serve import is_phone
+from app.worker.reports import Facts
 from app.worker.words import number
+from solver.definitions import SettingError
+from solver.scenes import CATALOGUE
 
 PHONE = "Mozilla/5.0 (Linux; Android 14; Pixel 8) AppleWebKit/537.36 Chrome/130.0 Mobile Safari"
 DESK = "Mozilla/5.0 (X11; Linux x86_64) AppleWebKit/537.36 Chrome/130.0 Safari/537.36"
@@ -45,6 +57,8 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
         ("", Sight(), []),
         ("?instant=0.5&pace=5&tab=Study", Sight("Study", 0.5, "5"), []),
         ("?pace=fastest&pace=100", Sight(pace="100"), []),
+        ("?iteration=7&theme=dark", Sight(iteration=7, theme="dark"), []),
+        ("?iteration=1.5&theme=blue", Sight(), ["iteration = 1.5", 'theme = "blue"']),
         ("?tab=figures", Sight("Figures"), []),
         ("?tab=STUDY&pace=Fastest", Sight("Study"), ['pace = "Fastest"']),
         ("?instant=2&pace=7&tab=studies", Sight(), ["instant = 2", 'pace = "7"', '"studies"']),
@@ -61,6 +75,63 @@ def test_an_address_says_what_is_looked_at(query: str, sight: Sight, refused: li
     again = query_of(settings, found)
     assert sight_from_query(again) == (found, "")
     assert settings_from_query(again)[0].values() == settings.values()
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [({}, "{}"), ({"multiscale": False, "peak": 700.0}, '{"multiscale":false,"peak":700.0}')],
+)
+def test_an_address_says_what_run_a_has_other_than_run_b(
+    changes: dict[str, Any], text: str
+) -> None:
+    settings, _ = settings_from_query("?seed=2&method=paper")
+    query = query_of(settings, twin=settings.replace(**changes))
+    assert unquote(query).endswith(f"compare={text}")
+    twin, complaint = twin_from_query(query, settings_from_query(query)[0])
+    assert twin is not None
+    assert (twin.values(), complaint) == (settings.replace(**changes).values(), "")
+    assert twin_from_query(query_of(settings), settings) == (None, "")
+
+
+@pytest.mark.parametrize(
+    "text", ["friction", "[1]", '{"friction":-3}', '{"frictoin":1}', "{" * 9999]
+)
+def test_a_run_a_that_is_refused_is_named_and_left_out(text: str) -> None:
+    query = f"?compare={quote(text)}"
+    settings, complaint = settings_from_query(query)
+    twin, refused = twin_from_query(query, settings)
+    assert (twin, complaint) == (None, "")
+    assert "From the address: " in refused
+
+
+@pytest.mark.parametrize(
+    ("facts", "goes_on", "iteration"),
+    [
+        (None, True, 0),
+        (Facts(iteration=9, done=9), True, 0),
+        (Facts(iteration=4, done=9), True, 4),
+        (Facts(iteration=9, done=9), False, 9),
+        (Facts(iteration=9, done=9, is_over=True), False, 0),
+        (Facts(iteration=4, done=9, is_over=True), False, 4),
+        (Facts(is_broken=True), False, 0),
+    ],
+)
+def test_a_link_has_the_iteration_that_waits_or_is_looked_at(
+    facts: Facts | None, goes_on: bool, iteration: int
+) -> None:
+    assert waits_at(facts, goes_on=goes_on) == iteration
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_a_choice_of_two_runs_is_called_as_it_was_chosen(scene: str) -> None:
+    settings = CATALOGUE[scene].settings.checked({})
+    for choice in CHOICES.values():
+        twin, own = pair(choice, settings)
+        assert choice_of(twin, own) == choice
+    one = settings.replace(substructures=1)
+    if not one.applies("multiscale"):
+        with pytest.raises(SettingError, match="cut the body"):
+            pair("monoscale | multiscale", one)
 
 
 def test_a_long_address_is_answered_in_few_words() -> None:

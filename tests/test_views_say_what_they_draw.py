@@ -36,7 +36,7 @@ def looked_at(scene: str, *changes: dict[str, Any]) -> Scene:
 def test_the_ghost_of_the_loop_is_the_run_before_and_not_its_reference() -> None:
     scene = looked_at("bar", {"method": "paper", "max_iterations": 2}, {})
     drawing = loop.draw(scene, None)
-    assert "run before" in keys(drawing)
+    assert "run before, iteration 2" in keys(drawing)
     before = scene.before
     assert before is not None
     assert before.frame is not None

@@ -30,12 +30,16 @@ KEYS = tuple(
 def draw(scene: Scene, _kept: None) -> Drawing:
     """Draw what the method knows of itself (dashed), and how far it really is (solid).
 
-    The ghost is the run before, or with separated bases, the full linear stage beside them.
+    The ghost is run A, or else with separated bases the full linear stage beside them, or else the
+    run before.
     """
-    run, before, is_reduced = scene.run, scene.before, scene.run.settings.is_reduced
+    run, before = scene.run, scene.before
+    is_reduced = run.settings.is_reduced and not scene.is_paired
     now = run.history.thinned(MOST_POINTS)
     keys = KEYS if has_reference(run.settings) else KEYS[:ERRORS]
     past: History | None = before.history if before else None
+    if scene.is_paired:
+        keys = (*keys, Key(BLUE, "pale", "A"))
     if is_reduced:
         past, keys = run.beside, (*keys, Key(BLUE, "pale", "full stage"))
     values = [value for name, *_ in CURVES for value in now[name]]

@@ -29,7 +29,7 @@ class Scene:
     Attributes
     ----------
     run, before
-        The run at work and the last one worth comparing with.
+        The run at work, and what it is compared with: the last one worth it, or run A.
     past
         Finished runs, oldest first.
     frame
@@ -38,6 +38,8 @@ class Scene:
         Index of the chosen instant.
     look
         Where one looks.
+    is_paired
+        Whether `before` is a run A, which goes in step with the run at work, B.
     """
 
     run: Recording
@@ -46,10 +48,26 @@ class Scene:
     frame: Frame
     instant: int
     look: Look
+    is_paired: bool = False
+
+    @property
+    def name(self) -> str:
+        """What the run at work is called in legends."""
+        return "B" if self.is_paired else "LATIN"
+
+    @property
+    def other(self) -> str:
+        """What it is compared with is called."""
+        return "A" if self.is_paired else "run before"
+
+    @property
+    def ghost_name(self) -> str:
+        """What it is compared with is called where fields are drawn, with their iteration."""
+        return f"{self.other}, iteration {self.before.shown if self.before else 0}"
 
     @property
     def ghost(self) -> tuple[Recording, Fields, int] | None:
-        """The run before, its last fields and its instant, where they are of the same interface."""
+        """The run before, its fields and its instant, where they are of the same interface."""
         fields = self.before.frame if self.before else None
         if self.before is None or fields is None or fields.interface != self.frame.fields.interface:
             return None

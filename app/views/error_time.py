@@ -20,7 +20,8 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
     A run on separated bases has the full linear stage beside it, on a clock of its own.
     """
     run = scene.run
-    past = [one for one in scene.past if len(one.history)]
+    twin = scene.before if scene.is_paired else None
+    past = [one for one in (*scene.past, twin) if one and len(one.history)][-len(PAST_COLORS) :]
     colors = _colors(kept or {}, [one.ticket for one in past])
     every = [one.history for one in [*past, run]] + [run.beside]
     histories = [one.thinned(MOST_POINTS) for one in every if len(one)]
@@ -31,12 +32,14 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
     x = in_decades(*decades(times, 1e-6))
     y = in_decades(decades(errors, FLOOR)[0], 2.0)
     curves = [_curve(one.history, colors[one.ticket], 2) for one in past]
-    keys = [Key(BLUE, "line", "now")]
+    keys = [Key(BLUE, "line", "B" if twin else "now")]
     if run.settings.is_reduced:
         keys.append(Key(BLUE, "dashed", "full stage"))
         curves.append(_curve(run.beside, BLUE, 2.5, "dashed"))
     curves.append(_curve(run.history, BLUE, 3))
-    keys += [Key(colors[one.ticket], "line", one.title) for one in reversed(past)]
+    keys += [
+        Key(colors[one.ticket], "line", "A" if one is twin else one.title) for one in reversed(past)
+    ]
     if run.reference is not None:
         keys.append(Key(GREY, "dotted", "incremental"))
         curves.append(upright([run.reference_seconds], y, color=GREY, dash="dotted", width=2))

@@ -32,7 +32,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing | None:
         Curve(places, bound, GREY, 1.5, "dashed"),
         Curve(places, -bound, GREY, 1.5, "dashed"),
     ]
-    keys = [Key(BLUE, "line", "LATIN")]
+    keys = [Key(BLUE, "line", scene.name)]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if begun.closed_form is not None:
@@ -41,7 +41,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing | None:
     if scene.ghost is not None:
         before, fields, then = scene.ghost
         curves.append(Curve(before.stand.positions, fields.friction[:, then] / factor, SKY, 2))
-        keys.append(Key(SKY, "line", "run before"))
+        keys.append(Key(SKY, "line", scene.ghost_name))
     if run.reference is not None:
         force = run.reference.friction[:, instant] / factor
         curves.append(Curve(places, force, ORANGE, 4, alpha=0.8))

@@ -33,12 +33,12 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     def scaled(pair: Pair, *style: Any, **more: Any) -> Curve:
         return Curve(pair[0] / across, pair[1] / up, *style, **more)
 
-    curves, keys = [], [Key(BLUE, "line", "LATIN")]
+    curves, keys = [], [Key(BLUE, "line", scene.name)]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if scene.before is not None and (ghost := _newest(scene.before, axes)):
         curves.append(scaled(ghost, SKY, 2))
-        keys.append(Key(SKY, "line", "run before"))
+        keys.append(Key(SKY, "line", scene.ghost_name))
     if run.reference is not None:
         curves.append(scaled(_pair(run, run.reference), ORANGE, 4, alpha=0.8))
     curves.append(scaled(now, BLUE))

@@ -36,7 +36,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     if scene.ghost is not None:
         before, fields, then = scene.ghost
         curves += _pair(before.stand.positions, fields, then, factor, width=2, alpha=0.4)
-        past.append(Key(BLUE, "pale", "run before"))
+        past.append(Key(BLUE, "pale", scene.ghost_name))
     places = begun.positions
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))

@@ -16,6 +16,9 @@ from app.worker.readings import values
 from app.worker.shown import Look
 from solver.settings import Settings
 
+TAKE_AWAY = "take-away"
+"""Name of the component that saves what is seen."""
+
 
 class Easel:
     """All views of a page, with what they want to be kept."""
@@ -26,7 +29,7 @@ class Easel:
 
     def paint(self, scene: Scene, words: Mapping[str, str]) -> bytes:
         """Draw every view that is seen; give what has changed of the page."""
-        models: dict[str, Attributes] = {}
+        models: dict[str, Attributes] = {TAKE_AWAY: {"caption": caption(scene)}}
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
         for view in seen(scene.run.settings, scene.look):
@@ -42,6 +45,12 @@ class Easel:
         """Give words (HTML) by the names of what they stand in, with what else is painted."""
         texts = {name: {"text": escape(text)} for name, text in words.items()}
         return self.packer.pack({**(models or {}), **texts})
+
+
+def caption(scene: Scene) -> str:
+    """Say of which moment of which run a picture is."""
+    time, settings = scene.run.stand.instants[scene.instant], scene.run.settings
+    return f"{settings.scene}, t = {time:.3g} s, iteration {scene.frame.iteration}"
 
 
 def seen(settings: Settings, look: Look) -> list[View]:

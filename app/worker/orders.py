@@ -29,6 +29,8 @@ class Run:
         compared with it afterwards.
     is_alone
         Whether it is nothing to compare with those before.
+    twin
+        Values of a run A, which goes in step with this one, B; None has none.
     """
 
     ticket: int
@@ -42,6 +44,7 @@ class Run:
     warm: bool = False
     follows_hand: bool = False
     is_alone: bool = False
+    twin: dict[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,22 @@ class Watch:
 
 
 @dataclass(frozen=True)
+class Tabulate:
+    """Have the browser save a table of what is looked at.
+
+    Attributes
+    ----------
+    what
+        One of `app.worker.tables.TABLES`.
+    number
+        Tells it from those before.
+    """
+
+    what: str
+    number: int
+
+
+@dataclass(frozen=True)
 class Ready:
     """The page has painted what it has, and waits for the next picture.
 
@@ -108,4 +127,4 @@ class Ready:
     whole: bool = False
 
 
-Order = Run | Pace | Step | Seek | Watch | Ready
+Order = Run | Pace | Step | Seek | Watch | Tabulate | Ready

@@ -91,8 +91,9 @@ class Recording:
     sizes
         Modes of the substructures `thinned(number, MOST_SIZES)`, one array per record, shape
         (n_shown,); empty with the full linear stage.
-    frame
-        Of the last iterate, once the run is one of the past.
+    frame, shown
+        Fields that others are compared with, once the run is one of the past or a run A, and the
+        number of their iteration.
     is_warm
         Whether it was to start from the run before, where that is better.
     """
@@ -109,6 +110,7 @@ class Recording:
     beside: History = field(default_factory=History)
     sizes: list[Counts] = field(default_factory=list)
     frame: Fields | None = None
+    shown: int = 0
     status: Status | None = None
     is_warm: bool = False
     choice: StartChoice | None = None
@@ -154,6 +156,10 @@ class Recording:
         """Find the first iteration whose friction force error is at most `level`."""
         within = np.flatnonzero(self.history.column("error_force") <= level)
         return int(self.history.column("iteration")[within[0]]) if len(within) else None
+
+    def last_within(self, seconds: float) -> int:
+        """Find the last iteration that was done after so much run time; 0 before the first."""
+        return int(np.searchsorted(self.history.column("seconds"), seconds, side="right"))
 
     def figures_of(self, iteration: int) -> dict[str, float] | None:
         """Give the scalars of an iteration."""

@@ -54,8 +54,21 @@ class Picture:
 
 
 @dataclass(frozen=True)
+class File:
+    """Something to be saved, for this page alone and not for a class that follows it.
+
+    Attributes
+    ----------
+    block
+        As in `Picture`.
+    """
+
+    block: bytes
+
+
+@dataclass(frozen=True)
 class Died:
     """The process is gone, and all that it had; the link says it in its stead."""
 
 
-Report = Picture | Died
+Report = Picture | File | Died

@@ -7,8 +7,6 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Literal
 
-import numpy as np
-
 from app.worker.bases import sizes
 from app.worker.beside import Beside
 from app.worker.orders import Pace, Run, Seek, Step
@@ -18,11 +16,10 @@ from app.worker.sampler import Frame, Sampler
 from app.worker.seeking import Found, Seeking
 from app.worker.shown import Look
 from app.worker.tempo import Tempo
-from solver.discrete import Problem
 from solver.files import scene_settings
 from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
 from solver.latin.indicators import latin_indicator
-from solver.latin.warm import Start, choose_start, iterations_from
+from solver.latin.warm import Start, choose_start, fits, iterations_from
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted, Reference
 from solver.scenes import discretise
@@ -125,6 +122,21 @@ class WorkerRun:
         """The iteration that is shown in place of the newest."""
         return self._sought[0].number if self._sought else None
 
+    @property
+    def seeks(self) -> int | None:
+        """The iteration that is on its way to be shown in place of the newest."""
+        return self._seeking.wanted
+
+    @property
+    def at(self) -> int:
+        """The iteration that is shown; 0 before there is one."""
+        return self.sought or (self._newest.number if self._newest else 0)
+
+    @property
+    def is_compared(self) -> bool:
+        """Whether the first iteration is done, and what is compared with is found."""
+        return self._is_compared
+
     def rest(self) -> float | None:
         """Give the seconds until `advance` has something to do; None waits for an order."""
         if self._newest is None or not self._is_compared or self._seeking.wanted is not None:
@@ -174,6 +186,11 @@ class WorkerRun:
         assert self._newest is not None
         iterate, before = self._sought or (self._newest, self._before)
         return self._sampler.frame(iterate, look, before)
+
+    def keep_frame(self, look: Look) -> None:
+        """Keep the fields that are looked at, for others to be compared with."""
+        frame = self.frame(look)
+        self.recording.frame, self.recording.shown = frame.fields, frame.iteration
 
     def _open(self) -> None:
         """Do the first iteration, from the start that is better: its picture comes first."""
@@ -275,18 +292,3 @@ class WorkerRun:
 
     def _rest_of_iterations(self, done: int) -> float | None:
         return None if self.recording.status is not None else self._tempo.rest(done)
-
-
-def fits(previous: Iterate | None, problem: Problem) -> bool:
-    """Tell whether a run may start from another's iterate.
-
-    Row by row it always may; fields that have to be carried to another mesh must be those of wires
-    that rub where these do.
-    """
-    if previous is None:
-        return False
-    old = previous.problem
-    if np.array_equal(old.row_dofs, problem.row_dofs):
-        return True
-    wires = old.positions.ndim == problem.positions.ndim == 1
-    return wires and set(problem.rubbing) <= set(old.rubbing)

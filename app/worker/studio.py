@@ -9,14 +9,16 @@ from collections.abc import Callable
 from html import escape
 
 from app.views.drawing import Scene
-from app.worker.easel import Easel
-from app.worker.orders import Order, Ready, Run, Seek, Watch
+from app.worker.easel import TAKE_AWAY, Easel
+from app.worker.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.worker.recording import Recording
-from app.worker.reports import Facts, Picture
+from app.worker.reports import Facts, File, Picture
 from app.worker.rivals import References
 from app.worker.run import WorkerRun
 from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
+from app.worker.tables import table
+from app.worker.twin import Twin
 from app.worker.words import key_figures, status_line
 from solver.definitions import SettingError
 from solver.latin import Iterate
@@ -37,23 +39,26 @@ class Studio:
         Tells whether another run is ordered.
     """
 
-    def __init__(self, send: Callable[[Picture], None], urgent: Callable[[], bool]) -> None:
+    def __init__(self, send: Callable[[Picture | File], None], urgent: Callable[[], bool]) -> None:
         self._send = send
         self._urgent = urgent
         self._references = References()
         self._easel = Easel()
         self._look = Look()
         self._run: WorkerRun | None = None
+        self._twin: Twin | None = None
         self._last: Iterate | None = None
         self._before: Recording | None = None
         self._past: deque[Recording] = deque(maxlen=PAST_RUNS)
+        self._table: Tabulate | None = None
         self._paint_at: float | None = None
 
     def rest(self) -> float | None:
         """Give the seconds until there is something to do; None waits for an order."""
         if self._run is None:
             return None
-        rests = (self._run.rest(), self._rest_of_paint(self._run))
+        run, twin = self._run, self._twin
+        rests = (run.rest(), twin.rest(run) if twin else None, self._rest_of_paint(run))
         return min((rest for rest in rests if rest is not None), default=None)
 
     def paint(self) -> bool:
@@ -65,9 +70,14 @@ class Studio:
         return True
 
     def go_on(self) -> None:
-        """Do the next piece of the run at work."""
-        run = self._run
-        if run is not None:
+        """Do the next piece of the run at work, once run A is where it is."""
+        run, twin = self._run, self._twin
+        if run is None:
+            return
+        if twin is not None and twin.rest(run) == 0.0:
+            self._attempt(run.ticket, lambda: twin.advance(run))
+            run.has_news = True
+        else:
             self._attempt(run.ticket, run.advance)
 
     def obey(self, order: Order) -> None:
@@ -85,17 +95,37 @@ class Studio:
                 self._paint_at = time.monotonic() + order.rest
             case Watch():
                 self._watch(order.look)
+            case Tabulate():
+                self._table = order
+                if run is not None:
+                    run.has_news = True
             case _ if run is not None and run.ticket == order.ticket:
                 self._attempt(run.ticket, lambda: run.obey(order))
+                if self._twin is not None:
+                    self._twin.obey(order, run)
 
     def _begin(self, order: Run) -> None:
         previous = self._last if order.warm else None
         self._run = WorkerRun(order, self._look, self._urgent, self._references, previous)
+        self._pair(order)
         settings, before = self._run.recording.settings, self._before
         # Runs of another scene are nothing to compare with.
         if order.is_alone or (before is not None and type(before.settings) is not type(settings)):
             self._before = None
             self._past.clear()
+
+    def _pair(self, order: Run) -> None:
+        """Have run A go in step with a new one, afresh only where its settings are others."""
+        values, twin = order.twin, self._twin
+        if values is None:
+            self._twin = None
+        elif twin is not None and twin.is_of(order):
+            twin.begin(order.pace)
+        else:
+            # Colours are given by tickets, so it has one of its own.
+            own = Run(-order.ticket, order.scene, values, pace=0.0)
+            run = WorkerRun(own, self._look, self._urgent, self._references)
+            self._twin = Twin(run, order.pace)
 
     def _retire(self) -> None:
         """Keep the run at work to compare the next with, unless it only followed a hand."""
@@ -105,7 +135,7 @@ class Studio:
         self._last = run.last
         if run.recording.is_worth_keeping:
             run.obey(Seek(run.ticket, None))
-            run.recording.frame = run.frame(self._look).fields
+            run.keep_frame(self._look)
             self._before = run.recording
             self._past.append(run.recording)
 
@@ -117,39 +147,57 @@ class Studio:
         run = self._run
         if run is not None:
             self._attempt(run.ticket, lambda: run.look_at(look))
+        if self._twin is not None:
+            self._twin.look_at(look)
 
     def _rest_of_paint(self, run: WorkerRun) -> float | None:
         if self._paint_at is None or not (run.has_news and run.is_presentable):
+            return None
+        if self._twin is not None and self._twin.is_behind(run):
             return None
         return max(self._paint_at - time.monotonic(), 0.0)
 
     def _show(self, run: WorkerRun) -> None:
         look, recording = self._look, run.recording
         run.has_news, self._paint_at = False, None
-        frame = run.frame(look)
+        frame, twin = run.frame(look), self._twin.recording if self._twin else None
         stand = recording.stand
         instant = instant_of(look.phase, len(stand.instants))
-        scene = Scene(recording, self._before, tuple(self._past), frame, instant, look)
-        block = self._easel.paint(scene, self._words(run, frame))
+        scene = self._scene(run, frame, instant)
+        block = self._easel.paint(scene, self._words(run, scene))
         facts = Facts(
-            iteration=frame.iteration,
-            done=recording.iteration or frame.iteration,
+            iteration=max(frame.iteration, twin.shown if twin else 0),
+            done=max(recording.iteration or frame.iteration, twin.iteration if twin else 0),
             instants=len(stand.instants),
             instant=instant,
             time=float(stand.instants[instant]),
             duration=float(stand.instants[-1]) or 1.0,
             interface=stand.interface,
             interfaces=stand.interfaces,
-            is_over=recording.status is not None,
+            is_over=recording.status is not None and (twin is None or twin.status is not None),
             was_warm=recording.choice is not None and recording.choice.is_previous,
         )
         self._send(Picture(run.ticket, facts, block))
+        if (asked := self._table) is not None:
+            self._table = None
+            name = f"slipfront-{recording.settings.scene}-{asked.what}.csv"
+            file = [name, table(asked.what, scene), asked.number]
+            block = self._easel.say({}, {TAKE_AWAY: {"file": file}})
+            self._send(File(block))
 
-    def _words(self, run: WorkerRun, frame: Frame) -> dict[str, str]:
-        state, recording = run.state, run.recording
+    def _scene(self, run: WorkerRun, frame: Frame, instant: int) -> Scene:
+        twin, before = self._twin, self._before
+        if twin is not None:
+            twin.keep_frame(self._look)
+            before = twin.recording
+        past = tuple(self._past)
+        return Scene(run.recording, before, past, frame, instant, self._look, twin is not None)
+
+    def _words(self, run: WorkerRun, scene: Scene) -> dict[str, str]:
+        frame, state, complaint = scene.frame, run.state, self._look.complaint
         return {
-            "status": status_line(recording, frame, state, run.sought, self._look.complaint),
-            "figures": key_figures(recording, self._before, frame.iteration),
+            "status": status_line(run.recording, frame, state, run.sought, complaint),
+            "figures": key_figures(scene),
         }
 
     def _attempt(self, ticket: int, action: Callable[[], None]) -> None:

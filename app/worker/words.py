@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from html import escape
 from typing import Literal
 
+from app.labels import changes_of, label_of
+from app.views.drawing import Scene
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
 from app.worker.shown import has_reference
@@ -108,13 +110,17 @@ def start_line(run: Recording) -> str:
     return f"Started from {own}, since the run before it is not clearly nearer: {figures}."
 
 
-def key_figures(run: Recording, before: Recording | None, iteration: int) -> str:
-    """Set the figures of an iteration of this run beside those of the run before (an HTML table).
+def key_figures(scene: Scene) -> str:
+    """Set the figures of the shown iteration beside those of what it is compared with (HTML).
 
+    The run before stands there at its end, a run A at equal iteration and at equal run time.
     Errors are those beside a reference; where there is none, they are left out.
     """
+    run, before, iteration = scene.run, scene.before, scene.frame.iteration
     rows = [("this run", _cells(run, iteration))]
-    if before is not None:
+    if before is not None and scene.is_paired:
+        rows = _paired(run, before, iteration)
+    elif before is not None:
         rows.append((f"before ({escape(before.title)})", _cells(before, before.iteration)))
     shown = [
         place
@@ -128,6 +134,27 @@ def key_figures(run: Recording, before: Recording | None, iteration: int) -> str
         for name, cells in rows
     )
     return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _paired(run: Recording, twin: Recording, iteration: int) -> list[tuple[str, Sequence[str]]]:
+    """Give the figures of run B, and of run A as far as B in iterations, and in time."""
+    own = label_of(run.settings, changes_of(run.settings, twin.settings))
+    other = label_of(twin.settings, changes_of(twin.settings, run.settings))
+    return [
+        (f"B ({escape(own or 'as A')})", _cells(run, iteration)),
+        (f"A ({escape(other or 'as B')})", _cells(twin, twin.shown)),
+        _at_equal_time(run, twin, iteration),
+    ]
+
+
+def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> tuple[str, Sequence[str]]:
+    """Give A after the run time of B, or B after that of A where A has not run as long yet."""
+    now, last = run.figures_of(iteration), twin.figures_of(twin.iteration)
+    if now is None or last is None:
+        return "at equal run time", _cells(twin, 0)
+    if twin.status is None and last["seconds"] < now["seconds"]:
+        return "B at A's run time", _cells(run, run.last_within(last["seconds"]))
+    return "A at B's run time", _cells(twin, twin.last_within(now["seconds"]))
 
 
 def _cells(run: Recording, iteration: int) -> Sequence[str]:

@@ -156,3 +156,18 @@ def _billed(iterates: Iterator[Iterate], seconds: float) -> Iterator[Iterate]:
     """Put on the clock of an iteration what was spent beside it."""
     for iterate in iterates:
         yield replace(iterate, seconds=iterate.seconds + seconds)
+
+
+def fits(previous: Iterate | None, problem: Problem) -> bool:
+    """Tell whether a run may start from another's iterate.
+
+    Row by row it always may; fields that have to be carried to another mesh must be those of wires
+    that rub where these do.
+    """
+    if previous is None:
+        return False
+    old = previous.problem
+    if np.array_equal(old.row_dofs, problem.row_dofs):
+        return True
+    wires = old.positions.ndim == problem.positions.ndim == 1
+    return wires and set(problem.rubbing) <= set(old.rubbing)

@@ -1,0 +1,84 @@
+"""The link that comes back to what stands on the page: kept in its address, and copied."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import panel as pn
+
+from app.address import PACES, Sight, query_of
+from app.classroom import Room
+from app.pulse import Pulse
+from app.session import Session
+from app.teaching import Teaching
+from app.worker.reports import Facts
+from solver.settings import Settings
+
+Standing = tuple[Settings, Sight, Room | None, Settings | None]
+COPIED = "Copied: the link to what stands here."
+REFUSED = "Not copied, as the browser does not let the page: take the link from the address bar."
+
+
+class PageLink:
+    """What the address of a page has to say.
+
+    Parameters
+    ----------
+    session
+        Of the page.
+    pulse
+        Is told the address, and whether it is to be copied.
+    tab
+        The choice of tabs.
+    page
+        Knows its theme.
+    teaching
+        Knows its lesson.
+    """
+
+    def __init__(
+        self, session: Session, pulse: Pulse, tab: Any, page: Any, teaching: Teaching
+    ) -> None:
+        self._session, self._pulse = session, pulse
+        self._tab, self._page, self._teaching = tab, page, teaching
+        self._stood: Standing | None = None
+        pulse.param.watch(lambda event: _tell(is_done=event.new > 0), "copied")
+
+    def follow(self) -> None:
+        """Have the address say where the page stands."""
+        if self._stood != (stands := self._stands()):
+            self._stood, self._pulse.query = stands, query_of(*stands)
+
+    def copy(self) -> None:
+        """Copy the link; the page says so once it is done."""
+        self.follow()
+        self._pulse.copy += 1
+
+    def _stands(self) -> Standing:
+        session = self._session
+        sight = Sight(
+            tab=self._tab.value,
+            instant=round(session.look.phase, 4),
+            pace=next(name for name, pace in PACES.items() if pace == session.pace),
+            lesson=self._teaching.name,
+            iteration=waits_at(session.facts, goes_on=session.goes_on),
+            theme="dark" if self._page.dark_theme else "light",
+        )
+        return session.wanted, sight, session.attendance.follows, session.twin
+
+
+def waits_at(facts: Facts | None, *, goes_on: bool) -> int:
+    """Give the iteration that is looked at, or 0 where the run is followed, or at its end."""
+    if facts is None or facts.is_broken:
+        return 0
+    is_last = facts.iteration == facts.done
+    return 0 if is_last and (goes_on or facts.is_over) else facts.iteration
+
+
+def _tell(*, is_done: bool) -> None:
+    if (notes := pn.state.notifications) is None:
+        return
+    if is_done:
+        notes.success(COPIED, duration=3000)
+    else:
+        notes.error(REFUSED, duration=8000)

@@ -1,0 +1,102 @@
+"""What stands on the page is taken away, compared and linked to, in a real browser."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+from pathlib import Path
+from urllib.parse import unquote
+from xml.etree import ElementTree
+
+import numpy as np
+from pages import Visit, card, slider, status
+from PIL import Image
+from playwright.sync_api import Page, expect
+
+SMALL = "elements=20&instants=13&substructures=4&method=paper&max_iterations=12"
+CLIPBOARD = """(answer) => {
+  navigator.clipboard.writeText = async (text) => {
+    if (answer === "refused") { throw new Error(answer) }
+    window.copied = text
+  }
+}"""
+
+
+def saved(page: Page, button: str) -> Path:
+    with page.expect_download() as download:
+        page.get_by_role("button", name=button, exact=True).click()
+    assert re.fullmatch(r"slipfront-[\w-]+\.\w+", download.value.suggested_filename)
+    return Path(download.value.path())
+
+
+def test_a_plot_is_saved_with_name_legend_and_units(open_page: Visit) -> None:
+    page = open_page(f"?{SMALL}&theme=dark")
+    expect(status(page)).to_contain_text("after 12 iterations")
+    expect(card(page, "Friction force").first).to_contain_text("reference")
+    page.get_by_role("combobox", name="Plot").select_option("Friction force")
+    drawing = ElementTree.fromstring(saved(page, "SVG").read_text())
+    words = {one.text for one in drawing.iter("{http://www.w3.org/2000/svg}text")}
+    assert {"Friction force", "reference", "Position x (m)", "Friction force (kN/m)"} < words
+    assert "bar, t = 0.75 s, iteration 12" in words
+    with Image.open(saved(page, "PNG")) as picture:
+        pixels = np.asarray(picture.convert("L"))
+    # Dark paper, and light words on it.
+    assert np.median(pixels) < 64
+    assert pixels[:60].max() > 200
+
+
+def test_an_animation_has_a_picture_of_every_instant(open_page: Visit) -> None:
+    page = open_page(f"?{SMALL}")
+    expect(status(page)).to_contain_text("after 12 iterations")
+    page.get_by_role("combobox", name="Plot").select_option("Load path")
+    with Image.open(saved(page, "GIF over time")) as film:
+        assert film.n_frames == 13
+        frames = []
+        for number in range(13):
+            film.seek(number)
+            frames.append(np.asarray(film.convert("RGB")).astype(int))
+    assert all(abs(one - other).max() > 100 for one, other in pairwise(frames))
+    assert np.median(frames[0]) > 250
+    expect(page.get_by_text("t = 0.75 s").first).to_be_visible()
+
+
+def test_a_table_and_a_program_are_saved(open_page: Visit) -> None:
+    page = open_page(f"?{SMALL}")
+    expect(status(page)).to_contain_text("after 12 iterations")
+    page.get_by_role("combobox", name="Table").select_option("iterations")
+    for _ in range(2):
+        lines = saved(page, "CSV").read_text().splitlines()
+        assert sum(line.startswith("LATIN,") for line in lines) == 12
+    assert '"max_iterations": 12,' in saved(page, "Python").read_text()
+
+
+def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -> None:
+    page = open_page("?elements=20&instants=21&max_iterations=60")
+    expect(status(page)).to_contain_text("converged")
+    compared = page.get_by_role("combobox", name="Compare with")
+    compared.select_option("monoscale | multiscale")
+    expect(page.locator(".figures")).to_contain_text("A (multiscale off)")
+    expect(page.locator(".figures")).to_contain_text("at B's run time")
+    expect(card(page, "Friction force").first).to_contain_text("A, iteration 60")
+    slider(page, "Iteration").fill("7")
+    expect(card(page, "Friction force").first).to_contain_text("A, iteration 7")
+    page.wait_for_url(re.compile("iteration=7"))
+    assert 'compare={"multiscale":false}' in unquote(page.url)
+    page.reload()
+    expect(status(page)).to_contain_text("paused at iteration 7")
+    expect(card(page, "Friction force").first).to_contain_text("A, iteration 7")
+    expect(compared).to_have_value("monoscale | multiscale")
+    compared.select_option("nothing")
+    expect(page.locator(".figures")).not_to_contain_text("A (")
+
+
+def test_that_a_link_is_copied_is_said_and_that_it_could_not_be(open_page: Visit) -> None:
+    page = open_page(f"?{SMALL}")
+    expect(status(page)).to_contain_text("after 12 iterations")
+    page.evaluate(CLIPBOARD, "taken")
+    page.get_by_role("button", name="Link", exact=True).click()
+    expect(page.get_by_text("Copied: the link").first).to_be_visible()
+    assert "max_iterations=12" in page.evaluate("window.copied")
+    page.evaluate(CLIPBOARD, "refused")
+    page.get_by_role("button", name="Link", exact=True).click()
+    expect(page.get_by_text("Not copied").first).to_be_visible()
