@@ -139,7 +139,8 @@ def test_a_control_in_a_sentence_moves_the_run_and_shows_what_holds(page: Dashbo
     tell(page, "multiscale", False)
     assert page.session.wanted.values()["multiscale"] is False
     assert page._teaching.view.shown["multiscale"] is False
-    assert page._stands()[1].lesson == "coarse-problem"
+    page._link.follow()
+    assert "lesson=coarse-problem" in page._pulse.query
 
 
 def test_the_next_lesson_starts_its_own_run_which_is_compared_with_none_before(
