@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from app.comparing import CHOICES, choice_of, pair
-from app.form import POINTS, Form, item_of
+from app.form import POINTS, USUAL, Form, item_of
 from app.lesson import LESSONS
 from app.session import Session
 from app.uploads import load_in
@@ -177,6 +177,9 @@ class Sidebar:
             self._let_go(name)
         elif value == POINTS:
             self._on_setting(name, points_of(self._session.wanted, name))
+        elif value == USUAL:
+            settings = self._session.wanted
+            self._on_setting(name, settings.usual(settings.method)[name])
         else:
             self._on_setting(name, value, by_hand=hand)
 
