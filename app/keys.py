@@ -48,14 +48,14 @@ class Keys(Prompt):
     own
         Those that the browser follows by itself; plots hear them as the event "plot-key".
     hears
-        Whether keys move the run: while it is looked at.
+        Whether keys move the run: while it is looked at, once the page is built.
     key
         The last one pressed that the server follows, with a count to tell repeats apart.
     """
 
     keys = param.List(default=[list(key) for key in KEYS])
     own = param.List(default=list(IN_THE_BROWSER))
-    hears = param.Boolean(default=True)
+    hears = param.Boolean(default=False)
     key = param.String(default="")
 
     _esm = "keys.js"

@@ -63,9 +63,9 @@ WARM_ITEM = {
     "name": WARM,
     "kind": "flip",
     "label": "Start from the run before",
-    "help": "When a setting changes, start from the last iterate of the run before, "
-    "if one iteration from there leaves less than a fourth of the k-free indicator that "
-    "one from the start above leaves. Reset never does. The time of both is billed.",
+    "help": "When a setting changes, begin with the solution of the run before, if one iteration "
+    "shows it to be much nearer to the new one: its k-free indicator is then below a fourth of "
+    "that from the usual start. The time of both is counted. Reset always takes the usual start.",
     "group": METHOD,
 }
 VIEWS_ITEM = {"name": VIEWS, "kind": "checks", "help": "What is drawn.", "group": "Views"}
