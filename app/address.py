@@ -27,6 +27,7 @@ PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
 CLASS = "class"
 """Names in an address the class that a page follows."""
 MOST_STEPS = 100_000
+VIEWS = ("page", "present", "embed")
 MOST_TOLD = 3
 LONGEST_NAME = 40
 
@@ -41,6 +42,8 @@ class Sight:
         As a share of the interval.
     iteration
         At which the run waits; 0 has it go on.
+    view
+        "page" has controls, "present" is for a projector, "embed" for a frame in a course page.
     """
 
     tab: str = TABS[0]
@@ -49,6 +52,7 @@ class Sight:
     lesson: str = ""
     iteration: int = 0
     theme: str = "light"
+    view: str = VIEWS[0]
 
 
 SIGHT: dict[str, Any] = {
@@ -58,6 +62,7 @@ SIGHT: dict[str, Any] = {
     "lesson": choice(next(iter(LESSONS)), LESSONS, "", group="", title=""),
     "iteration": count(0, (0, MOST_STEPS), (0, MOST_STEPS), "", group="", title=""),
     "theme": choice(Sight.theme, ("light", "dark"), "", group="", title=""),
+    "view": choice(Sight.view, VIEWS, "", group="", title=""),
 }
 NUMBERS = ("instant", "iteration")
 COMPARED = "compare"

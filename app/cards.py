@@ -7,7 +7,8 @@ from collections.abc import Callable
 import panel as pn
 
 from app.figures import make_figure
-from app.panes import column, text
+from app.innards import NamedColumn
+from app.panes import looks, text
 from app.views.drawing import View
 from app.views.legend import card_title
 
@@ -28,7 +29,9 @@ class Cards(dict[View, pn.Column]):
     def __missing__(self, view: View) -> pn.Column:
         words, tags = card_title(view.name, ()), [f"{view.slug}.title"]
         title = text(words, role="title", tags=tags, margin=(4, 6, 0, 12))
-        figure = make_figure(view, self._choices.get(view.plot.chooses, lambda height: None))
+        choose = self._choices.get(view.plot.chooses, lambda height: None)
+        figure = make_figure(view, choose)
         plot = pn.pane.Bokeh(figure, sizing_mode="stretch_both", margin=(0, 4))
-        self[view] = column(title, plot, role="card", sizing_mode="stretch_both")
+        options = {**looks("card"), "sizing_mode": "stretch_both", "margin": 0}
+        self[view] = NamedColumn(title, plot, spoken=view.name, **options)
         return self[view]

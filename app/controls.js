@@ -11,11 +11,9 @@ function controls(model) {
     model.send_msg({name: row.name, value, hand, count})
   }
   const written = (value, item) => {
-    const rounded = Number(value.toPrecision(item.log ? 3 : 4)), size = Math.abs(rounded)
-    if (size === 0 || (size >= 1e-3 && size < 1e5)) { return rounded.toString() }
-    const [digits, power] = rounded.toExponential().split("e")
-    const raised = [...power.replace("+", "")].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[one] ?? "⁻").join("")
-    return (digits === "1" ? "" : digits + "·") + "10" + raised
+    const rounded = Number(value.toPrecision(item.log ? 4 : 6)), size = Math.abs(rounded)
+    if (size === 0 || (size >= 1e-2 && size < 1e5)) { return rounded.toString() }
+    return rounded.toExponential().replace("+", "")
   }
   const named = (item, input) => {
     input.ariaLabel = item.label
@@ -28,7 +26,8 @@ function controls(model) {
   const slider = (row, item) => {
     const step = item.whole && !item.log ? 1 : "any"
     const range = named(item, make("input", {type: "range", step}))
-    const text = make("output")
+    const field = named(item, make("input", {className: "number", inputMode: "decimal"}))
+    const label = make("label", {className: "typed"}, make("span", {}, item.label), field)
     let {start, end} = item
     const place = (value) => item.log ? Math.log10(value) : value
     const read = () => {
@@ -39,9 +38,11 @@ function controls(model) {
       return Math.min(Math.max(value, start), end)
     }
     const say = (value) => {
-      text.textContent = range.ariaValueText = written(value, item)
+      range.ariaValueText = written(value, item)
       range.ariaValueNow = value
+      if (!field.typed) { field.value = written(value, item) }
     }
+    const reset = () => tell(row, item.usual)
     let last
     range.oninput = () => {
       if (read() === last) { return }
@@ -49,6 +50,18 @@ function controls(model) {
       tell(row, last, true)
     }
     range.onchange = () => tell(row, null)
+    range.onkeydown = (event) => {
+      if (["Delete", "Backspace"].includes(event.key)) { reset() }
+    }
+    range.ondblclick = label.firstElementChild.ondblclick = reset
+    field.onfocus = () => field.select()
+    field.oninput = () => { field.typed = true }
+    field.onchange = () => {
+      const text = field.value.trim().replace(",", "."), value = Number(text)
+      field.typed = false
+      // What is no number is refused as any other value, in the same words.
+      tell(row, text && Number.isFinite(value) ? value : text)
+    }
     row.show = (value) => {
       start = Math.min(start, value)
       end = Math.max(end, value)
@@ -58,7 +71,7 @@ function controls(model) {
       if (read() !== value || last === undefined) { range.value = place(value) }
       say(last = value)
     }
-    return [make("label", {}, item.label + ": ", text), range]
+    return [label, range]
   }
   const choice = (row, item) => {
     const select = named(item, make("select", {onchange: () => tell(row, select.value)}))

@@ -10,6 +10,7 @@ import panel as pn
 from app.address import TABS, Sight
 from app.banner import Banner
 from app.cards import Cards
+from app.keys import Keys
 from app.looks import Looks
 from app.page_link import PageLink
 from app.panes import column, page, text
@@ -17,6 +18,7 @@ from app.presence import Presence
 from app.pulse import Pulse
 from app.session import Session
 from app.sidebar import Sidebar
+from app.stage import Stage
 from app.tabs import Tabs
 from app.takeaway import Saver
 from app.teaching import Teaching
@@ -69,11 +71,11 @@ class Dashboard:
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
-        self._pulse = Pulse()
+        self._pulse, self._keys = Pulse(), Keys(css_classes=["keys"])
         self._presence = Presence(session, self._pulse)
-        self._listen()
         session.watch(complaint=complaint)
         self.transport = Transport(session)
+        self._listen()
         self._looks = Looks(session)
         chosen = {
             "instant": self.transport.choose_time,
@@ -96,7 +98,12 @@ class Dashboard:
             self.page.sidebar_open = False
             self._clear_the_header()
         self.page.dark_theme = self._sight.theme == "dark"
-        self._link = PageLink(session, self._pulse, self._tabs.bar, self.page, self._teaching)
+        self._stage = Stage(self.page, self._live)
+        self._stage.show(self._sight.view)
+        self._dress()
+        self._link = PageLink(
+            session, self._pulse, self._tabs.bar, self.page, self._teaching, self._stage
+        )
         self._sidebar.show(session.wanted)
         if self._sight.lesson:
             self._teaching.take(self._sight.lesson)
@@ -113,6 +120,7 @@ class Dashboard:
         self._presence.begin()
         self._begin(self._sight.iteration)
         self._on_narrow()
+        self._keys.hears = True
         self._tabs.bar.value = self._sight.tab
 
     def _begin(self, iteration: int) -> None:
@@ -135,6 +143,7 @@ class Dashboard:
             self._tabs.refresh()
         self._sidebar.obey()
         self._banner.catch_up()
+        self.transport.tick()
         self._pass_on(self.session.collect())
         self._log()
         is_lost = self._pulse.painted < self._pulse.frame
@@ -150,13 +159,14 @@ class Dashboard:
 
     def _listen(self) -> None:
         self._pulse.param.watch(self._on_painted, "painted")
-        self._pulse.param.watch(self._on_key, "key")
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
+        does = {**self.transport.keys(), "p": self._present}
+        self._keys.param.watch(lambda event: does[Keys.name_of(event)](), "key")
 
     def _make_live(self) -> pn.Column:
         words = [text(role=role, tags=[role]) for role in ("status", "figures")]
         heads = self._banner.view, self._teaching.view, self.transport.view
-        parts = *heads, *words, self._plots, self._pulse
+        parts = *heads, *words, self._plots, self._pulse, self._keys
         return column(*parts, role="live", margin=(4, 10))
 
     def _arrange(self) -> None:
@@ -169,7 +179,7 @@ class Dashboard:
         wanted = (room.views if room else ()) or own
         seen = [] if self._teaching.asks else fit
         self._shown = [view for view in seen if view.name in wanted]
-        there = self._shown[: self._room]
+        there = self._shown[: FIRST_ROW if self._stage.is_bare else self._room]
         self.transport.view.visible = self._saver.view.visible = room is None
         self.transport.arrange(session.wanted)
         cards = [self._cards[view] for view in there]
@@ -240,11 +250,17 @@ class Dashboard:
     def _teach(self, name: str) -> None:
         self._teaching.open(name)
 
+    def _dress(self) -> None:
+        """Have the style sheet know the view, and whether there is a lesson or its question."""
+        classes = ["taught", "asks"] if self._teaching.asks else ["taught"]
+        lesson = classes if self._teaching.lesson else []
+        self._live.css_classes = ["live", self._stage.view, *lesson]
+
     def _on_lesson(self) -> None:
         """Make room for a lesson, for its question alone, or for all else."""
-        classes = ["taught", "asks"] if self._teaching.asks else ["taught"]
-        self._live.css_classes = ["live", *(classes if self._teaching.lesson else ())]
-        self.page.sidebar_open = not (self._teaching.lesson or self._pulse.narrow)
+        self._dress()
+        is_aside = self._teaching.lesson or self._pulse.narrow or self._stage.is_bare
+        self.page.sidebar_open = not is_aside
         self._tabs.bar.value = TABS[0]
         self._arrange()
 
@@ -259,12 +275,12 @@ class Dashboard:
         self._tabs.leave_the_header()
 
     def _on_tab(self) -> None:
-        self._pulse.hears = self._tabs.shows_the_run
+        self._keys.hears = self._tabs.shows_the_run
         if self._tabs.shows_the_run:
             self.session.ask(afresh=True)
 
-    def _on_key(self, event: Any) -> None:
-        action = {" ": self.transport.toggle, "s": self.transport.step, "r": self.transport.reset}[
-            event.new[0]
-        ]
-        action()
+    def _present(self) -> None:
+        """Show the page as a projector needs it, or as usual again."""
+        self._stage.toggle()
+        self._dress()
+        self._arrange()

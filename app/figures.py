@@ -38,10 +38,14 @@ const wide = figure.inner_width, tall = figure.inner_height
 if (!(wide > 1 && tall > 1 && right > left)) { return }
 const scale = Math.max((right - left) / wide, (high - low) / tall)
 const x = 0.5 * (left + right), y = 0.5 * (low + high)
-figure.x_range.setv({start: x - 0.5 * scale * wide, end: x + 0.5 * scale * wide}, {sync: false})
-figure.y_range.setv({start: y - 0.5 * scale * tall, end: y + 0.5 * scale * tall}, {sync: false})
+const put = (range, middle, size) => {
+  const values = {start: middle - 0.5 * scale * size, end: middle + 0.5 * scale * size}
+  if (range.held) { range.held = values } else { range.setv(values, {sync: false}) }
+}
+put(figure.x_range, x, wide)
+put(figure.y_range, y, tall)
 """
-"""Makes both axes of one scale, however large the plot is."""
+"""Makes both axes of one scale, however large the plot is; not while one has zoomed in."""
 PICK = """
 const {xs, ys, value} = source.data, {x, y} = cb_obj
 const holds = (across, up) => {
@@ -131,8 +135,6 @@ def _axis(name: str, label: str, view: View) -> Axis:
     style: dict[str, Any] = {
         "name": named,
         "axis_label": label,
-        "axis_label_text_font_size": "14px",
-        "major_label_text_font_size": "13px",
         "axis_label_standoff": 4,
         "minor_tick_line_color": None,
     }
@@ -197,8 +199,6 @@ def _add_colors(made: Plot, view: View) -> None:
             title=plot.scale,
             width=10,
             padding=4,
-            title_text_font_size="12px",
-            major_label_text_font_size="12px",
             name=f"{slug}.bar",
         )
         made.add_layout(bar, "right")

@@ -29,11 +29,13 @@ export function render({model}) {
     return [...buttons, make("label", {}, item.label, upload)]
   }
   Object.assign(kinds, {checks, share})
+  const helped = (item) => (item.help || "") +
+    (item.usual ? " Double click, or Delete, brings back the usual value." : "")
   const added = (item) => {
     const written = JSON.stringify(item), kept = rows.get(item.name)
     if (kept && kept.written === written) { return kept }
     const row = {name: item.name, written, count: 0}
-    row.box = make("div", {className: `setting-${item.name}`, title: item.help || ""},
+    row.box = make("div", {className: `setting-${item.name}`, title: helped(item)},
       ...kinds[item.kind](row, item))
     return row
   }

@@ -15,22 +15,24 @@ from panel.custom import JSComponent
 from app.panes import script
 from solver.definitions import Curve, Parameter, about
 
-POINTS = "table of points"
+POINTS, USUAL = "table of points", "usual value"
+"""What stands for values that the browser does not know."""
 STYLE = """
 :host { font-size: 14px; line-height: 1.4; }
 h4 { margin: 14px 0 2px; font-size: 12px; font-weight: 400; letter-spacing: 0.08em;
   text-transform: uppercase; }
 div[title] { margin: 6px 0; }
 label { display: block; }
-output { font-weight: 600; }
+.typed { display: flex; align-items: baseline; justify-content: space-between; gap: 8px; }
 summary { margin-top: 14px; cursor: pointer; }
 input[type=range] { display: block; width: 100%; margin: 4px 0 8px; cursor: pointer; }
 input { accent-color: #1976d2; }
 select { display: block; width: 100%; margin-top: 2px; }
-select, td input, button { box-sizing: border-box; font: inherit; color: inherit;
+select, td input, .number, button { box-sizing: border-box; font: inherit; color: inherit;
   background: transparent; border-radius: 4px;
   border: 1px solid color-mix(in srgb, currentColor 30%, transparent); }
 select { padding: 6px 4px; }
+.number { width: 84px; padding: 1px 4px; font-weight: 600; text-align: right; }
 option { color: #222; background: #fff; }
 table { width: 100%; border-collapse: collapse; }
 thead td { opacity: 0.75; }
@@ -95,4 +97,5 @@ def item_of(name: str, definition: Parameter) -> dict[str, Any] | None:
         "step": 10.0 ** math.floor(math.log10((high - low) / 80)),
         "log": record.logarithmic,
         "whole": isinstance(definition, param.Integer),
+        "usual": USUAL,
     }

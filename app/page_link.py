@@ -10,6 +10,7 @@ from app.address import PACES, Sight, query_of
 from app.classroom import Room
 from app.pulse import Pulse
 from app.session import Session
+from app.stage import Stage
 from app.teaching import Teaching
 from app.worker.reports import Facts
 from solver.settings import Settings
@@ -34,12 +35,20 @@ class PageLink:
         Knows its theme.
     teaching
         Knows its lesson.
+    stage
+        Knows how much stands around the plots.
     """
 
     def __init__(
-        self, session: Session, pulse: Pulse, tab: Any, page: Any, teaching: Teaching
+        self,
+        session: Session,
+        pulse: Pulse,
+        tab: Any,
+        page: Any,
+        teaching: Teaching,
+        stage: Stage,
     ) -> None:
-        self._session, self._pulse = session, pulse
+        self._session, self._pulse, self._stage = session, pulse, stage
         self._tab, self._page, self._teaching = tab, page, teaching
         self._stood: Standing | None = None
         pulse.param.watch(lambda event: _tell(is_done=event.new > 0), "copied")
@@ -63,6 +72,7 @@ class PageLink:
             lesson=self._teaching.name,
             iteration=waits_at(session.facts, goes_on=session.goes_on),
             theme="dark" if self._page.dark_theme else "light",
+            view=self._stage.view,
         )
         return session.wanted, sight, session.attendance.follows, session.twin
 

@@ -11,6 +11,7 @@ import panel_material_ui as pmui
 from panel_material_ui.template.base import Page
 
 from app.innards import ignore_business
+from app.theme import TEMPLATE
 
 APP = Path(__file__).resolve().parent
 STATIC = APP.parent / "static"
@@ -19,12 +20,12 @@ STYLE = (STATIC / "style.css").read_text(encoding="utf-8")
 
 def column(*parts: Any, role: str, **options: Any) -> pn.Column:
     """Put parts one below the other."""
-    return pn.Column(*parts, **{"margin": 0, **_looks(role), **options})
+    return pn.Column(*parts, **{"margin": 0, **looks(role), **options})
 
 
 def text(html: str = "", *, role: str, **options: Any) -> pn.pane.HTML:
     """Show words; pictures find them by their tag, if they have one."""
-    return pn.pane.HTML(html, **{"margin": (2, 10), **_looks(role), **options})
+    return pn.pane.HTML(html, **{"margin": (2, 10), **looks(role), **options})
 
 
 def button(label: str, icon: str, act: Callable[[], None], **options: Any) -> pmui.Button:
@@ -59,12 +60,14 @@ def page(sidebar: list[Any], header: Any, main: Any) -> Page:
         header=[header],
         main=[main],
         busy_indicator=None,
+        template=TEMPLATE,
         meta_description="A laboratory for frictional contact: LATIN iterations, live.",
     )
     ignore_business(made)
     return made
 
 
-def _looks(role: str) -> dict[str, Any]:
+def looks(role: str) -> dict[str, Any]:
+    """Give what has the style sheet know a pane by its roles."""
     classes = role.split()
     return {"css_classes": classes, "stylesheets": [STYLE], "sizing_mode": "stretch_width"}

@@ -54,8 +54,25 @@ export function render({model, view}) {
       const one = named(name)
       if (!one) { continue }
       const values = read(buffer, 4 + length + part.at, part.set)
-      one.setv(one.type === "ColumnDataSource" ? {data: values} : values, {sync: false})
+      // An axis that somebody has zoomed (`lens.js`) stays where it is.
+      if (one.held) { Object.assign(one.held, values) }
+      else { one.setv(one.type === "ColumnDataSource" ? {data: values} : values, {sync: false}) }
     }
+  }
+  // The whole line changes many times a second: only what the run has come to is spoken.
+  const spoken = document.createElement("span")
+  spoken.setAttribute("role", "status")
+  Object.assign(spoken.style, {position: "absolute", width: "1px", height: "1px",
+    overflow: "hidden", clipPath: "inset(50%)", whiteSpace: "nowrap"})
+  const plain = document.createElement("textarea")
+  let state = ""
+  const speak = () => {
+    plain.innerHTML = named("status")?.text ?? ""
+    const now = /<b>(.*?)<.b>/.exec(plain.value)?.[1] ?? ""
+    if (now !== state && !/^(running|follows)/.test(now)) {
+      spoken.textContent = plain.value.replaceAll(/<[^>]*>/g, " ")
+    }
+    state = now
   }
   // A socket may close, or, where a network only falls silent, stay open for minutes.
   let lost = false, gone = false, closed = null, beats = 0
@@ -104,11 +121,11 @@ export function render({model, view}) {
     closed = null
     const frame = model.frame
     paint()
+    speak()
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
       model.painted = frame
     })))
   })
-  let count = 0
   if (window.innerWidth < 640) { model.phone = true }
   if (window.innerWidth < 900) { model.narrow = true }
   // The address bar follows, so that a reload comes back; browsers refuse to do it very often.
@@ -126,30 +143,13 @@ export function render({model, view}) {
     done.then(() => { model.copied = count }, () => { model.copied = -count })
   })
   const look = () => { model.hidden = document.visibilityState === "hidden" }
-  const press = (event) => {
-    const typed = event.composedPath()[0]
-    const writes = typed.tagName === "INPUT" && typed.type !== "range" ||
-      typed.tagName === "TEXTAREA" || typed.isContentEditable
-    if (writes || event.ctrlKey || event.metaKey || event.altKey) { return }
-    if (!model.hears || event.repeat || ![" ", "s", "r"].includes(event.key)) { return }
-    // In an open list letters choose; the space bar presses what has the focus.
-    const lists = "[role=option], [role=menuitem], [role=listbox], [role=menu], select"
-    const presses = ", button, summary, [role=combobox], [role=switch]"
-    const keeps = event.key === " " ? lists + presses : lists
-    if (typed.closest && typed.closest(keeps)) { return }
-    event.preventDefault()
-    count += 1
-    model.key = event.key + count
-  }
   document.addEventListener("visibilitychange", look)
-  document.addEventListener("keydown", press)
   model.on("remove", () => {
     gone = true
     clearInterval(timer)
     clearTimeout(due)
     document.removeEventListener("visibilitychange", look)
-    document.removeEventListener("keydown", press)
   })
   look()
-  return document.createElement("span")
+  return spoken
 }

@@ -1,4 +1,4 @@
-"""The thread between browser and server: pictures one way, acknowledgements and keys the other."""
+"""The thread between browser and server: pictures one way, acknowledgements the other."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ from app.innards import Prompt
 
 
 class Pulse(Prompt):
-    """An invisible component that paints pictures, says when they are painted, and hears keys."""
+    """An invisible component that paints pictures, and says when they are painted."""
 
     picture = param.Bytes(default=b"", doc="The newest picture, as `app.worker.block` packs it.")
     frame = param.Integer(default=0, doc="Number of the newest picture sent.")
     painted = param.Integer(default=0, doc="Number of the newest picture painted.")
-    hears = param.Boolean(default=True, doc="Whether keys move the run.")
-    key = param.String(default="", doc="The last key pressed, with a count to tell repeats apart.")
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")

@@ -1,11 +1,18 @@
-export function render({model, el}) {
+export function render({model}) {
   const label = document.createElement("label")
   const text = document.createElement("output")
   const range = document.createElement("input")
   range.type = "range"
+  const button = document.createElement("button")
+  button.onclick = () => { model.pressed += 1 }
   label.append(document.createElement("span"), text, range)
+  const root = document.createElement("div")
+  root.append(button, label)
   const show = () => {
     label.title = model.help
+    button.hidden = !model.plays
+    button.textContent = model.playing ? "■" : "▶"
+    button.title = button.ariaLabel = model.plays
     range.ariaLabel = model.label
     label.firstChild.textContent = model.label + ": "
     text.textContent = model.text
@@ -19,7 +26,7 @@ export function render({model, el}) {
     window.addEventListener("pointerup", () => { held = false }, {once: true})
   })
   range.addEventListener("input", () => { model.wanted = Number(range.value) })
-  for (const name of ["label", "text", "start", "end", "shown"]) { model.on(name, show) }
+  for (const name of ["label", "text", "start", "end", "shown", "playing"]) { model.on(name, show) }
   show()
-  return label
+  return root
 }

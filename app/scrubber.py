@@ -18,6 +18,9 @@ STYLE = """
 label { display: block; font-size: 15px; line-height: 1.4; white-space: nowrap; }
 output { font-weight: 600; }
 input { display: block; width: 100%; margin: 4px 0; accent-color: #1976d2; cursor: pointer; }
+button { float: right; padding: 0 6px; font: inherit; line-height: 1.3; color: inherit;
+  background: transparent; border-radius: 4px; cursor: pointer;
+  border: 1px solid color-mix(in srgb, currentColor 40%, transparent); }
 """
 
 
@@ -30,6 +33,12 @@ class Scrubber(Prompt):
         Where it stands.
     wanted
         Where the user moved it last.
+    plays
+        What its button says that plays through it; without words there is none.
+    playing
+        Whether it does.
+    pressed
+        Counts how often that button was pressed.
     """
 
     label = param.String(default="")
@@ -39,6 +48,9 @@ class Scrubber(Prompt):
     end = param.Integer(default=1)
     shown = param.Integer(default=0)
     wanted = param.Integer(default=-1)
+    plays = param.String(default="")
+    playing = param.Boolean(default=False)
+    pressed = param.Integer(default=0)
 
     _esm = "scrubber.js"
     _stylesheets: ClassVar[list[str]] = [STYLE]

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from app.comparing import CHOICES, choice_of, pair
-from app.form import POINTS, Form, item_of
+from app.form import POINTS, USUAL, Form, item_of
 from app.lesson import LESSONS
 from app.session import Session
 from app.uploads import load_in
@@ -63,9 +63,9 @@ WARM_ITEM = {
     "name": WARM,
     "kind": "flip",
     "label": "Start from the run before",
-    "help": "When a setting changes, start from the last iterate of the run before, "
-    "if one iteration from there leaves less than a fourth of the k-free indicator that "
-    "one from the start above leaves. Reset never does. The time of both is billed.",
+    "help": "When a setting changes, begin with the solution of the run before, if one iteration "
+    "shows it to be much nearer to the new one: its k-free indicator is then below a fourth of "
+    "that from the usual start. The time of both is counted. Reset always takes the usual start.",
     "group": METHOD,
 }
 VIEWS_ITEM = {"name": VIEWS, "kind": "checks", "help": "What is drawn.", "group": "Views"}
@@ -177,6 +177,9 @@ class Sidebar:
             self._let_go(name)
         elif value == POINTS:
             self._on_setting(name, points_of(self._session.wanted, name))
+        elif value == USUAL:
+            settings = self._session.wanted
+            self._on_setting(name, settings.usual(settings.method)[name])
         else:
             self._on_setting(name, value, by_hand=hand)
 

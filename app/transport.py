@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import panel as pn
@@ -21,6 +24,8 @@ LABELS = {
 }
 FIXED = 5
 """Buttons, pace and sliders, which always stand there."""
+PLAYED_IN = 8.0
+"""Seconds in which one plays through time."""
 
 
 class Transport:
@@ -34,6 +39,7 @@ class Transport:
 
     def __init__(self, session: Session) -> None:
         self._session = session
+        self._played: tuple[float, float] | None = None
         self._make_buttons()
         self._make_sliders()
         self._sliders = pn.FlexBox(
@@ -56,6 +62,19 @@ class Transport:
             css_classes=["transport"],
         )
 
+    def keys(self) -> dict[str, Callable[[], None]]:
+        """Give what keys do, by their names."""
+        return {
+            " ": self.toggle,
+            "s": self.step,
+            "r": self.reset,
+            "t": self.play,
+            "ArrowLeft": partial(self.move_instant, -1),
+            "ArrowRight": partial(self.move_instant, 1),
+            "Shift+ArrowLeft": partial(self.move_iteration, -1),
+            "Shift+ArrowRight": partial(self.move_iteration, 1),
+        }
+
     def toggle(self) -> None:
         """Run or pause."""
         if self._session.goes_on:
@@ -77,8 +96,36 @@ class Transport:
     def choose_time(self, time: float) -> None:
         """Look at the instant nearest to a time, s."""
         if self._session.facts is not None:
-            phase = time / self._session.facts.duration
-            self._session.watch(phase=min(max(phase, 0.0), 1.0))
+            self._choose_phase(time / self._session.facts.duration)
+
+    def move_instant(self, by: int) -> None:
+        """Look at an instant so many later."""
+        if (facts := self._session.facts) is not None:
+            self._choose_phase((facts.instant + by) / max(facts.instants - 1, 1))
+
+    def move_iteration(self, by: int) -> None:
+        """Look at an iteration so many later."""
+        if (facts := self._session.facts) is not None:
+            self._session.seek(max(facts.iteration + by, 1))
+
+    def play(self) -> None:
+        """Go through time from the chosen instant, or from the first; or stop."""
+        phase = self._session.look.phase
+        is_stopped = self._played is None
+        self._played = (time.monotonic(), phase if phase < 1.0 else 0.0) if is_stopped else None
+        self._instant.playing = is_stopped
+
+    def tick(self) -> None:
+        """Look at the instant that one has come to, where one plays through time."""
+        facts = self._session.facts
+        if self._played is None or facts is None:
+            return
+        began, phase = self._played
+        last = max(facts.instants - 1, 1)
+        phase += (time.monotonic() - began) / PLAYED_IN
+        self._session.watch(phase=min(int(phase * last) / last, 1.0))
+        if phase >= 1.0:
+            self.play()
 
     def choose_substructure(self, number: float) -> None:
         """Look at the modes of another substructure, counted from 1."""
@@ -147,10 +194,12 @@ class Transport:
         )
         self._instant = scrubber(
             125,
-            lambda place: self._session.watch(phase=place / max(self._instant.end, 1)),
+            lambda place: self._choose_phase(place / max(self._instant.end, 1)),
             label="Instant",
-            help="The instant at which forces are drawn; a tap on the map chooses it too.",
+            help="The instant that is drawn; a tap on the map or the load path chooses it too.",
+            plays="Play through time, or stop (t).",
         )
+        self._instant.param.watch(lambda event: self.play(), "pressed")
         self._substructure = scrubber(
             118,
             self.choose_substructure,
@@ -158,6 +207,12 @@ class Transport:
             help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
             start=1,
         )
+
+    def _choose_phase(self, phase: float) -> None:
+        """Look at a share of the interval; who chooses one plays no more."""
+        if self._played is not None:
+            self.play()
+        self._session.watch(phase=min(max(phase, 0.0), 1.0))
 
     def _show_substructure(self, settings: Settings) -> None:
         last, chosen = settings.n_substructures, self._session.look.substructure

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from lone_link import LoneLink
 
-from app.form import POINTS, item_of
+from app.form import POINTS, USUAL, item_of
 from app.pages import Pages
 from app.session import Session
 from app.sidebar import Sidebar
@@ -45,6 +45,26 @@ def test_a_slider_that_was_refused_is_answered_when_it_is_let_go(sidebar: Sideba
     sidebar.hear("substructures", 51, True, 1)
     sidebar.hear("substructures", None, False, 2)
     assert (sidebar.view.shown["substructures"], sidebar.view.shown[""]) == (10, 2)
+
+
+def test_what_is_brought_back_has_the_value_of_its_method(sidebar: Sidebar) -> None:
+    for name, typed, usual in (("tolerance", 1e-3, 1e-10), ("pressure", 700.0, 5000.0)):
+        sidebar.hear(name, typed, False, 1)
+        sidebar.obey()
+        assert sidebar.view.shown[name] == typed
+        sidebar.hear(name, USUAL, False, 2)
+        sidebar.obey()
+        assert sidebar.view.shown[name] == usual
+
+
+def test_a_word_in_place_of_a_number_is_refused(sidebar: Sidebar) -> None:
+    told: list[str] = []
+    sidebar._complain = told.append
+    sidebar.hear("pressure", "many", False, 1)
+    sidebar.obey()
+    (words,) = told
+    assert words.startswith('pressure = "many" is refused; allowed: a number from')
+    assert sidebar.view.shown["pressure"] == 5000.0
 
 
 def test_an_edit_that_is_taken_stays(sidebar: Sidebar) -> None:

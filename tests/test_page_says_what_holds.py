@@ -60,6 +60,8 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
         ("?iteration=7&theme=dark", Sight(iteration=7, theme="dark"), []),
         ("?iteration=1.5&theme=blue", Sight(), ["iteration = 1.5", 'theme = "blue"']),
         ("?tab=figures", Sight("Figures"), []),
+        ("?view=present", Sight(view="present"), []),
+        ("?view=cinema", Sight(), ['view = "cinema"']),
         ("?tab=STUDY&pace=Fastest", Sight("Study"), ['pace = "Fastest"']),
         ("?instant=2&pace=7&tab=studies", Sight(), ["instant = 2", 'pace = "7"', '"studies"']),
         ("?instant=nan&tab=Figures&seed=2", Sight("Figures"), ["instant"]),

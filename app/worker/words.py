@@ -40,11 +40,15 @@ HEADS = (
 )
 ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
 MEANINGS = {
-    "LATIN indicator η": "Distance between the two stages of the method, which also depends on k.",
+    "Iteration": "The one that is shown; each improves all instants at once.",
+    "LATIN indicator η": "Distance between the two stages of the method; no error, as it also "
+    "depends on the search direction k.",
     "k-free indicator": "By how much the iterate breaks the laws of the interfaces, as a share of "
     "the energy in play, whatever k is.",
     "Estimated force error": "How wrong the contact force is, as the run itself estimates it, "
     "without a reference.",
+    "Displacement error": "Distance to the reference solution, as a share of its size.",
+    "Friction force error": "Distance to the reference solution, as a share of its size.",
     "Run time": "All that the run needs to end: set-up, iterations, indicators, estimate.",
     "Iterations to 1 %": "After which the friction force is within 1 % of the "
     "reference for the first time.",

@@ -1,0 +1,44 @@
+// What keeps a key to itself: letters choose in an open list, space and arrows move what has the focus.
+const LISTS = "[role=option], [role=menuitem], [role=listbox], [role=menu], select"
+const PRESSED = LISTS + ", button, summary, a, input:not([type=range]), [role=combobox]"
+const MOVED = LISTS + ", input, [role=combobox], [role=slider], [role=radiogroup]"
+
+export function render({model}) {
+  const dialog = document.createElement("dialog")
+  dialog.innerHTML = "<h2>Keys</h2><table></table>"
+  dialog.ariaLabel = "Keys"
+  const rows = model.keys.map(([, written, does]) => {
+    const row = document.createElement("tr")
+    row.append(document.createElement("th"), document.createElement("td"))
+    row.firstChild.textContent = written
+    row.lastChild.textContent = does
+    return row
+  })
+  dialog.querySelector("table").append(...rows)
+  dialog.onclick = () => dialog.close()
+  const button = document.createElement("button")
+  Object.assign(button, {textContent: "?", title: "List all keys (?).", ariaLabel: "List all keys"})
+  button.onclick = () => dialog.showModal()
+  const names = new Set([...model.keys.map(([name]) => name), ...model.own])
+  let count = 0
+  const press = (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || !model.hears) { return }
+    const {key} = event, name = event.shiftKey && key.startsWith("Arrow") ? "Shift+" + key : key
+    if (!names.has(name) || event.repeat && !key.startsWith("Arrow")) { return }
+    const typed = event.composedPath()[0]
+    const writes = typed.tagName === "INPUT" && !["range", "checkbox", "radio"].includes(typed.type)
+    if (writes || typed.tagName === "TEXTAREA" || typed.isContentEditable) { return }
+    const keeps = key.startsWith("Arrow") ? MOVED : key === " " ? PRESSED : LISTS
+    if (typed.closest && typed.closest(keeps) || dialog.open) { return }
+    event.preventDefault()
+    if (name === "?") { dialog.showModal() }
+    else if (model.own.includes(name)) {
+      document.dispatchEvent(new CustomEvent("plot-key", {detail: name}))
+    } else { model.key = name + "#" + (count += 1) }
+  }
+  document.addEventListener("keydown", press)
+  model.on("remove", () => document.removeEventListener("keydown", press))
+  const root = document.createElement("div")
+  root.append(button, dialog)
+  return root
+}

@@ -1,0 +1,68 @@
+"""The keys of the page, and the dialog that lists them."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import param
+
+from app.innards import Prompt
+
+KEYS = (
+    (" ", "Space", "run or pause"),
+    ("s", "s", "do one iteration"),
+    ("r", "r", "start the run again"),
+    ("t", "t", "play through time, or stop"),
+    ("ArrowLeft", "←", "the instant before"),
+    ("ArrowRight", "→", "the next instant"),
+    ("Shift+ArrowLeft", "Shift ←", "the iteration before"),
+    ("Shift+ArrowRight", "Shift →", "the next iteration"),
+    ("p", "p", "presenter view, for a projector, and back"),
+    ("f", "f", "one plot on the whole page: that with the pointer or the focus; Escape: back"),
+    ("+", "+ −", "zoom in and out of that plot; so does the wheel with Ctrl"),
+    ("0", "0", "all of that plot again; so does a double click"),
+    ("?", "?", "this list"),
+)
+"""Name of the key, how it is written, and what it does."""
+IN_THE_BROWSER = ("f", "+", "-", "0", "?")
+STYLE = """
+button { font: inherit; color: inherit; background: transparent; cursor: pointer;
+  width: 28px; height: 28px; border-radius: 14px;
+  border: 1px solid color-mix(in srgb, currentColor 45%, transparent); }
+dialog { border: 0; border-radius: 8px; padding: 16px 24px 20px; font-size: 17px; line-height: 1.7;
+  color: var(--mui-palette-text-primary); background: var(--mui-palette-background-paper);
+  box-shadow: 0 8px 40px rgba(0, 0, 0, 0.5); }
+dialog::backdrop { background: rgba(0, 0, 0, 0.35); }
+h2 { margin: 0 0 8px; font-size: 20px; }
+th { padding-right: 20px; text-align: left; white-space: nowrap; }
+"""
+
+
+class Keys(Prompt):
+    """A small button that lists the keys; it hears them wherever they are free.
+
+    Attributes
+    ----------
+    keys
+        Which there are, as `KEYS` says.
+    own
+        Those that the browser follows by itself; plots hear them as the event "plot-key".
+    hears
+        Whether keys move the run: while it is looked at, once the page is built.
+    key
+        The last one pressed that the server follows, with a count to tell repeats apart.
+    """
+
+    keys = param.List(default=[list(key) for key in KEYS])
+    own = param.List(default=list(IN_THE_BROWSER))
+    hears = param.Boolean(default=False)
+    key = param.String(default="")
+
+    _esm = "keys.js"
+    _stylesheets: ClassVar[list[str]] = [STYLE]
+
+    @staticmethod
+    def name_of(event: Any) -> str:
+        """Give the name of the key that a change of `key` tells of."""
+        name: str = event.new.partition("#")[0]
+        return name

@@ -1,0 +1,172 @@
+export function render({model, view}) {
+  const root = document.createElement("div"), said = document.createElement("output")
+  const button = document.createElement("button")
+  root.append(said, button)
+  root.hidden = true
+  let found = new Map(), card = null, figure = null, pointer = null, alone = null
+  const {document: doc} = view.model
+  const figures = () => [...doc._all_models.values()].filter((one) => one.type === "Plot")
+  const look = () => {
+    found = new Map(figures().map((one) => [Bokeh.index.find_one_by_id(one.id), one])
+      .filter(([seen]) => seen).map(([seen]) => [seen.el, seen]))
+  }
+  // The element of a card and the view of its figure, of all that an event passes through.
+  const met = (path) => {
+    const on = path.find((one) => one.classList?.contains("card"))
+    if (!on?.shadowRoot) { return [null, null] }
+    const plot = on.shadowRoot.querySelector(".bk-Plot")
+    if (plot && !found.has(plot)) { look() }
+    return [on, found.get(plot) ?? null]
+  }
+  const put = () => {
+    root.hidden = !card?.isConnected
+    if (root.hidden) { return }
+    const {right, top} = card.getBoundingClientRect()
+    root.style.right = `${document.documentElement.clientWidth - right + 5}px`
+    root.style.top = `${top + 4}px`
+    button.textContent = card === alone ? "✕" : "⤢"
+    button.title = button.ariaLabel = card === alone ? "All plots (Escape)" : "Whole page (f)"
+  }
+  const place = () => {
+    if (!figure || !pointer) { return null }
+    const {left, top} = figure.canvas_view.el.getBoundingClientRect(), {bbox} = figure.frame
+    const [x, y] = [pointer.clientX - left, pointer.clientY - top]
+    if (!bbox.contains(x, y)) { return null }
+    return [figure.frame.x_scale.invert(x), figure.frame.y_scale.invert(y)]
+  }
+  const written = (value, axis) => {
+    const unit = /\(([^()]*)\)$/.exec(axis.axis_label ?? "")?.[1] ?? ""
+    return `${Number(value.toPrecision(3))} ${unit}`.trim().replace("-", "−")
+  }
+  const say = () => {
+    const at = place(), [across] = figure?.model.below ?? [], [up] = figure?.model.left ?? []
+    said.textContent = at && across ? `${written(at[0], across)}, ${written(at[1], up)}` : ""
+  }
+  let due = 0
+  const follow = (event) => {
+    pointer = event
+    if (due || event.composedPath().includes(root)) { return }
+    const path = event.composedPath()
+    due = requestAnimationFrame(() => {
+      due = 0;
+      [card, figure] = met(path)
+      put()
+      say()
+    })
+  }
+  const focus = (event) => {
+    if (event.composedPath().includes(root)) { return }
+    pointer = null;
+    [card, figure] = met(event.composedPath())
+    put()
+    say()
+  }
+  // While one has zoomed in, what pictures want of an axis is kept for afterwards (`pulse.js`).
+  const release = (one) => {
+    if (!one?.held) { return }
+    const held = one.held
+    delete one.held
+    one.setv(held, {sync: false})
+  }
+  const ticker = (axis) => axis?.ticker.type === "FixedTicker" ? axis.ticker : null
+  const all = (plot = figure) => {
+    if (!plot) { return }
+    const {x_range, y_range, below, left} = plot.model
+    for (const one of [x_range, y_range, ticker(below[0]), ticker(left[0])]) { release(one) }
+  }
+  const ticks = (one, {start, end}) => {
+    if (!one) { return }
+    one.held ??= {ticks: one.ticks}
+    const first = Math.floor(Math.log10(start)), steps = end / start < 1e3 ? [1, 2, 5] : [1]
+    const powers = Array.from({length: Math.ceil(Math.log10(end)) - first}, (_, i) => first + i)
+    one.setv({ticks: powers.flatMap((p) => steps.map((s) => s * 10 ** p))}, {sync: false})
+  }
+  const zoomed = (range, scale, at, by) => {
+    const [to, from] = scale.type === "LogScale" ? [Math.log, Math.exp] : [(v) => v, (v) => v]
+    const held = range.held ??= {start: range.start, end: range.end}
+    const middle = to(at ?? from((to(range.start) + to(range.end)) / 2))
+    const moved = (value) => from(middle + (to(value) - middle) * by)
+    const values = {start: moved(range.start), end: moved(range.end)}
+    range.setv(values, {sync: false})
+    return to(values.end) - to(values.start) < to(held.end) - to(held.start)
+  }
+  const zoom = (by) => {
+    if (!figure) { return }
+    const {x_range, y_range, x_scale, y_scale, below, left} = figure.model
+    const [x, y] = place() ?? []
+    const isIn = zoomed(x_range, x_scale, x, by) && zoomed(y_range, y_scale, y, by)
+    if (!isIn) { return all() }
+    ticks(ticker(below[0]), x_range)
+    ticks(ticker(left[0]), y_range)
+  }
+  const wheel = (event) => {
+    const [on] = met(event.composedPath())
+    if (!on || !event.ctrlKey && on !== alone) { return }
+    event.preventDefault()
+    pointer = event
+    zoom(event.deltaY > 0 ? 1.25 : 0.8)
+    say()
+  }
+  const enlarge = (one) => {
+    alone?.classList.remove("alone")
+    all()
+    alone = one
+    one?.classList.add("alone")
+    requestAnimationFrame(put)
+  }
+  const leave = (event) => {
+    if (event.key === "Escape" && alone) { enlarge(null) }
+  }
+  const keys = {
+    "f": () => enlarge(alone?.isConnected ? null : card), "0": () => all(),
+    "+": () => zoom(0.8), "-": () => zoom(1.25),
+  }
+  const press = (event) => keys[event.detail]?.()
+  const back = (event) => { if (met(event.composedPath())[0]) { all() } }
+  button.onclick = () => keys.f()
+  // The theme, which knows of no projector, sets the type of axes whenever it changes.
+  const SIZES = {
+    axis_label_text_font_size: 14, major_label_text_font_size: 13, title_text_font_size: 13,
+    text_font_size: 13,
+  }
+  const heard = new Set()
+  let late = 0
+  const enforce = (one, name) => {
+    const value = `${Math.round(SIZES[name] * model.magnified)}px`
+    // That of a glyph is a value for all its points.
+    if ((one[name]?.value ?? one[name]) === value) { return }
+    one.setv({[name]: value}, {sync: false})
+    clearTimeout(late)
+    late = setTimeout(() => {
+      for (const one of figures()) { Bokeh.index.find_one_by_id(one.id)?.invalidate_layout() }
+    }, 50)
+  }
+  const size = () => {
+    if (model.magnified === 1 && !heard.size) { return }
+    const parts = figures().flatMap(({below, left, right, renderers}) =>
+      [...below, ...left, ...right, ...renderers.map(({glyph}) => glyph)])
+    for (const one of parts) {
+      for (const name of Object.keys(SIZES).filter((name) => name in one.properties)) {
+        if (!heard.has(one)) { one.properties[name].change.connect(() => enforce(one, name)) }
+        enforce(one, name)
+      }
+      heard.add(one)
+    }
+  }
+  const grown = (event) => { if (event.attr === "children") { size() } }
+  const listeners = {pointermove: follow, focusin: focus, dblclick: back, keydown: leave,
+    "plot-key": press}
+  for (const [name, does] of Object.entries(listeners)) { document.addEventListener(name, does) }
+  document.addEventListener("wheel", wheel, {passive: false})
+  model.on("magnified", size)
+  doc.on_change(grown)
+  model.on("remove", () => {
+    doc.remove_on_change(grown)
+    document.removeEventListener("wheel", wheel)
+    for (const [name, does] of Object.entries(listeners)) {
+      document.removeEventListener(name, does)
+    }
+  })
+  size()
+  return root
+}

@@ -1,0 +1,40 @@
+"""Light or dark: as a link or the system has it; the browser remembers what one chooses."""
+
+from __future__ import annotations
+
+TEMPLATE = """
+{% extends "base.html" %}
+{% block preamble %}
+{{ super() }}
+<script>
+  (() => {
+    const root = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)")
+    const kept = () => { try { return localStorage.getItem("theme") } catch { return null } }
+    const show = (theme) => { root.dataset.theme = root.style.colorScheme = theme }
+    const follow = () => show(kept() ?? (dark.matches ? "dark" : "light"))
+    const linked = new URLSearchParams(location.search).get("theme")
+    if (["dark", "light"].includes(linked)) { show(linked) } else { follow() }
+    dark.addEventListener("change", follow)
+    document.addEventListener("click", (event) => {
+      if (!event.composedPath().some((one) => one.ariaLabel === "Toggle theme")) { return }
+      const chosen = root.dataset.theme === "dark" ? "light" : "dark"
+      try { localStorage.setItem("theme", chosen) } catch {}
+      show(chosen)
+    }, {capture: true})
+    // What is built light is covered until it is dark.
+    const uncover = () => {
+      const [page] = document.querySelectorAll(".bk-panel-models-esm-ReactComponent")
+      const built = page?.shadowRoot?.querySelector(`.mui-${root.dataset.theme} .main`)
+      if (built) { root.dataset.built = "" } else { requestAnimationFrame(uncover) }
+    }
+    uncover()
+  })()
+</script>
+<style>
+  html[data-theme=dark] body { background: #121212; color: #fff }
+  html[data-theme=dark]:not([data-built])::after { content: ""; position: fixed; inset: 0;
+    z-index: 9998; background: #121212 }
+</style>
+{% endblock %}
+"""
+"""The page's document, whose head decides before anything is painted."""

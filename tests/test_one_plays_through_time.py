@@ -1,0 +1,71 @@
+"""Time is played from the chosen instant to the end, until one stops it or chooses another."""
+
+from __future__ import annotations
+
+import pytest
+from lone_link import LoneLink
+
+from app import transport as module
+from app.pages import Pages
+from app.session import Session
+from app.transport import PLAYED_IN, Transport
+from app.worker.bench import Bench
+from app.worker.reports import Facts
+from solver.scenes.bar import BarSettings
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    made = Clock()
+    monkeypatch.setattr(module, "time", made)
+    return made
+
+
+@pytest.fixture
+def transport() -> Transport:
+    session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire)
+    session.facts = Facts(instants=11, instant=4)
+    session.watch(phase=0.4)
+    return Transport(session)
+
+
+def phase(transport: Transport) -> float:
+    return transport._session.look.phase
+
+
+def test_it_goes_on_from_the_chosen_instant_to_the_end_and_then_begins_again(
+    transport: Transport, clock: Clock
+) -> None:
+    transport.play()
+    seen = []
+    for _ in range(7):
+        transport.tick()
+        seen.append(round(phase(transport), 3))
+        clock.now += PLAYED_IN / 10 + 1e-6
+    assert seen == [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+    assert not transport._instant.playing
+    transport.play()
+    transport.tick()
+    assert phase(transport) == 0.0
+
+
+def test_who_chooses_an_instant_stops_it(transport: Transport, clock: Clock) -> None:
+    transport.play()
+    transport.move_instant(1)
+    clock.now += PLAYED_IN
+    transport.tick()
+    assert phase(transport) == 0.5
+
+
+def test_steps_through_time_end_at_both_ends(transport: Transport) -> None:
+    for by, end in ((20, 1.0), (-20, 0.0)):
+        transport.move_instant(by)
+        assert phase(transport) == end

@@ -1,0 +1,156 @@
+"""Numbers are typed, keys move the run, a class can read it, and the theme follows the system."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from pages import ENDLESS, Visit, card, slider, status
+from playwright.sync_api import Locator, Page, expect
+
+SERIOUS = ("serious", "critical")
+EXCEPTIONS = {
+    "aria-progressbar-name": "the page component's own bar, which never moves",
+    "aria-prohibited-attr": "its handle for the sidebar, and what its lists say when pointed at",
+}
+"""Of Panel's components, which take no other attributes."""
+SEEN = """(name) => {
+  const range = [...Bokeh.documents[0]._all_models.values()].find((one) => one.name === name)
+  return [range.start, range.end]
+}"""
+
+
+def field(page: Page, name: str) -> Locator:
+    return page.get_by_role("textbox", name=re.compile(rf"^{name}\b"))
+
+
+def settled(visit: Visit, query: str = "") -> Page:
+    page = visit(f"?elements=20&substructures=2&instants=11{query}")
+    expect(status(page)).to_contain_text("converged")
+    return page
+
+
+def test_a_number_is_typed_refused_in_words_and_brought_back_by_a_double_click(
+    open_page: Visit,
+) -> None:
+    page = settled(open_page)
+    typed = field(page, "Substructures")
+    typed.fill("4")
+    typed.press("Enter")
+    expect(status(page)).to_contain_text("4 substructures")
+    typed.fill("many")
+    typed.press("Enter")
+    expect(page.get_by_text('substructures = "many" is refused').first).to_be_visible()
+    expect(typed).to_have_value("4")
+    factor = field(page, "Factor on k")
+    factor.fill("2e-3")
+    factor.press("Enter")
+    expect(slider(page, "Factor on k")).to_have_attribute("aria-valuenow", "0.002")
+    slider(page, "Factor on k").dblclick()
+    expect(factor).to_have_value("1")
+    slider(page, "Substructures").press("Delete")
+    expect(
+        page.get_by_text("elements is").or_(page.get_by_text("is refused")).first
+    ).to_be_visible()
+
+
+def test_keys_are_listed_step_through_time_and_play_it_to_its_end(open_page: Visit) -> None:
+    page = settled(open_page, "&instant=0")
+    body = page.locator("body")
+    body.press("?")
+    expect(page.get_by_text("presenter view, for a projector")).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.get_by_text("presenter view, for a projector")).to_be_hidden()
+    instant = page.locator("label", has_text=re.compile("^Instant:"))
+    body.press("ArrowRight")
+    expect(instant).to_contain_text("t = 0.1 s")
+    body.press("ArrowLeft")
+    expect(instant).to_contain_text("t = 0 s")
+    body.press("t")
+    expect(instant).to_contain_text(re.compile(r"t = 0\.[3-9] s"))
+    page.get_by_role("button", name="Play through time").click()
+    stopped = instant.inner_text()
+    page.wait_for_timeout(1500)
+    assert instant.inner_text() == stopped
+    slider(page, "Instant").press("ArrowRight")
+    expect(instant).not_to_contain_text(stopped.split("t = ")[1])
+
+
+def test_a_projector_has_one_row_without_controls_and_its_address_leads_back(
+    open_page: Visit,
+) -> None:
+    page = settled(open_page)
+    expect(page.locator(".card").nth(3)).to_be_attached()
+    page.locator("body").press("p")
+    expect(page.locator(".card")).to_have_count(3)
+    expect(page.get_by_role("button", name="Study", exact=True)).to_be_hidden()
+    expect(slider(page, "Substructures")).not_to_be_in_viewport()
+    expect(status(page)).to_be_visible()
+    expect(page).to_have_url(re.compile("view=present"))
+    expect(page.locator(".card").first).to_be_in_viewport(ratio=1)
+    page.wait_for_function(
+        """() => [...Bokeh.documents[0]._all_models.values()].some(
+          (one) => parseInt(one.axis_label_text_font_size) >= 20)"""
+    )
+    page.reload()
+    expect(status(page)).to_contain_text("converged")
+    expect(page.locator(".card")).to_have_count(3)
+    page.locator("body").press("p")
+    expect(page.get_by_role("button", name="Study", exact=True)).to_be_visible()
+
+
+def test_a_frame_of_a_course_page_has_plots_alone(open_page: Visit) -> None:
+    page = open_page("?view=embed", width=800, height=500)
+    expect(page.locator(".card")).to_have_count(3)
+    expect(status(page)).to_be_hidden()
+    expect(page.get_by_role("button", name="Run or pause")).to_be_hidden()
+
+
+def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_goes_on(
+    open_page: Visit,
+) -> None:
+    page = open_page(f"?{ENDLESS}")
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+    plot = card(page, "Friction force")
+    plot.hover()
+    expect(page.get_by_text(re.compile(r"^[0-9.]+ m, .* kN/m$"))).to_be_visible()
+    all_seen = page.evaluate(SEEN, "friction-force.x")
+    page.keyboard.press("f")
+    box = plot.bounding_box()
+    assert box is not None
+    assert (box["x"], box["width"], box["height"]) == (0, 1280, 720)
+    page.mouse.move(640, 360)
+    page.mouse.wheel(0, -100)
+    page.wait_for_function(f"(all) => ({SEEN})('friction-force.x')[1] < all[1]", arg=all_seen)
+    zoomed = page.evaluate(SEEN, "friction-force.x")
+    shown = status(page).inner_text()
+    expect(status(page)).not_to_have_text(shown)
+    assert page.evaluate(SEEN, "friction-force.x") == zoomed
+    page.keyboard.press("0")
+    assert page.evaluate(SEEN, "friction-force.x") == all_seen
+    page.keyboard.press("Escape")
+    expect(page.locator(".card.alone")).to_have_count(0)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_choice(
+    open_page: Visit, scheme: str
+) -> None:
+    page = settled(open_page)
+    page.emulate_media(color_scheme=scheme)
+    expect(page.locator(f".mui-{scheme}").first).to_be_visible()
+    expect(page.locator(".card").nth(3)).to_be_attached()
+    found = Axe().run(page).response["violations"]
+    assert [
+        (one["id"], [node["html"] for node in one["nodes"]])
+        for one in found
+        if one["impact"] in SERIOUS and one["id"] not in EXCEPTIONS
+    ] == []
+    expect(page.get_by_role("figure", name="Friction force")).to_be_visible()
+    page.get_by_role("button", name="Toggle theme").click()
+    other = {"light": "dark", "dark": "light"}[scheme]
+    expect(page.locator(f".mui-{other}").first).to_be_visible()
+    expect(page).to_have_url(re.compile("theme=dark" if other == "dark" else "^(?!.*theme=dark)"))
+    page.reload()
+    expect(page.locator(f".mui-{other}").first).to_be_visible()
