@@ -93,6 +93,16 @@ class Dashboard:
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, self._on_tab)
         self._sight = sight or Sight()
+        self._furnish(on_phone=on_phone)
+        self._sidebar.show(session.wanted)
+        if self._sight.lesson:
+            self._teaching.take(self._sight.lesson)
+        else:
+            self._arrange()
+        self._link.follow()
+
+    def _furnish(self, *, on_phone: bool) -> None:
+        """Make the page of its parts, in the theme and the view that are looked at first."""
         self.page = page([self._sidebar.view, self._saver.view], self._tabs.bar, self._tabs.main)
         if on_phone:
             self.page.sidebar_open = False
@@ -102,14 +112,8 @@ class Dashboard:
         self._stage.show(self._sight.view)
         self._dress()
         self._link = PageLink(
-            session, self._pulse, self._tabs.bar, self.page, self._teaching, self._stage
+            self.session, self._pulse, self._tabs.bar, self.page, self._teaching, self._stage
         )
-        self._sidebar.show(session.wanted)
-        if self._sight.lesson:
-            self._teaching.take(self._sight.lesson)
-        else:
-            self._arrange()
-        self._link.follow()
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
