@@ -258,7 +258,8 @@ class Dashboard:
         """Have the style sheet know the view, and whether there is a lesson or its question."""
         classes = ["taught", "asks"] if self._teaching.asks else ["taught"]
         lesson = classes if self._teaching.lesson else []
-        self._live.css_classes = ["live", self._stage.view, *lesson]
+        view = [self._stage.view] if self._stage.is_bare else []
+        self._live.css_classes = ["live", *view, *lesson]
 
     def _on_lesson(self) -> None:
         """Make room for a lesson, for its question alone, or for all else."""
