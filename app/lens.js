@@ -154,6 +154,13 @@ export function render({model, view}) {
     }
   }
   const grown = (event) => { if (event.attr === "children") { size() } }
+  // Bokeh lays a plot out too large that shrinks, as words above it grow, while it is painted.
+  const timer = setInterval(() => {
+    for (const one of figures()) {
+      const seen = Bokeh.index.find_one_by_id(one.id), laid = seen?.layout?.bbox
+      if (laid && laid.height !== seen.bbox.height) { seen.invalidate_layout() }
+    }
+  }, 500)
   const listeners = {pointermove: follow, focusin: focus, dblclick: back, keydown: leave,
     "plot-key": press}
   for (const [name, does] of Object.entries(listeners)) { document.addEventListener(name, does) }
@@ -161,6 +168,7 @@ export function render({model, view}) {
   model.on("magnified", size)
   doc.on_change(grown)
   model.on("remove", () => {
+    clearInterval(timer)
     doc.remove_on_change(grown)
     document.removeEventListener("wheel", wheel)
     for (const [name, does] of Object.entries(listeners)) {

@@ -100,6 +100,15 @@ def test_a_projector_has_one_row_without_controls_and_its_address_leads_back(
     expect(page.get_by_role("button", name="Study", exact=True)).to_be_visible()
 
 
+def test_a_plot_that_shrinks_as_words_above_it_grow_is_laid_out_anew(open_page: Visit) -> None:
+    page = settled(open_page, "&view=present")
+    page.wait_for_function(
+        """() => [...Bokeh.documents[0]._all_models.values()].filter((one) => one.type === "Plot")
+          .map((one) => Bokeh.index.find_one_by_id(one.id)).filter((one) => one?.layout)
+          .every((one) => one.layout.bbox.height === one.bbox.height)"""
+    )
+
+
 def test_a_frame_of_a_course_page_has_plots_alone(open_page: Visit) -> None:
     page = open_page("?view=embed", width=800, height=500)
     expect(page.locator(".card")).to_have_count(3)
