@@ -126,7 +126,8 @@ def test_thinned_mesh_covers_the_bodies_and_keeps_the_mean_stress(
     thin = Thinned(inside, settings)
     assert len(thin.mesh.quads) <= MOST_QUADS
     assert area(thin.mesh) == pytest.approx(
-        area(Mesh(inside.nodes.astype(np.float32), inside.elements.astype(np.int32))), rel=1e-4
+        area(Mesh(inside.nodes.astype(np.float32), inside.elements.astype(np.int32), inside.parts)),
+        rel=1e-4,
     )
     assert thin._counts.sum() == len(inside.elements)
     assert thin._counts.min() > 0
@@ -175,7 +176,8 @@ def test_a_run_without_a_reference_says_nothing_of_errors(layers: int, known: bo
 
 
 def test_magnification_shows_the_displacement_and_holds_while_it_does() -> None:
-    mesh = Mesh(np.array([[0.0, 0.0], [0.5, 0.1]], dtype=np.float32), np.zeros((0, 4), np.int32))
+    none = np.zeros((0, 4), np.int32)
+    mesh = Mesh(np.array([[0.0, 0.0], [0.5, 0.1]], dtype=np.float32), none, none[:, 0])
     assert fitting(mesh, 1e-5) == 2000.0
     assert fitting(mesh, 1.3e-5, 2000.0) == 2000.0
     assert fitting(mesh, 1e-2, 2000.0) == 2.0
