@@ -91,20 +91,21 @@ def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
 
 def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: Browser) -> None:
     with behind_a_network(tmp_path / "log", chrome) as (proxy, _, page):
+        heard = keys_heard(page)
         proxy.cut()
         expect(status(page)).to_contain_text("not connected")
         proxy.mend()
         expect(status(page)).to_contain_text("6 substructures")
-        # Nothing is left of what Bokeh asked for, and the page hears its keys once.
+        # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
         page.wait_for_function("window.stayed && Bokeh.documents.length === 1")
-        assert keys_heard(page) == 1
+        assert keys_heard(page) == heard > 0
         proxy.hush()
         expect(status(page)).to_contain_text("not connected")
         proxy.mend()
         expect(status(page)).to_contain_text("6 substructures")
-        # Nothing is left of what Bokeh asked for, and the page hears its keys once.
+        # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
         page.wait_for_function("window.stayed && Bokeh.documents.length === 1")
-        assert keys_heard(page) == 1
+        assert keys_heard(page) == heard > 0
 
 
 def test_a_page_that_was_given_up_meanwhile_is_made_anew(tmp_path: Path, chrome: Browser) -> None:
