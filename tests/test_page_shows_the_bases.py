@@ -18,9 +18,9 @@ def test_views_of_the_bases_come_and_go_and_one_that_is_not_wanted_stays_away(
     open_page: Visit,
 ) -> None:
     page = open_page(f"?{ENDLESS}")
-    expect(page.locator(".card")).to_have_count(6)
+    expect(page.locator(".card")).to_have_count(8)
     choose_linear_stage(page, "pgd")
-    expect(page.locator(".card")).to_have_count(9)
+    expect(page.locator(".card")).to_have_count(11)
     expect(status(page)).to_contain_text(re.compile("modes? at most, [0-9]+ stored"))
     for name in VIEWS:
         expect(page.get_by_role("checkbox", name=name)).to_be_checked()
@@ -28,16 +28,16 @@ def test_views_of_the_bases_come_and_go_and_one_that_is_not_wanted_stays_away(
     expect(card(page, "Error against run time")).to_contain_text("full stage")
     expect(card(page, "Singular values")).to_contain_text("PGD, sub. 10")
     page.get_by_role("checkbox", name="PGD basis size").click()
-    expect(page.locator(".card")).to_have_count(8)
+    expect(page.locator(".card")).to_have_count(10)
     choose_linear_stage(page, "full")
-    expect(page.locator(".card")).to_have_count(6)
+    expect(page.locator(".card")).to_have_count(8)
     expect(page.get_by_role("checkbox", name=re.compile("^PGD"))).to_have_count(0)
     expect(slider(page, "Substructure")).to_have_count(0)
     expect(status(page)).not_to_contain_text("stored")
     expect(card(page, "Singular values")).not_to_contain_text("PGD")
     expect(card(page, "Convergence")).not_to_contain_text("full stage")
     choose_linear_stage(page, "pgd")
-    expect(page.locator(".card")).to_have_count(8)
+    expect(page.locator(".card")).to_have_count(10)
     expect(page.get_by_role("checkbox", name="PGD basis size")).not_to_be_checked()
 
 
