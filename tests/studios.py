@@ -19,6 +19,14 @@ from app.worker.shown import Look
 from app.worker.studio import Studio
 
 ALL = Look(views=tuple(view.name for view in VIEWS))
+SMALL: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 20, "instants": 21, "substructures": 4},
+    "strand": {"elements": 10, "instants": 11},
+    "block": {"elements": 16, "elements_up": 6, "instants": 13},
+    "layers": {"elements": 16, "layers": 2, "instants": 13},
+    "incline": {"elements": 12, "elements_up": 6, "instants": 13},
+}
+"""Settings of every scene with which a run takes next to no time."""
 Models = dict[str, dict[str, Any]]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, Shown
+from studios import ALL, SMALL, Shown
 from unpacking import unpack
 
 from app.views.catalogue import fitting
@@ -18,13 +18,6 @@ from app.worker.reports import Picture
 from app.worker.studio import Studio
 from solver.scenes import CATALOGUE
 
-SMALL: dict[str, dict[str, Any]] = {
-    "bar": {"elements": 20, "instants": 21, "substructures": 4},
-    "strand": {"elements": 10, "instants": 11},
-    "block": {"elements": 16, "elements_up": 6, "instants": 13},
-    "layers": {"elements": 16, "layers": 2, "instants": 13},
-    "incline": {"elements": 12, "elements_up": 6, "instants": 13},
-}
 PAPER = {**SMALL["bar"], "method": "paper", "max_iterations": 12}
 
 

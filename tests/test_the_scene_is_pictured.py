@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, Shown
-from test_views_say_what_they_draw import SMALL, looked_at
+from studios import ALL, SMALL, Shown
+from test_views_say_what_they_draw import looked_at
 
 from app.views import load_path, picture, sketch
 from app.views.acts import acts_on, holds

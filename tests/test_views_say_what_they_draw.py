@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, Shown, keys
+from studios import ALL, SMALL, Shown, keys
 
 from app.views import convergence, error_time, friction, loop
 from app.views.catalogue import VIEWS, fitting
@@ -15,14 +15,6 @@ from app.views.drawing import Scene
 from app.views.scales import decades
 from app.worker.recording import COLUMNS
 from solver.scenes import CATALOGUE
-
-SMALL: dict[str, dict[str, Any]] = {
-    "bar": {"elements": 20, "instants": 21, "substructures": 4},
-    "strand": {"elements": 10, "instants": 11},
-    "block": {"elements": 16, "elements_up": 6, "instants": 13},
-    "layers": {"elements": 16, "layers": 2, "instants": 13},
-    "incline": {"elements": 12, "elements_up": 6, "instants": 13},
-}
 
 
 def looked_at(scene: str, *changes: dict[str, Any]) -> Scene:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import Shown
+from studios import SMALL, Shown
 
 from app.snippet import NOTE, snippet
 from app.worker.orders import Tabulate
@@ -17,14 +17,6 @@ from app.worker.tables import TABLES, table
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-
-SMALL: dict[str, dict[str, Any]] = {
-    "bar": {"elements": 20, "instants": 21, "substructures": 4},
-    "strand": {"elements": 10, "instants": 11},
-    "block": {"elements": 16, "elements_up": 6, "instants": 13},
-    "layers": {"elements": 16, "layers": 2, "instants": 13},
-    "incline": {"elements": 12, "elements_up": 6, "instants": 13},
-}
 
 
 def told(scene: str, **options: Any) -> Shown:
