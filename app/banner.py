@@ -31,7 +31,7 @@ class Banner:
     def __init__(self, session: Session, rearrange: Callable[[], None]) -> None:
         self._session = session
         self._rearrange = rearrange
-        self._said = ""
+        self._said = "", ""
         self._views: tuple[str, ...] = ()
         self._words = text(role="class", sizing_mode="stretch_width")
         self._button = button("", "group", self._press, variant="outlined")
@@ -69,9 +69,9 @@ class Banner:
         elif left is not None and not left.is_over:
             words = f"You have left class <b>{escape(left.code)}</b>."
             label = "Follow again"
-        if (words, label) != (self._said, self._button.label):
-            self._said = words
-            self._words.object, self._button.label = words, label or " "
+        if self._said != (said := (words, label)):
+            self._said = said
+            self._words.object, self._button.label = said
             self.view.visible = bool(words)
 
     def _press(self) -> None:

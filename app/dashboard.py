@@ -135,8 +135,8 @@ class Dashboard:
             return
         session.running = iteration == 0
         session.start()
-        for _ in range(iteration - 1):
-            session.step()
+        if iteration > 1:
+            session.step(iteration - 1)
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""

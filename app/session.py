@@ -180,13 +180,13 @@ class Session:
         self.running = False
         self.keeper.send(Pace(self.ticket, 0.0))
 
-    def step(self) -> None:
-        """Do one iteration and wait; a run that broke starts again, one that ended stays."""
+    def step(self, count: int = 1) -> None:
+        """Do so many iterations and wait; a run that broke starts again, one that ended stays."""
         self.running = False
         if self.facts is not None and self.facts.is_broken:
             self.start()
         else:
-            self.keeper.send(Step(self.ticket))
+            self.keeper.send(Step(self.ticket, count))
 
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""

@@ -16,11 +16,12 @@ from browser import ROOT
 from lone_link import LoneLink
 from panel.io.state import set_curdoc
 
-from app.address import settings_from_query
+from app.address import settings_from_query, sight_from_query
 from app.dashboard import Dashboard
 from app.pages import Pages
 from app.session import Session
 from app.worker.bench import Bench
+from app.worker.orders import Step
 from solver.files import scene_settings
 
 
@@ -39,9 +40,8 @@ def make(link: LoneLink) -> Iterator[Callable[[str], Dashboard]]:
         def made(query: str) -> Dashboard:
             settings, complaint = settings_from_query(query)
             assert not complaint
-            return Dashboard(
-                stack.enter_context(closing(Session(Pages(9), bench, settings, link.hire)))
-            )
+            session = stack.enter_context(closing(Session(Pages(9), bench, settings, link.hire)))
+            return Dashboard(session, sight=sight_from_query(query)[0])
 
         yield made
 
@@ -73,6 +73,15 @@ def test_a_page_that_nobody_has_built_starts_no_process_and_has_one_row(
     for count in (3, 3, 3, 3, 3, 8, 8):
         dashboard.tick()
         assert len(dashboard._plots) == count
+
+
+def test_an_address_that_waits_at_an_iteration_costs_one_order_however_far_that_is(
+    make: Callable[[str], Dashboard], link: LoneLink
+) -> None:
+    dashboard = make("?iteration=90000")
+    dashboard.loaded()
+    assert [order for order in link.orders if isinstance(order, Step)] == [Step(1, 89_999)]
+    assert not dashboard.session.goes_on
 
 
 @pytest.mark.parametrize(

@@ -66,9 +66,10 @@ class Pace:
 
 @dataclass(frozen=True)
 class Step:
-    """Do one iteration and wait."""
+    """Do one iteration, or several, without any pace, and wait."""
 
     ticket: int
+    count: int = 1
 
 
 @dataclass(frozen=True)

@@ -163,9 +163,9 @@ class WorkerRun:
             case Pace():
                 self._tempo.change(order.pace)
                 self.is_held = order.is_held
-            case Step():
+            case Step(count=int(count)):
                 self._follow()
-                self._tempo.step()
+                self._tempo.step(count)
             case Seek(iteration=None):
                 self._follow()
             case Seek(iteration=int(wanted)):

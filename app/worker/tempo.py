@@ -30,10 +30,10 @@ class Tempo:
         self._pause_after = None
         self._due = min(self._due, time.monotonic() + self._interval)
 
-    def step(self) -> None:
-        """Do one more iteration, and wait."""
+    def step(self, count: int) -> None:
+        """Do so many more iterations, and wait."""
         self._pace = 0
-        self._steps += 1
+        self._steps += count
 
     def count(self) -> None:
         """Count an iteration that begins now."""
