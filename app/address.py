@@ -11,7 +11,9 @@ from urllib.parse import parse_qsl, quote
 from app.classroom import ROOMS, Room
 from app.labels import changes_of
 from app.lesson import LESSONS
+from app.question import OF, VARY, Question
 from app.session import DEFAULT_PACE
+from app.views.catalogue import VIEWS as CATALOGUE
 from app.worker.shown import Look
 from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
 from solver.files import scene_settings
@@ -19,7 +21,7 @@ from solver.lessons.lesson import Lesson
 from solver.settings import Settings
 
 DEFAULT_SCENE = "bar"
-TABS = ("Live", "Figures", "Study", "Stability")
+TABS = ("Live", "What if", "Figures", "Study", "Stability")
 TAB_OF = {tab.lower(): tab for tab in TABS}
 """Who writes an address by hand need not mind their case."""
 PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
@@ -42,8 +44,12 @@ class Sight:
         As a share of the interval.
     iteration
         At which the run waits; 0 has it go on.
+    theme
+        "light" or "dark"; the browser writes it where it is not the system's.
     view
         "page" has controls, "present" is for a projector, "embed" for a frame in a course page.
+    plots
+        Names of the views that are drawn, separated by commas; empty has all.
     """
 
     tab: str = TABS[0]
@@ -53,6 +59,7 @@ class Sight:
     iteration: int = 0
     theme: str = "light"
     view: str = VIEWS[0]
+    plots: str = ""
 
 
 SIGHT: dict[str, Any] = {
@@ -65,21 +72,31 @@ SIGHT: dict[str, Any] = {
     "view": choice(Sight.view, VIEWS, "", group="", title=""),
 }
 NUMBERS = ("instant", "iteration")
+PLOTS = "plots"
+PLOT = choice(CATALOGUE[0].name, [view.name for view in CATALOGUE], "", group="", title="")
 COMPARED = "compare"
 """Name in an address of what run A has other than the run at work, B, as a JSON object."""
 
 
 def sight_from_query(query: str) -> tuple[Sight, str]:
     """Read from an address what is looked at; with what was refused and why, or nothing."""
-    found, refused = {}, []
+    found: dict[str, Any] = {}
+    refused = []
     for name, text in parse_qsl(query.lstrip("?")):
         try:
-            if name in SIGHT:
+            if name == PLOTS:
+                found[name] = _plots(text)
+            elif name in SIGHT:
                 value = parse(text) if name in NUMBERS else TAB_OF.get(text.lower(), text)
                 found[name] = checked_value(SIGHT[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
     return Sight(**found), complaint_of(refused)
+
+
+def _plots(text: str) -> str:
+    """Check names of views, separated by commas."""
+    return ",".join(checked_value(PLOT, PLOTS, name.strip()) for name in text.split(","))
 
 
 def settings_from_query(query: str) -> tuple[Settings, str]:
@@ -102,7 +119,7 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
     definitions = base.definitions()
     values, refused = {}, []
     for name, text in pairs.items():
-        if name in SIGHT or name in (CLASS, COMPARED):
+        if name in SIGHT or name in (CLASS, COMPARED, PLOTS, VARY, OF):
             continue
         if name not in definitions:
             refused.append(f"there is no setting {shorten(name, LONGEST_NAME)}")
@@ -200,6 +217,7 @@ def query_of(
     sight: Sight | None = None,
     room: Room | None = None,
     twin: Settings | None = None,
+    question: Question | None = None,
 ) -> str:
     """Write what differs from the defaults, or from a lesson's settings, as a page's address."""
     sight = sight or Sight()
@@ -212,4 +230,5 @@ def query_of(
         pairs += [(COMPARED, json.dumps(apart, separators=(",", ":")))] if twin else []
     looked_at = asdict(sight).items()
     pairs += [(name, str(value)) for name, value in looked_at if value != getattr(Sight, name)]
+    pairs += question.pairs() if question else []
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.classroom import ROOMS, Room
+from app.classroom import ROOMS, Poll, Room
 from app.keeper import Hire, Keeper
 from app.worker.reports import Picture
 from solver.settings import Settings
@@ -32,6 +32,16 @@ class Attendance:
         self.left: Room | None = None
         self._keeper = keeper
         self._hire = hire
+
+    @property
+    def poll(self) -> Poll | None:
+        """What the class is asked at present that is led or followed here."""
+        return self.room.poll if self.room is not None else None
+
+    @property
+    def room(self) -> Room | None:
+        """The class that is led or followed here."""
+        return self.leads if self.leads is not None else self.follows
 
     def lead(self, settings: Settings) -> None:
         """Begin a class."""

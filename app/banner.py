@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from html import escape
+from urllib.parse import urlsplit
 
 import panel as pn
+import segno
 
 from app.address import CLASS
-from app.panes import button, text
+from app.panes import button, column, text
 from app.session import Session
 
 
@@ -34,10 +36,10 @@ class Banner:
         self._said = "", ""
         self._views: tuple[str, ...] = ()
         self._words = text(role="class", sizing_mode="stretch_width")
+        self._code = text(role="code", visible=False)
         self._button = button("", "group", self._press, variant="outlined")
-        self.view = pn.FlexBox(
-            self._words, self._button, align_items="center", flex_wrap="nowrap", visible=False
-        )
+        line = pn.FlexBox(self._words, self._button, align_items="center", flex_wrap="nowrap")
+        self.view = column(line, self._code, role="banner", visible=False)
 
     def catch_up(self) -> None:
         """Follow the class to other settings or views, and say how it stands."""
@@ -54,8 +56,11 @@ class Banner:
         attendance = self._session.attendance
         follows, left = attendance.follows, attendance.left
         words, label = "", ""
+        if self._code.visible != (attendance.leads is not None):
+            code = attendance.leads.code if attendance.leads is not None else ""
+            self._code.param.update(visible=bool(code), object=_picture_of(code) if code else "")
         if attendance.leads is not None:
-            code, count = attendance.leads.code, len(attendance.leads)
+            code, count = attendance.leads.code, attendance.leads.present
             words = (
                 f"Class <b>{code}</b>: whoever opens this address with <b>?{CLASS}={code}</b> sees "
                 f"what you see. {count} {'follows' if count == 1 else 'follow'}."
@@ -85,3 +90,11 @@ class Banner:
             session.start(attendance.left.settings)
         self._rearrange()
         self._say()
+
+
+def _picture_of(code: str) -> str:
+    """Draw the address of a class as a phone's camera reads it (HTML)."""
+    here = urlsplit(pn.state.location.href if pn.state.location else "")
+    address = here._replace(query=f"{CLASS}={code}", fragment="").geturl()
+    drawn = segno.make(address, error="m").svg_inline(scale=6, light="#fff", omitsize=True)
+    return f"<details><summary>QR code</summary>{drawn}<p>{escape(address)}</p></details>"

@@ -18,6 +18,42 @@ LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 LENGTH = 4
 
 
+class Poll:
+    """What a class predicts of a lesson's question; nobody is asked who predicted what.
+
+    Parameters
+    ----------
+    lesson
+        Its name.
+
+    Attributes
+    ----------
+    is_answered
+        Whether the leader's page has gone on to the answer, and so does everybody's.
+    is_open
+        Whether all see how many predicted what.
+    """
+
+    def __init__(self, lesson: str) -> None:
+        self.lesson = lesson
+        self.is_answered = self.is_open = False
+        self._choices: dict[object, int] = {}
+
+    @property
+    def predicted(self) -> int:
+        """How many have made a choice."""
+        return len(self._choices)
+
+    def vote(self, voter: object, choice: int) -> None:
+        """Take what one predicts, in place of what the same one did before."""
+        self._choices[voter] = choice
+
+    def counts(self, choices: int) -> list[int]:
+        """Count how often each of so many choices was made."""
+        made = list(self._choices.values())
+        return [made.count(choice) for choice in range(choices)]
+
+
 class Room:
     """What all pages of a class have in common.
 
@@ -32,23 +68,25 @@ class Room:
     ----------
     settings, views
         Of what is shown, as the leader has chosen.
+    poll
+        What is asked at present, if it is a lesson that the leader shows.
     is_over
         Whether the leader has left.
-    changed
-        Counts who came or went.
     """
 
     def __init__(self, code: str, settings: Settings) -> None:
         self.code = code
         self.settings = settings
         self.views: tuple[str, ...] = ()
+        self.poll: Poll | None = None
         self.is_over = False
-        self.changed = 0
         self._newest: Picture | None = None
         self._number = 0
         self._seats: set[Seat] = set()
 
-    def __len__(self) -> int:
+    @property
+    def present(self) -> int:
+        """How many follow."""
         return len(self._seats)
 
     def show(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:
@@ -58,17 +96,22 @@ class Room:
         for seat in list(self._seats):
             seat.give()
 
+    def ask(self, lesson: str, *, is_answered: bool) -> None:
+        """Ask what a lesson asks, or nothing without a name."""
+        if lesson != (self.poll.lesson if self.poll is not None else ""):
+            self.poll = Poll(lesson) if lesson else None
+        if self.poll is not None:
+            self.poll.is_answered = is_answered
+
     def seat(self, listener: Callable[[Report], None]) -> Seat:
         """Let one more follow; reports go to the listener."""
         found = Seat(self, listener)
         self._seats.add(found)
-        self.changed += 1
         return found
 
     def leave(self, seat: Seat) -> None:
         """Let one go."""
         self._seats.discard(seat)
-        self.changed += 1
 
     def end(self) -> None:
         """End the class; who follows keeps the last picture."""

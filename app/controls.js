@@ -10,11 +10,6 @@ function controls(model) {
     const count = row.count = performance.now()
     model.send_msg({name: row.name, value, hand, count})
   }
-  const written = (value, item) => {
-    const rounded = Number(value.toPrecision(item.log ? 4 : 6)), size = Math.abs(rounded)
-    if (size === 0 || (size >= 1e-2 && size < 1e5)) { return rounded.toString() }
-    return rounded.toExponential().replace("+", "")
-  }
   const named = (item, input) => {
     input.ariaLabel = item.label
     return input
@@ -30,13 +25,7 @@ function controls(model) {
     const label = make("label", {className: "typed"}, make("span", {}, item.label), field)
     let {start, end} = item
     const place = (value) => item.log ? Math.log10(value) : value
-    const read = () => {
-      let value = item.log ? 10 ** range.valueAsNumber : range.valueAsNumber
-      if (item.whole) { value = Math.round(value) }
-      else if (item.log) { value = Number(value.toPrecision(4)) }
-      else { value = Number((Math.round(value / item.step) * item.step).toPrecision(12)) }
-      return Math.min(Math.max(value, start), end)
-    }
+    const read = () => Math.min(Math.max(settled(item, range.valueAsNumber), start), end)
     const say = (value) => {
       range.ariaValueText = written(value, item)
       range.ariaValueNow = value

@@ -9,24 +9,29 @@ import panel as pn
 
 from app.address import TABS, Sight
 from app.banner import Banner
-from app.cards import Cards
+from app.gallery import gallery
 from app.keys import Keys
 from app.looks import Looks
 from app.page_link import PageLink
 from app.panes import column, page, text
+from app.phone import Phone
 from app.presence import Presence
 from app.pulse import Pulse
+from app.question import Question
 from app.session import Session
 from app.sidebar import Sidebar
-from app.stage import Stage
+from app.stage import EMBED, Stage
 from app.tabs import Tabs
 from app.takeaway import Saver
 from app.teaching import Teaching
 from app.transport import Transport
-from app.views.catalogue import VIEWS, fitting
+from app.views.catalogue import fitting
+from app.whatif import WhatIf
+from solver.settings import Settings
 
 TICK_MS = 25
 FIRST_ROW = 3
+"""Plots that a projector, or a frame of a course page, has room for."""
 CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
 """Plots that show the scene at work, and those that do not yet."""
 LOST_AFTER = 2.0
@@ -46,6 +51,8 @@ class Dashboard:
         What was refused in the page's address; it is shown until a setting changes.
     sight
         What is looked at first; instant and pace are the session's.
+    question
+        Of the address, over ranges.
     on_phone
         Whether the run comes first, with the settings out of the way and the tabs above it.
 
@@ -61,12 +68,12 @@ class Dashboard:
         *,
         complaint: str = "",
         sight: Sight | None = None,
+        question: Question | None = None,
         on_phone: bool = False,
     ) -> None:
         self.session = session
         self._asked_for = session.wanted
         self._loaded = False
-        self._room = FIRST_ROW
         self._logged = (0, "")
         self._sent_at = 0.0
         self._is_dimmed = False
@@ -75,25 +82,23 @@ class Dashboard:
         self._presence = Presence(session, self._pulse)
         session.watch(complaint=complaint)
         self.transport = Transport(session)
-        self._listen()
         self._looks = Looks(session)
-        chosen = {
-            "instant": self.transport.choose_time,
-            "time": self.transport.choose_time,
-            "substructure": self.transport.choose_substructure,
-        }
-        self._cards = Cards(chosen)
+        self._listen()
+        chosen = {**self.transport.chooses(), **self._looks.chooses(), "drag": self._drag}
+        self._gallery = gallery(chosen)
         self._banner = Banner(session, self._follow)
         self._sidebar = Sidebar(
             session, self._arrange, self.complain, lambda: self._link.copy(), self._teach
         )
         self._teaching = Teaching(session, self._sidebar, self._on_lesson)
         self._saver = Saver(session)
-        self._plots = column(role="plots")
         self._live = self._make_live()
-        self._tabs = Tabs(session, self._live, self._on_tab)
+        self._what_if = WhatIf(session, self._open_run, question)
+        self._tabs = Tabs(session, self._live, self._what_if, self._on_tab)
         self._sight = sight or Sight()
         self._furnish(on_phone=on_phone)
+        if self._sight.plots:
+            self._sidebar.draw(self._sight.plots.split(","))
         self._sidebar.show(session.wanted)
         if self._sight.lesson:
             self._teaching.take(self._sight.lesson)
@@ -104,16 +109,16 @@ class Dashboard:
     def _furnish(self, *, on_phone: bool) -> None:
         """Make the page of its parts, in the theme and the view that are looked at first."""
         self.page = page([self._sidebar.view, self._saver.view], self._tabs.bar, self._tabs.main)
+        controls = [self.transport.view, self._sidebar.view, self._saver.view]
+        self._phone = Phone(self.page, self._tabs, self._live, self._figures, controls)
         if on_phone:
-            self.page.sidebar_open = False
-            self._clear_the_header()
+            self._phone.fit()
         self.page.dark_theme = self._sight.theme == "dark"
-        self._stage = Stage(self.page, self._live)
+        self._stage = Stage(self.page, self._live, self._gallery)
         self._stage.show(self._sight.view)
         self._dress()
-        self._link = PageLink(
-            self.session, self._pulse, self._tabs.bar, self.page, self._teaching, self._stage
-        )
+        parts = self._tabs.bar, self._sidebar, self._teaching, self._stage, self._what_if
+        self._link = PageLink(self.session, self._pulse, *parts)
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
@@ -124,7 +129,10 @@ class Dashboard:
         self._presence.begin()
         self._begin(self._sight.iteration)
         self._on_narrow()
-        self._keys.hears = True
+        self._keys.hears = self._teaching.view.recalls = True
+        if self._stage.view == EMBED and self.session.look.complaint:
+            # There is no status line to say it.
+            self.complain(self.session.look.complaint)
         self._tabs.bar.value = self._sight.tab
 
     def _begin(self, iteration: int) -> None:
@@ -140,13 +148,12 @@ class Dashboard:
 
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
-        if self._loaded and self._room < len(VIEWS):
-            self._fill()
         self._presence.check()
         if self.session.attend():
             self._tabs.refresh()
         self._sidebar.obey()
         self._banner.catch_up()
+        self._teaching.catch_up()
         self.transport.tick()
         self._pass_on(self.session.collect())
         self._log()
@@ -168,9 +175,9 @@ class Dashboard:
         self._keys.param.watch(lambda event: does[Keys.name_of(event)](), "key")
 
     def _make_live(self) -> pn.Column:
-        words = [text(role=role, tags=[role]) for role in ("status", "figures")]
+        words, self._figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
         heads = self._banner.view, self._teaching.view, self.transport.view
-        parts = *heads, *words, self._plots, self._pulse, self._keys
+        parts = *heads, words, self._figures, self._gallery, self._pulse, self._keys
         return column(*parts, role="live", margin=(4, 10))
 
     def _arrange(self) -> None:
@@ -183,13 +190,14 @@ class Dashboard:
         wanted = (room.views if room else ()) or own
         seen = [] if self._teaching.asks else fit
         self._shown = [view for view in seen if view.name in wanted]
-        there = self._shown[: FIRST_ROW if self._stage.is_bare else self._room]
-        self.transport.view.visible = self._saver.view.visible = room is None
+        few = self._stage.is_bare and not self._sidebar.named
+        there = self._shown[: FIRST_ROW if few else None]
+        self.transport.view.visible = room is None
+        self._saver.view.visible = room is None and self._tabs.shows_the_run
         self.transport.arrange(session.wanted)
-        cards = [self._cards[view] for view in there]
+        self._gallery.offer(there)
+        self._gallery.let_drag(session.wanted, self._teaching.controls)
         self._saver.offer(there)
-        if list(self._plots) != cards:
-            self._plots[:] = cards
         holds = session.wanted is self._asked_for
         complaint = session.look.complaint if holds else ""
         # The worker sends what a view had already only when the choice of views changes.
@@ -201,25 +209,13 @@ class Dashboard:
         self._sidebar.show(self.session.wanted)
         self._arrange()
 
-    def _fill(self) -> None:
-        """Make one of the cards below the first row, or show them all.
-
-        In slices, between which other pages are served; shown at once, as every time costs 12 ms.
-        """
-        for view in self._shown:
-            if view not in self._cards:
-                self._cards[view]  # which makes it
-                return
-        self._room = len(VIEWS)
-        self._arrange()
-
     def _show(self) -> None:
         """Tell plots that do not show the run's scene from those that do; show where the run is."""
         is_dimmed = self.session.facts is None and not self._pulse.frame
         is_dimmed = is_dimmed or self.session.settings.scene != self._painted_scene
         if is_dimmed != self._is_dimmed:
             self._is_dimmed = is_dimmed
-            self._plots.styles = DIMMED if is_dimmed else CLEAR
+            self._gallery.styles = DIMMED if is_dimmed else CLEAR
         bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
         self.transport.show()
@@ -251,6 +247,9 @@ class Dashboard:
         if self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
 
+    def _drag(self, told: dict[str, Any]) -> None:
+        self._sidebar.hear(**told)
+
     def _teach(self, name: str) -> None:
         self._teaching.open(name)
 
@@ -260,6 +259,8 @@ class Dashboard:
         lesson = classes if self._teaching.lesson else []
         view = [self._stage.view] if self._stage.is_bare else []
         self._live.css_classes = ["live", *view, *lesson]
+        self._stage.magnify(has_lesson=bool(lesson))
+        self._phone.dress(is_bare=self._stage.is_bare)
 
     def _on_lesson(self) -> None:
         """Make room for a lesson, for its question alone, or for all else."""
@@ -273,16 +274,21 @@ class Dashboard:
         if self._loaded and self._pulse.narrow:
             self.page.sidebar_open = False
         if self._loaded and self._pulse.phone:
-            self._clear_the_header()
-
-    def _clear_the_header(self) -> None:
-        self.page.header = []
-        self._tabs.leave_the_header()
+            self._phone.fit()
 
     def _on_tab(self) -> None:
         self._keys.hears = self._tabs.shows_the_run
+        self._sidebar.report = self._tabs.report
+        self._follow()
         if self._tabs.shows_the_run:
             self.session.ask(afresh=True)
+
+    def _open_run(self, settings: Settings) -> None:
+        """Show the run of a point of a chart."""
+        self.session.adopt(settings)
+        self.session.go()
+        self._tabs.bar.value = TABS[0]
+        self._follow()
 
     def _present(self) -> None:
         """Show the page as a projector needs it, or as usual again."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import time
 from collections import deque
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, Future
@@ -11,12 +12,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from app.worker.bench import report, said_of
 from app.worker.desk import PROGRESS, SECTIONS, files, said
 from app.worker.studies import Work
+from solver.definitions import SettingError
 from solver.study.page import Section
 
 KEPT = 6
-WAITING, STARTING = "Waiting for what was asked for before", "Starting"
+AT_ONCE = 0.2
+"""Seconds after which a report that is not begun waits for another."""
+WAITING, STARTING = "Waiting: another report is made first", "Starting"
 
 
 @dataclass(eq=False)
@@ -55,6 +60,7 @@ class Errand:
         self._future: Future[Any] | None = None
         self._folder: TemporaryDirectory[str] | None = None
         self._read = b"", b""
+        self._asked = 0.0
         self.title = ""
         self.doing, self.share = "", 0.0
         self.growing = Found()
@@ -84,8 +90,12 @@ class Errand:
         self.growing, self._read = Found(title), (b"", b"")
         # What a killed process was writing just then is no reason to complain.
         self._folder = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
-        self._future = self._executor.submit(work, Path(self._folder.name))
-        self.doing = STARTING if self.is_begun else WAITING
+        try:
+            self._future = self._executor.submit(report, work, Path(self._folder.name))
+        except SettingError as refusal:
+            self._end(str(refusal))
+            return
+        self.doing, self._asked = STARTING, time.monotonic()
 
     def cancel(self) -> None:
         """End it; what has been found so far stays."""
@@ -101,7 +111,8 @@ class Errand:
         is_done, folder = future.done(), Path(self._folder.name)
         before = self.doing, self._read
         self._read = progress, sections = said(folder, PROGRESS), said(folder, SECTIONS)
-        self.doing = STARTING if self.is_begun else WAITING
+        waits = not self.is_begun and time.monotonic() > self._asked + AT_ONCE
+        self.doing = WAITING if waits else STARTING
         if progress:
             self.doing, self.share = pickle.loads(progress)
         if sections != before[1][1]:
@@ -115,7 +126,7 @@ class Errand:
         if future.cancelled():
             self._end("Cancelled.")
         elif problem := future.exception():
-            self._end(str(problem))
+            self._end(said_of(problem))
         else:
             self.growing.files = files(folder)
             self.found.append(self.growing)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-from bokeh.events import Pan, Tap
 from bokeh.models import (
     Axis,
     BasicTicker,
@@ -28,12 +26,15 @@ from bokeh.models import (
 )
 from bokeh.models.annotations.legends import ColorBar
 from bokeh.models.glyphs import Patches
+from bokeh.models.widgets import Div
 
-from app.views.colors import shaded
+from app.views.colors import GREY, shaded
 from app.views.drawing import View
+from app.views.legend import card_title
 
 FIT = """
 const [left, right, low, high] = box.data.edge
+if (figure.properties.inner_width.is_unset) { return }
 const wide = figure.inner_width, tall = figure.inner_height
 if (!(wide > 1 && tall > 1 && right > left)) { return }
 const scale = Math.max((right - left) / wide, (high - low) / tall)
@@ -46,28 +47,13 @@ put(figure.x_range, x, wide)
 put(figure.y_range, y, tall)
 """
 """Makes both axes of one scale, however large the plot is; not while one has zoomed in."""
-PICK = """
-const {xs, ys, value} = source.data, {x, y} = cb_obj
-const holds = (across, up) => {
-  let inside = false
-  for (let i = 0, j = across.length - 1; i < across.length; j = i++) {
-    const between = up[i] > y !== up[j] > y
-    if (between && x < across[i] + (y - up[i]) / (up[j] - up[i]) * (across[j] - across[i])) {
-      inside = !inside
-    }
-  }
-  return inside
-}
-for (let i = 0; i < xs.length; i++) {
-  if (holds(xs[i], ys[i])) { figure.tags = [value[i] + 1]; break }
-}
-"""
-"""Tells the server, by the figure's tag, which substructure was tapped; it has not the bodies."""
 SHADES = 180
+FONT = "Roboto, sans-serif"
+"""The colours of words follow the theme: the style sheet has them."""
 
 
-def make_figure(view: View, choose: Callable[[float], None]) -> Plot:
-    """Make the figure of a view; a tap or a drag chooses a height, where the view says so."""
+def make_figure(view: View) -> Plot:
+    """Make the figure of a view; among its tags is a model with what stands above it."""
     plot, slug = view.plot, view.slug
     made = _axes(view)
     if plot.palette:
@@ -78,24 +64,14 @@ def make_figure(view: View, choose: Callable[[float], None]) -> Plot:
         box.js_on_change("data", fit)
         made.js_on_change("inner_width", fit)
         made.js_on_change("inner_height", fit)
-    if plot.words or not plot.equal:
-        _add_curves(made, view)
+    _add_curves(made, view)
     if plot.words:
         _add_words(made, view)
-    if plot.chooses:
-        _listen(made, view, choose)
+    if plot.is_touched:
+        held = _empty(f"{slug}.handles", "ends", "setting", "value", "rate")
+        contacts = _empty(f"{slug}.contacts", "xs", "ys", "name")
+        made.tags = [*made.tags, held, contacts, _empty(f"{slug}.along", "x")]
     return made
-
-
-def _listen(made: Plot, view: View, choose: Callable[[float], None]) -> None:
-    if view.plot.equal:
-        source = made.select_one({"name": f"{view.slug}.bodies"})
-        made.js_on_event(Tap, CustomJS(args={"figure": made, "source": source}, code=PICK))
-        made.on_change("tags", lambda name, old, new: choose(*new))
-        return
-    along = "x" if view.plot.chooses == "time" else "y"
-    for event in (Tap, Pan):
-        made.on_event(event, lambda event: choose(getattr(event, along)))
 
 
 def _axes(view: View) -> Plot:
@@ -103,7 +79,7 @@ def _axes(view: View) -> Plot:
     look, slug = view.plot, view.slug
     made = Plot(
         height=230,
-        min_height=150,
+        min_height=100,
         sizing_mode="stretch_both",
         title=None,
         toolbar_location=None,
@@ -113,10 +89,11 @@ def _axes(view: View) -> Plot:
         y_range=Range1d(start=1, end=2, name=f"{slug}.y"),
         min_border_right=12,
         min_border_top=6,
-        # The theme of the page colours only what `figure` has made; the card is seen instead.
+        # The card is seen instead.
         background_fill_color=None,
         border_fill_color=None,
         outline_line_color=None,
+        tags=[Div(text=card_title(view.name, ()), name=f"{slug}.title")],
     )
     if look.names:
         made.add_tools(HoverTool(tooltips=[(look.names, "@name")]))
@@ -126,7 +103,7 @@ def _axes(view: View) -> Plot:
     axis = _axis("y", look.y_label, view)
     made.add_layout(axis, "left")
     if not look.chooses:
-        made.add_layout(Grid(dimension=1, axis=axis))
+        made.add_layout(Grid(dimension=1, axis=axis, grid_line_color=GREY, grid_line_alpha=0.25))
     return made
 
 
@@ -136,6 +113,13 @@ def _axis(name: str, label: str, view: View) -> Axis:
         "name": named,
         "axis_label": label,
         "axis_label_standoff": 4,
+        "axis_label_text_font": FONT,
+        "axis_label_text_font_size": "14px",
+        "axis_label_text_font_style": "normal",
+        "major_label_text_font": FONT,
+        "major_label_text_font_size": "13px",
+        "axis_line_color": None,
+        "major_tick_line_color": None,
         "minor_tick_line_color": None,
     }
     if name in look.logarithmic:
@@ -165,11 +149,11 @@ def _add_curves(made: Plot, view: View) -> None:
 
 
 def _add_words(made: Plot, view: View) -> None:
-    source = _empty(f"{view.slug}.words", "x", "y", "text", "color", "across", "up")
+    source = _empty(f"{view.slug}.words", "x", "y", "text", "across", "up")
     glyph = Text(
-        text_color="color",
         text_align="across",
         text_baseline="up",
+        text_font={"value": FONT},
         text_font_size="13px",
         text_font_style="bold",
     )
@@ -197,6 +181,14 @@ def _add_colors(made: Plot, view: View) -> None:
             ticker=FixedTicker(ticks=[], name=f"{slug}.scale"),
             color_mapper=mapper,
             title=plot.scale,
+            title_text_font=FONT,
+            title_text_font_size="13px",
+            title_text_font_style="normal",
+            major_label_text_font=FONT,
+            major_label_text_font_size="13px",
+            major_tick_line_color=None,
+            bar_line_color=None,
+            background_fill_color=None,
             width=10,
             padding=4,
             name=f"{slug}.bar",

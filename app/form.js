@@ -28,7 +28,12 @@ export function render({model}) {
     row.show = () => {}
     return [...buttons, make("label", {}, item.label, upload)]
   }
-  Object.assign(kinds, {checks, share})
+  const note = (row) => {
+    const words = make("p")
+    row.show = (text) => { words.textContent = text }
+    return [words]
+  }
+  Object.assign(kinds, {checks, share, note})
   const helped = (item) => (item.help || "") +
     (item.usual ? " Double click, or Delete, brings back the usual value." : "")
   const added = (item) => {
@@ -45,12 +50,14 @@ export function render({model}) {
     const more = make("details", {open}, make("summary", {}, "More settings"))
     const made = new Map(), parts = []
     heads.length = 0
+    more.rows = []
     for (const item of model.items) {
       const row = added(item)
       made.set(item.name, row)
       if (item.more) {
         if (!parts.includes(more)) { parts.push(more) }
         more.append(row.box)
+        more.rows.push(row.box)
         continue
       }
       if (item.group && heads.at(-1)?.textContent !== item.group) {
@@ -61,6 +68,7 @@ export function render({model}) {
       if (item.group) { heads.at(-1).rows.push(row.box) }
       parts.push(row.box)
     }
+    if (parts.includes(more)) { heads.push(more) }
     rows = made
     root.replaceChildren(...parts)
     show()

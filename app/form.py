@@ -68,7 +68,7 @@ class Form(JSComponent):
     shown = param.Dict(default={})
     file = param.List(default=[])
 
-    _esm = script("points.js", "controls.js", "form.js")
+    _esm = script("values.js", "points.js", "controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar
+from typing import Any
 
 import panel as pn
-import param
 from bokeh.document import Document
 from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
@@ -25,24 +24,6 @@ class Prompt(JSComponent):
     """
 
     _debounce = 0
-
-
-class NamedColumn(pn.Column):
-    """A figure by its role, which the keyboard reaches; Panel gives its columns no attributes.
-
-    Attributes
-    ----------
-    spoken
-        What a screen reader calls it.
-    """
-
-    spoken = param.String()
-
-    _rename: ClassVar[Mapping[str, str | None]] = {"spoken": None}
-
-    def _get_properties(self, doc: Document | None) -> dict[str, Any]:
-        says = {"role": "figure", "aria-label": self.spoken, "tabindex": "0"}
-        return {**super()._get_properties(doc), "html_attributes": says}
 
 
 def connections() -> set[Any]:

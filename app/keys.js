@@ -5,20 +5,26 @@ const MOVED = LISTS + ", input, [role=combobox], [role=slider], [role=radiogroup
 
 export function render({model}) {
   const dialog = document.createElement("dialog")
-  dialog.innerHTML = "<h2>Keys</h2><table></table>"
-  dialog.ariaLabel = "Keys"
-  const rows = model.keys.map(([, written, does]) => {
+  dialog.innerHTML = "<h2>Keys</h2><table></table><h2>Words</h2><table class=words></table>"
+  dialog.ariaLabel = "Keys and words"
+  const row = (head, text) => {
     const row = document.createElement("tr")
     row.append(document.createElement("th"), document.createElement("td"))
-    row.firstChild.textContent = written
-    row.lastChild.textContent = does
+    row.firstChild.textContent = head
+    row.lastChild.textContent = text
     return row
-  })
-  dialog.querySelector("table").append(...rows)
+  }
+  const [keys, words] = dialog.querySelectorAll("table")
+  keys.append(...model.keys.map(([, written, does]) => row(written, does)))
+  const open = () => {
+    words.replaceChildren(...model.terms.map(([[name], line]) => row(name, line)))
+    dialog.showModal()
+  }
+  const close = glossary(model.terms)
   dialog.onclick = () => dialog.close()
   const button = document.createElement("button")
-  Object.assign(button, {textContent: "?", title: "List all keys (?).", ariaLabel: "List all keys"})
-  button.onclick = () => dialog.showModal()
+  Object.assign(button, {textContent: "?", title: "Keys and words (?).", ariaLabel: "Keys and words"})
+  button.onclick = open
   const names = new Set([...model.keys.map(([name]) => name), ...model.own])
   let count = 0
   const press = (event) => {
@@ -31,13 +37,16 @@ export function render({model}) {
     const keeps = key.startsWith("Arrow") ? MOVED : key === " " ? PRESSED : LISTS
     if (typed.closest && typed.closest(keeps) || dialog.open) { return }
     event.preventDefault()
-    if (name === "?") { dialog.showModal() }
+    if (name === "?") { open() }
     else if (model.own.includes(name)) {
       document.dispatchEvent(new CustomEvent("plot-key", {detail: name}))
     } else { model.key = name + "#" + (count += 1) }
   }
   document.addEventListener("keydown", press)
-  model.on("remove", () => document.removeEventListener("keydown", press))
+  model.on("remove", () => {
+    close()
+    document.removeEventListener("keydown", press)
+  })
   const root = document.createElement("div")
   root.append(button, dialog)
   return root

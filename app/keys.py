@@ -1,4 +1,4 @@
-"""The keys of the page, and the dialog that lists them."""
+"""The keys of the page, and the dialog that lists them and the words of the page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from typing import Any, ClassVar
 
 import param
 
+from app.glossary import TERMS
 from app.innards import Prompt
+from app.panes import script
 
 KEYS = (
     (" ", "Space", "run or pause"),
@@ -21,7 +23,7 @@ KEYS = (
     ("f", "f", "one plot on the whole page: that with the pointer or the focus; Escape: back"),
     ("+", "+ −", "zoom in and out of that plot; so does the wheel with Ctrl"),
     ("0", "0", "all of that plot again; so does a double click"),
-    ("?", "?", "this list"),
+    ("?", "?", "these lists"),
 )
 """Name of the key, how it is written, and what it does."""
 IN_THE_BROWSER = ("f", "+", "-", "0", "?")
@@ -33,18 +35,24 @@ dialog { border: 0; border-radius: 8px; padding: 16px 24px 20px; font-size: 17px
   color: var(--mui-palette-text-primary); background: var(--mui-palette-background-paper);
   box-shadow: 0 8px 40px rgba(0, 0, 0, 0.5); }
 dialog::backdrop { background: rgba(0, 0, 0, 0.35); }
+dialog { max-width: 900px; max-height: 85vh; overflow-y: auto; }
 h2 { margin: 0 0 8px; font-size: 20px; }
-th { padding-right: 20px; text-align: left; white-space: nowrap; }
+table + h2 { margin-top: 16px; }
+th { padding-right: 20px; text-align: left; vertical-align: top; white-space: nowrap; }
+.words { font-size: 15px; line-height: 1.4; }
+.words td { padding-bottom: 4px; }
 """
 
 
 class Keys(Prompt):
-    """A small button that lists the keys; it hears them wherever they are free.
+    """A small button that lists keys and words; it hears keys wherever they are free.
 
     Attributes
     ----------
     keys
         Which there are, as `KEYS` says.
+    terms
+        What words of the page mean, as `TERMS` says.
     own
         Those that the browser follows by itself; plots hear them as the event "plot-key".
     hears
@@ -54,11 +62,12 @@ class Keys(Prompt):
     """
 
     keys = param.List(default=[list(key) for key in KEYS])
+    terms = param.List(default=[[list(spellings), line] for spellings, line in TERMS.items()])
     own = param.List(default=list(IN_THE_BROWSER))
     hears = param.Boolean(default=False)
     key = param.String(default="")
 
-    _esm = "keys.js"
+    _esm = script("glossary.js", "keys.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
     @staticmethod

@@ -1,11 +1,11 @@
-export function render({model, view}) {
+export function render({model}) {
   const root = document.createElement("div"), said = document.createElement("output")
   const button = document.createElement("button")
   root.append(said, button)
   root.hidden = true
   let found = new Map(), card = null, figure = null, pointer = null, alone = null
-  const {document: doc} = view.model
-  const figures = () => [...doc._all_models.values()].filter((one) => one.type === "Plot")
+  const figures = () =>
+    Bokeh.documents.flatMap((one) => one.roots()).filter((one) => one.type === "Plot")
   const look = () => {
     found = new Map(figures().map((one) => [Bokeh.index.find_one_by_id(one.id), one])
       .filter(([seen]) => seen).map(([seen]) => [seen.el, seen]))
@@ -13,10 +13,9 @@ export function render({model, view}) {
   // The element of a card and the view of its figure, of all that an event passes through.
   const met = (path) => {
     const on = path.find((one) => one.classList?.contains("card"))
-    if (!on?.shadowRoot) { return [null, null] }
-    const plot = on.shadowRoot.querySelector(".bk-Plot")
+    const plot = on?.querySelector(".bk-Plot")
     if (plot && !found.has(plot)) { look() }
-    return [on, found.get(plot) ?? null]
+    return [on ?? null, found.get(plot) ?? null]
   }
   const put = () => {
     root.hidden = !card?.isConnected
@@ -124,36 +123,6 @@ export function render({model, view}) {
   const press = (event) => keys[event.detail]?.()
   const back = (event) => { if (met(event.composedPath())[0]) { all() } }
   button.onclick = () => keys.f()
-  // The theme, which knows of no projector, sets the type of axes whenever it changes.
-  const SIZES = {
-    axis_label_text_font_size: 14, major_label_text_font_size: 13, title_text_font_size: 13,
-    text_font_size: 13,
-  }
-  const heard = new Set()
-  let late = 0
-  const enforce = (one, name) => {
-    const value = `${Math.round(SIZES[name] * model.magnified)}px`
-    // That of a glyph is a value for all its points.
-    if ((one[name]?.value ?? one[name]) === value) { return }
-    one.setv({[name]: value}, {sync: false})
-    clearTimeout(late)
-    late = setTimeout(() => {
-      for (const one of figures()) { Bokeh.index.find_one_by_id(one.id)?.invalidate_layout() }
-    }, 50)
-  }
-  const size = () => {
-    if (model.magnified === 1 && !heard.size) { return }
-    const parts = figures().flatMap(({below, left, right, renderers}) =>
-      [...below, ...left, ...right, ...renderers.map(({glyph}) => glyph)])
-    for (const one of parts) {
-      for (const name of Object.keys(SIZES).filter((name) => name in one.properties)) {
-        if (!heard.has(one)) { one.properties[name].change.connect(() => enforce(one, name)) }
-        enforce(one, name)
-      }
-      heard.add(one)
-    }
-  }
-  const grown = (event) => { if (event.attr === "children") { size() } }
   // Bokeh lays a plot out too large that shrinks, as words above it grow, while it is painted.
   const timer = setInterval(() => {
     for (const one of figures()) {
@@ -165,16 +134,12 @@ export function render({model, view}) {
     "plot-key": press}
   for (const [name, does] of Object.entries(listeners)) { document.addEventListener(name, does) }
   document.addEventListener("wheel", wheel, {passive: false})
-  model.on("magnified", size)
-  doc.on_change(grown)
   model.on("remove", () => {
     clearInterval(timer)
-    doc.remove_on_change(grown)
     document.removeEventListener("wheel", wheel)
     for (const [name, does] of Object.entries(listeners)) {
       document.removeEventListener(name, does)
     }
   })
-  size()
   return root
 }

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-import param
-
 from app.innards import Prompt
 
 STYLE = """
@@ -21,15 +19,7 @@ button { width: 26px; height: 24px; padding: 0; cursor: pointer;
 
 
 class Lens(Prompt):
-    """Shows the values under the pointer, and a button on the card that one looks at.
-
-    Attributes
-    ----------
-    magnified
-        How much larger the type of plots is than it usually is.
-    """
-
-    magnified = param.Number(default=1.0)
+    """Shows the values under the pointer, and a button on the card that one looks at."""
 
     _esm = "lens.js"
     _stylesheets: ClassVar[list[str]] = [STYLE]

@@ -1,11 +1,20 @@
 export function render({model}) {
   const {make, tell, kinds} = controls(model)
-  const LESSON = "the-lesson", CHOICE = "the-choice", SEEN = "slipfront-lessons-seen"
+  const LESSON = "the-lesson", CHOICE = "the-choice", COUNT = "the-count", SEEN = "slipfront-lessons-seen"
   const root = make("section", {ariaLabel: "Lesson"})
   let rows = new Map(), places = []
   // A browser may refuse to keep anything.
   const seen = () => { try { return localStorage.getItem(SEEN) } catch { return null } }
   const see = () => { try { localStorage.setItem(SEEN, "yes") } catch {} }
+  // A page that is loaded again knows what was predicted on it.
+  const PREDICTED = "slipfront-predicted"
+  const predicted = () => {
+    try { return JSON.parse(sessionStorage.getItem(PREDICTED)) ?? [] } catch { return [] }
+  }
+  const predict = (place) => {
+    try { sessionStorage.setItem(PREDICTED, JSON.stringify([model.lesson.title, place])) } catch {}
+    tell({name: CHOICE}, place)
+  }
   const button = (text, onclick, more = {}) =>
     make("button", {type: "button", onclick, ...more}, text)
   const open = (name) => {
@@ -27,8 +36,23 @@ export function render({model}) {
     return place
   }
   const paragraphs = (all) => all.map((parts) => make("p", {}, ...parts.map(part)))
-  const choices = (all) => {
-    const made = all.map((text, place) => button(text, () => tell({name: CHOICE}, place)))
+  // Of a class: how many predicted what, on the choices themselves.
+  const share = (place) => {
+    const {counts, predicted} = model.poll, count = counts?.[place]
+    return count === undefined ? [] : [` — ${count}`, `${100 * count / Math.max(predicted, 1)}%`]
+  }
+  const counted = (made, place) => {
+    const [text, width] = share(place)
+    if (text) { made.append(text) }
+    made.style.setProperty("--share", width ?? "0%")
+    return made
+  }
+  const choices = ({choices: all, chosen}) => {
+    const made = all.map((text, place) => {
+      const one = button(text, () => predict(place))
+      one.ariaPressed = chosen === place
+      return counted(one, place)
+    })
     const group = make("div", {className: "choices", ariaLabel: "Your prediction"}, ...made)
     group.setAttribute("role", "group")
     return group
@@ -39,7 +63,20 @@ export function render({model}) {
     const answer = make("b", {}, `${word}${choices[right]}.`)
     return make("p", {className: `why ${is}`, tabIndex: -1}, answer, " ", why)
   }
-  const skip = () => button("Show me", () => tell({name: CHOICE}, -1),
+  const counts = ({choices: all}) => model.poll.counts?.length
+    ? [make("ul", {className: "counts", ariaLabel: "What the class predicted"},
+      ...all.map((text, place) => counted(make("li", {}, text), place)))] : []
+  const polled = ({chosen}) => {
+    const {leads, predicted, of, counts} = model.poll
+    if (predicted === undefined) { return [] }
+    const said = `${predicted} of ${of} have predicted.`
+    const mine = leads ? "" : chosen === null ? " Predict, too: the answer comes with the class."
+      : " The answer comes with the class."
+    const open = leads && !counts.length
+      ? [button("Show what they predict", () => tell({name: COUNT}, true))] : []
+    return [make("p", {className: "polled"}, said, mine), ...open]
+  }
+  const skip = () => button("Show me", () => predict(-1),
     {title: "See it without a prediction."})
   const go_on = ([name, title]) =>
     name ? [button(`Next: ${title}`, () => open(name), {className: "main"})] : []
@@ -50,11 +87,13 @@ export function render({model}) {
     const text = paragraphs(lesson.text)
     const question = make("p", {className: "question"}, lesson.question)
     if (lesson.choice === undefined) {
-      return [...heads, ...text, question, choices(lesson.choices), skip(), leave()]
+      const ends = lesson.follows ? [] : [skip(), leave()]
+      return [...heads, ...text, question, choices(lesson), ...polled(lesson), ...ends]
     }
     const before = make("details", {}, make("summary", {}, "What it is about"), ...text)
-    return [...heads, before, question, verdict(lesson), ...paragraphs(lesson.explanation),
-      ...go_on(lesson.next), leave()]
+    const ends = lesson.follows ? [] : [...go_on(lesson.next), leave()]
+    return [...heads, before, question, ...counts(lesson), verdict(lesson),
+      ...paragraphs(lesson.explanation), ...ends]
   }
   const offer = () => {
     const list = model.offered.map(([name, title, question]) =>
@@ -90,8 +129,14 @@ export function render({model}) {
     for (const [name, place] of places) { place.innerHTML = texts.get(name) ?? "…" }
   }
   model.on("lesson", build)
+  model.on("poll", build)
   model.on("shown", show)
   model.on("values", fill)
+  // Before the whole page is built, nothing that one tells arrives.
+  model.on("recalls", () => {
+    const [title, place] = predicted()
+    if (title && title === model.lesson.title) { tell({name: CHOICE}, place) }
+  })
   build()
   return root
 }

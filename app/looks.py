@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
 from app.panes import select
 from app.scrubber import Scrubber, scrubber
 from app.session import Session
+from app.views.scales import length_of
 from app.worker.shown import STRESSES
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6
+SAME = 0.02
+"""Distance of two places that count as one, as a share of the length."""
 STRESS_TITLES = {name if name == STRESSES[0] else f"stress {name}": name for name in STRESSES}
 
 
@@ -46,7 +50,7 @@ class Looks:
 
     @cached_property
     def _interface(self) -> Any:
-        what = "The interface whose forces and status are drawn."
+        what = "The one whose forces and status are drawn; a tap on it in the picture chooses it."
         return select("Interface", [], self._choose, width=145, description=what)
 
     @cached_property
@@ -66,8 +70,8 @@ class Looks:
             140,
             self._magnify,
             label="Magnification",
-            help="Factor on the displacement of the drawn bodies; at the left end it is chosen so "
-            "that they are seen to move.",
+            help="How many times larger displacements are drawn than they are; at the left end "
+            "as many as shows them well.",
             end=DECADES * len(STEPS) + 1,
             text="auto",
         )
@@ -82,9 +86,19 @@ class Looks:
         finally:
             self._showing = False
 
+    def chooses(self) -> dict[str, Callable[[Any], None]]:
+        """Give what a tap on the picture of the scene does, by what it chooses."""
+        return {"interface": self._choose, "place": self._mark}
+
     def _choose(self, interface: str) -> None:
         if not self._showing and interface:
             self._session.watch(interface=interface)
+
+    def _mark(self, place: float) -> None:
+        """Mark a place along the bodies, m; one that is marked already is no more."""
+        marked, near = self._session.look.place, SAME * length_of(self._session.settings)
+        is_marked = marked is not None and abs(marked - place) <= near
+        self._session.watch(place=None if is_marked else place)
 
     def _magnify(self, place: int) -> None:
         decade, step = divmod(place - 1, len(STEPS))

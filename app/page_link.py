@@ -9,13 +9,16 @@ import panel as pn
 from app.address import PACES, Sight, query_of
 from app.classroom import Room
 from app.pulse import Pulse
+from app.question import Question
 from app.session import Session
+from app.sidebar import Sidebar
 from app.stage import Stage
 from app.teaching import Teaching
+from app.whatif import WhatIf
 from app.worker.reports import Facts
 from solver.settings import Settings
 
-Standing = tuple[Settings, Sight, Room | None, Settings | None]
+Standing = tuple[Settings, Sight, Room | None, Settings | None, Question | None]
 COPIED = "Copied: the link to what stands here."
 REFUSED = "Not copied, as the browser does not let the page: take the link from the address bar."
 
@@ -31,12 +34,14 @@ class PageLink:
         Is told the address, and whether it is to be copied.
     tab
         The choice of tabs.
-    page
-        Knows its theme.
+    sidebar
+        Knows the views that are wanted.
     teaching
         Knows its lesson.
     stage
         Knows how much stands around the plots.
+    what_if
+        Knows what is asked over ranges.
     """
 
     def __init__(
@@ -44,12 +49,13 @@ class PageLink:
         session: Session,
         pulse: Pulse,
         tab: Any,
-        page: Any,
+        sidebar: Sidebar,
         teaching: Teaching,
         stage: Stage,
+        what_if: WhatIf,
     ) -> None:
         self._session, self._pulse, self._stage = session, pulse, stage
-        self._tab, self._page, self._teaching = tab, page, teaching
+        self._tab, self._sidebar, self._teaching, self._what_if = tab, sidebar, teaching, what_if
         self._stood: Standing | None = None
         pulse.param.watch(lambda event: _tell(is_done=event.new > 0), "copied")
 
@@ -71,10 +77,11 @@ class PageLink:
             pace=next(name for name, pace in PACES.items() if pace == session.pace),
             lesson=self._teaching.name,
             iteration=waits_at(session.facts, goes_on=session.goes_on),
-            theme="dark" if self._page.dark_theme else "light",
             view=self._stage.view,
+            plots="" if self._teaching.name else self._sidebar.plots,
         )
-        return session.wanted, sight, session.attendance.follows, session.twin
+        room, question = session.attendance.follows, self._what_if.question
+        return session.wanted, sight, room, session.twin, question
 
 
 def waits_at(facts: Facts | None, *, goes_on: bool) -> int:

@@ -1,11 +1,12 @@
-const WAIT = 8000, BEAT = 2000, UNHEARD = 3
+const WAIT = 8000, PATIENCE = 10000, BEAT = 2000, UNHEARD = 3
 export function render({model, view}) {
   const found = new Map()
   const named = (name) => {
     const kept = found.get(name)
     if (kept && kept.document) { return kept }
     found.clear()
-    for (const one of view.model.document._all_models.values()) {
+    // Every figure has a document of its own.
+    for (const one of Bokeh.documents.flatMap(({_all_models}) => [..._all_models.values()])) {
       // Panes of Panel keep their names to themselves, but not their tags.
       for (const own of [one.name, ...one.tags]) { found.set(own, one) }
     }
@@ -75,22 +76,28 @@ export function render({model, view}) {
     state = now
   }
   // A socket may close, or, where a network only falls silent, stay open for minutes.
-  let lost = false, gone = false, closed = null, beats = 0
+  let lost = false, losses = 0, gone = false, closed = null, beats = 0
   const reach = () => fetch(
     location.pathname, {method: "HEAD", signal: AbortSignal.timeout(WAIT)}
   )
-  const come_back = async () => {
-    if (!lost || gone) { return }
+  const come_back = async (loss) => {
+    // Another loss has its own way back.
+    const is_lost = () => lost && !gone && loss === losses
+    if (!is_lost()) { return }
     try {
       await reach()
       // Bokeh itself tries but five times, and does not say when it has succeeded.
       closed?.reconnect()
       closed = null
-      await new Promise((done) => setTimeout(done, WAIT))
+      // On a machine that has much to do it takes its time to be heard again.
+      for (let waited = 0; waited < PATIENCE; waited += BEAT) {
+        await new Promise((done) => setTimeout(done, BEAT))
+        if (!is_lost()) { return }
+      }
       // A server that still knows this page has answered; for another one it is made anew.
       await reach()
-      if (lost && !gone) { location.replace(model.query) }
-    } catch { setTimeout(come_back, 1000) }
+      if (is_lost()) { location.replace(address()) }
+    } catch { setTimeout(() => come_back(loss), 1000) }
   }
   const lose = () => {
     if (gone) { return }
@@ -98,7 +105,7 @@ export function render({model, view}) {
     named("status").setv({text}, {sync: false})
     if (!lost) {
       lost = true
-      come_back()
+      come_back(++losses)
     }
   }
   const timer = setInterval(() => {
@@ -129,12 +136,19 @@ export function render({model, view}) {
   if (window.innerWidth < 640) { model.phone = true }
   if (window.innerWidth < 900) { model.narrow = true }
   // The address bar follows, so that a reload comes back; browsers refuse to do it very often.
+  // It names a theme only where that is not the system's, which whoever opens it has too.
+  const {dataset} = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)")
+  const address = () => dataset.theme === (dark.matches ? "dark" : "light")
+    ? model.query : `${model.query}&theme=${dataset.theme}`
   let due = 0
-  const follow = () => history.replaceState(null, "", model.query)
-  model.on("query", () => {
+  const follow = () => { if (model.query) { history.replaceState(null, "", address()) } }
+  const follow_soon = () => {
     clearTimeout(due)
     due = setTimeout(follow, 300)
-  })
+  }
+  const themes = new MutationObserver(follow_soon)
+  themes.observe(document.documentElement, {attributeFilter: ["data-theme"]})
+  model.on("query", follow_soon)
   model.on("copy", () => {
     follow()
     const count = model.copy, wrote = navigator.clipboard?.writeText(location.href)
@@ -148,6 +162,7 @@ export function render({model, view}) {
     gone = true
     clearInterval(timer)
     clearTimeout(due)
+    themes.disconnect()
     document.removeEventListener("visibilitychange", look)
   })
   look()

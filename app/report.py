@@ -5,7 +5,7 @@ What is read is the report of the command line, as it grows; its plots are drawn
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from html import escape
@@ -17,6 +17,7 @@ import panel_material_ui as pmui
 from bokeh.document import Document
 
 from app.errand import Errand, Found
+from app.glossary import explained
 from app.panes import button, column, select, text
 from app.views.colors import GREY
 from app.views.legend import Key, card_title
@@ -34,7 +35,7 @@ class Report:
     """A tab on which a report is asked for, watched while it is made, and read.
 
     A subclass says what it is, and what asking for it means for the page (`title`, `words`), what
-    is asked (`_ask`) and what can be chosen (`_choices`).
+    is asked (`_ask`), what can be chosen (`_choices`), and which settings it depends on (`acting`).
 
     Parameters
     ----------
@@ -48,6 +49,8 @@ class Report:
     """
 
     title = words = ""
+    note = "Nothing here depends on a setting."
+    """What stands in the sidebar, above the settings that do something here."""
 
     def __init__(self, errand: Errand) -> None:
         self._errand = errand
@@ -58,7 +61,10 @@ class Report:
         self._heading, self._sheet = _words(), column(role="paper")
         self._past = select("Shown", [], self._put, width=260, visible=False)
         self._files = _row(margin=(0, 6, 8, 6))
-        parts = self._heading, self._sheet, self._files
+        self._older = _words(role="progress")
+        again = button("Do it again", "replay", self._on_start, variant="outlined")
+        self._again = _row(self._older, again, align_items="center", visible=False)
+        parts = self._again, self._heading, self._sheet, self._files
         self._card = column(*parts, role="card paper", visible=False)
         self.view = column(role="paper", margin=(4, 10), visible=False)
 
@@ -75,6 +81,10 @@ class Report:
         if self.view.visible:
             self._refresh()
 
+    def acting(self) -> Collection[str]:
+        """Give the names of the settings that do something here."""
+        return ()
+
     def _ask(self) -> None:
         raise NotImplementedError
 
@@ -83,6 +93,10 @@ class Report:
 
     def _refusal(self) -> str:
         """Say why it cannot be asked for at present, if so."""
+        return ""
+
+    def _differs(self, found: Found) -> str:
+        """Say in what a report is not of the present settings; nothing if it is."""
         return ""
 
     def _found(self) -> list[Found]:
@@ -121,6 +135,14 @@ class Report:
         if newest.sections and (newest is self._shown[0] or newest is not self._newest):
             self._newest = newest
             self._put(newest)
+        self._mark()
+
+    def _mark(self) -> None:
+        """Tell a report of other settings from one of those present."""
+        shown, *_ = self._shown
+        differs = "" if shown is None or self._errand.is_busy else self._differs(shown)
+        self._older.object = f"<b>{escape(differs)}</b>"
+        self._again.visible = bool(differs)
 
     def _put(self, found: Found) -> None:
         """Show what there is of a report; of the same one, what is drawn already stays."""
@@ -131,19 +153,20 @@ class Report:
             self._sheet[:] = []
         for pane, section in zip(self._sheet, found.sections, strict=False):
             if isinstance(section, str):
-                pane.param.update(object=section)
+                pane.param.update(object=explained(section))
         self._sheet.extend(map(self._pane, found.sections[len(self._sheet) :]))
         is_whole = found in self._found()
         self._heading.object = self._title(found) if is_whole else ""
         self._files[:] = downloads(found.files) if is_whole else []
+        self._mark()
         self._card.visible = True
 
     def _pane(self, section: Section) -> Any:
         """Give what shows a section; a plot is drawn in it later."""
         if isinstance(section, str):
-            return _words(section, self._role)
+            return _words(explained(section), self._role)
         # A `FlexBox` would not do: what is put into it later misses the theme.
-        box = column(_words(legend(section), role="title"), role="panels")
+        box = column(_words(legend(section), role="legend"), role="panels")
         document = pn.state.curdoc
         assert document is not None
         put = partial(_put_later, document, box)
@@ -177,7 +200,7 @@ def legend(plot: Plot) -> str:
     """Write one legend for panels side by side (HTML)."""
     curves = {curve.label: curve for panel in plot.panels for curve in panel.curves}.values()
     keys = [Key(COLORS[one.hue], MARKS.get(one.line, one.line), one.label) for one in curves]
-    return card_title("", keys)
+    return f'<div class="title">{card_title("", keys)}</div>'
 
 
 def downloads(files: Mapping[str, bytes]) -> list[Any]:

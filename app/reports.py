@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from functools import partial
 from html import escape
 from typing import Any
@@ -10,13 +11,15 @@ from weakref import WeakKeyDictionary
 import panel_material_ui as pmui
 
 from app.errand import Found
-from app.labels import label_of
+from app.labels import changes_of, label_of
 from app.panes import select
 from app.report import Report
 from app.session import Session
 from app.worker.shown import has_reference
 from app.worker.studies import figures_of_the_paper, stability_of, study_of
+from solver.scenes import entry_of
 from solver.settings import Settings
+from solver.study.error_against_time import acting
 
 COMPUTED: list[Found] = []
 """The paper's figures, once a page of this server has had them made: they depend on no setting."""
@@ -26,7 +29,7 @@ NO_REFERENCE = (
     "or the command line."
 )
 CASES = {"a quarter of the cases": True, "all cases": False}
-EVERY, WRONG = "All runs", "Not right"
+EVERY, WRONG = "All runs", "Hide the right ones"
 PLAIN = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding": "4px 14px"}}
 
 
@@ -35,8 +38,9 @@ class PaperFigures(Report):
 
     title = "The paper's figures"
     words = (
-        "Figs. 3 to 8 again, each with the paper's claim and the numbers that bear it out or do "
-        "not. They take a few seconds, once for all pages."
+        "The paper's Figs. 3 to 8, computed anew for its bar (Table 1): each with what the paper "
+        "says of it, and the numbers that bear it out or do not. Takes a few seconds the first "
+        "time."
     )
 
     def open(self) -> None:
@@ -78,25 +82,31 @@ class StudyReport(Report):
 
     title = "Error against run time"
     words = (
-        "Every form of LATIN, the incremental solver and the public QP solvers that are installed, "
-        "on the present settings, one after the other in a process of their own. The run of this "
-        "page stands still while they are timed."
+        "Every form of LATIN, the incremental solver and the public QP solvers that are installed "
+        "solve the present settings in turn: how near to the solution is each, after what time? "
+        "The run of this page stands still meanwhile, to leave the clock alone."
     )
+    note = "Settings that change a study; the methods set all others themselves."
 
     def __init__(self, session: Session) -> None:
         super().__init__(session.study)
         self._session = session
         self._crowds: WeakKeyDictionary[Found, int] = WeakKeyDictionary()
+        self._settings: WeakKeyDictionary[Found, Settings] = WeakKeyDictionary()
+
+    def acting(self) -> Collection[str]:
+        """Give the names of the settings that no method of the study sets itself."""
+        return acting(self._session.wanted)
 
     def _choices(self) -> list[Any]:
-        what = "The median of the passes counts."
+        what = "How often each method runs; its median time counts."
         self._repeats = select(
             "Timed passes", list(REPEATS), value=REPEATS[1], width=130, description=what
         )
         self._growth = pmui.Switch(
             label="Growth with the size",
-            description="Time and iterations at other numbers of elements, instants and "
-            "substructures too; that takes several times as long.",
+            description="Also measure other numbers of elements, instants and substructures; takes "
+            "several times as long.",
             margin=(0, 10),
         )
         return [self._repeats, self._growth]
@@ -106,6 +116,22 @@ class StudyReport(Report):
         sizes = bool(self._growth.value)
         work = partial(study_of, settings.scene, settings.values(), repeats, sizes)
         self._errand.ask(title_of(settings), work)
+        self._settings.setdefault(self._errand.growing, settings)
+
+    def _differs(self, found: Found) -> str:
+        now = self._session.wanted
+        then = self._settings.get(found, now)
+        if then.scene != now.scene:
+            return f"These results are of another scene: {entry_of(then).title.lower()}."
+        acts = acting(then) | acting(now)
+        old, new = (
+            {name: value for name, value in changes_of(one, other).items() if name in acts}
+            for one, other in ((then, now), (now, then))
+        )
+        if not new:
+            return ""
+        was, now_is = label_of(then, old, most=4), label_of(now, new, most=4)
+        return f"These results are of other settings: {was}. At present: {now_is}."
 
     def _refusal(self) -> str:
         return "" if has_reference(self._session.wanted) else NO_REFERENCE
@@ -120,9 +146,9 @@ class StabilityReport(Report):
 
     title = "Stability on stiff and extreme cases"
     words = (
-        "Stiff and extreme cases of every scene, whatever the settings of the page: does every one "
-        "of them end with the right answer, or with a status that says that it is not? The run of "
-        "this page goes on beside, so seconds are no measurement."
+        "Stiff and extreme cases of every scene, whatever the settings of the page: does each end "
+        "with the right answer, or say that it has none? The run of this page goes on beside them "
+        "and slows them down, so do not compare their times."
     )
 
     def _choices(self) -> list[Any]:

@@ -22,6 +22,7 @@ from app.dashboard import TICK_MS, Dashboard
 from app.innards import forget
 from app.lateness import Lateness
 from app.pages import Pages, most_pages
+from app.question import question_from_query
 from app.session import Session
 from app.worker.bench import shared_bench
 from app.worker.link import warm_up
@@ -55,11 +56,13 @@ def open_page() -> Page:
         session.twin = twin
     session.set_pace(PACES[sight.pace])
     session.watch(phase=sight.instant)
-    complaint, phone = (
-        " ".join(filter(None, (complaint, more, most, refused))),
-        is_phone(pn.state.headers),
+    dashboard = Dashboard(
+        session,
+        complaint=" ".join(filter(None, (complaint, more, most, refused))),
+        sight=sight,
+        question=question_from_query(query),
+        on_phone=is_phone(pn.state.headers),
     )
-    dashboard = Dashboard(session, complaint=complaint, sight=sight, on_phone=phone)
     pn.state.onload(dashboard.loaded)
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     dashboard.session.keeper.wake = lambda: document.add_next_tick_callback(dashboard.tick)

@@ -1,6 +1,6 @@
 """A page's state and its one owner: settings, what is looked at, and the worker that has the run.
 
-All of it happens on the page's own event loop. No field comes here: pictures go through as bytes.
+All of it happens on the page's own event loop; pictures go through as bytes.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import Any
 
 from app.attendance import Attendance
 from app.errand import Errand
+from app.inquiry import Inquiry
 from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
 from app.labels import changes_of, label_of
 from app.pages import Pages
@@ -62,8 +63,8 @@ class Session:
     follows_hand, is_held
         Whether the run is one of many while a slider is dragged, and whether it stands still for a
         study that is timed.
-    figures, study, stability
-        The reports that this page has asked for.
+    figures, study, stability, inquiry
+        The reports and the sweep that this page has asked for.
     crowd
         Most runs of other pages that were at work at a time during the last study.
     keeper, attendance
@@ -80,9 +81,10 @@ class Session:
         self.look = Look()
         self.running = True
         self.pace: float | None = DEFAULT_PACE
-        self.warm_start = False
-        self.follows_hand = self.is_held = False
-        self._errands = self.figures, self.study, self.stability = [Errand(bench) for _ in range(3)]
+        self.warm_start = self.follows_hand = self.is_held = False
+        self.figures, self.study, self.stability = (Errand(bench) for _ in range(3))
+        self.inquiry = Inquiry()
+        self._asked = self.figures, self.study, self.stability, self.inquiry
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._pending: Settings | None = None
@@ -102,7 +104,7 @@ class Session:
         if settings.scene != self.settings.scene:
             self._left[self.settings.scene] = self.wanted
             self._label, self.twin = "", None
-            self.watch(interface="", substructure=None)
+            self.watch(interface="", substructure=None, place=None)
         elif self.ticket:
             self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
         if "is_alone" in how:
@@ -210,8 +212,8 @@ class Session:
         self.keeper.close()
         self.attendance.end()
         self._pages.remove(self)
-        for errand in self._errands:
-            errand.cancel()
+        for one in self._asked:
+            one.cancel()
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody sees the page, and let it go on afterwards."""
@@ -227,7 +229,7 @@ class Session:
             self.facts = None
         if self.follows_hand and time.monotonic() - self._moved_at > HELD_STILL:
             self.let_go()
-        heard = [errand.collect() for errand in self._errands]
+        heard = [one.collect() for one in self._asked]
         if self.study.is_begun != self.is_held:
             self.is_held = not self.is_held
             self.crowd = 0 if self.is_held else self.crowd
@@ -292,8 +294,7 @@ class Session:
 
     def _bury(self) -> bytes:
         """Follow the end of a process: start the run again, or give it up; say so."""
-        again = self.keeper.may_try_again
-        self.facts = None if again else Facts(is_broken=True)
+        self.facts = None if (again := self.keeper.may_try_again) else Facts(is_broken=True)
         if again:
             self._work()
         return said(AGAIN if again else GIVEN_UP)

@@ -3,91 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
 from typing import Any
 
-from app.comparing import CHOICES, choice_of, pair
-from app.form import POINTS, USUAL, Form, item_of
-from app.lesson import LESSONS
+from app.comparing import choice_of, pair
+from app.form import POINTS, USUAL, Form
+from app.items import (
+    CLASS,
+    COMPARE,
+    DEFAULTS,
+    LESSON,
+    LINK,
+    NOTE,
+    SAVE,
+    SCENE,
+    SHARE,
+    VIEWS,
+    WARM,
+    items,
+)
+from app.report import Report
 from app.session import Session
-from app.uploads import load_in
+from app.uploads import load_in, saved
 from app.views.catalogue import VIEWS as ALL_VIEWS
-from solver.checked import dump
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
-from solver.scenes import CATALOGUE, points_of
+from solver.scenes import points_of
 from solver.settings import Settings
-
-METHOD = "Method"
-ORDER = (
-    "Load",
-    "Top",
-    "Left",
-    "Right",
-    "Contact",
-    "Bar",
-    "Strand",
-    "Body",
-    "Body force",
-    "Decomposition",
-    METHOD,
-    "Stop",
-)
-
-# None of these is the name of a setting.
-SCENE, LESSON, WARM = "the-scene", "the-lesson", "start-from-before"
-VIEWS, SHARE, COMPARE = "the-views", "share", "compare"
-SCENE_ITEM = {
-    "name": SCENE,
-    "kind": "choice",
-    "label": "Scene",
-    "help": "What is solved; each scene keeps its settings until the page is closed.",
-    "options": [[entry.title, name] for name, entry in CATALOGUE.items()],
-}
-LESSON_ITEM = {
-    "name": LESSON,
-    "kind": "choice",
-    "label": "Lesson",
-    "help": "A question to predict the answer of, one thing to change, and why it is so.",
-    "options": [["none", ""], *([one.title, one.name] for one in LESSONS.values())],
-}
-COMPARE_ITEM = {
-    "name": COMPARE,
-    "kind": "choice",
-    "label": "Compare with",
-    "help": "Run A goes in step with the run at work, B, on the same axes: the present settings "
-    "are kept as A and you change B, or both are set at once.",
-    "options": [[title, name] for title, name in CHOICES.items()],
-}
-WARM_ITEM = {
-    "name": WARM,
-    "kind": "flip",
-    "label": "Start from the run before",
-    "help": "When a setting changes, begin with the solution of the run before, if one iteration "
-    "shows it to be much nearer to the new one: its k-free indicator is then below a fourth of "
-    "that from the usual start. The time of both is counted. Reset always takes the usual start.",
-    "group": METHOD,
-}
-VIEWS_ITEM = {"name": VIEWS, "kind": "checks", "help": "What is drawn.", "group": "Views"}
-LINK, SAVE, DEFAULTS, CLASS = "Link", "Save", "Defaults", "Class"
-SHARE_ITEM = {
-    "name": SHARE,
-    "kind": "share",
-    "group": "Share",
-    "buttons": [
-        [LINK, "Copy the address, which has the settings and what is looked at."],
-        [SAVE, "Save the settings; the command line reads them too."],
-        [DEFAULTS, "Bring all settings back to their defaults."],
-        [CLASS, "Begin a class: whoever joins by its code sees what you see."],
-    ],
-    "label": "Open settings (.toml) or load (.csv)",
-}
-
-WARM_NOTE = """\
-# The run on the page started from the solution of the run before it, so its iterations and times
-# are not those of these settings alone, which start as `start` says.
-"""
-"""Stands in a file that is saved while such a run is looked at."""
 
 
 class Sidebar:
@@ -110,6 +51,10 @@ class Sidebar:
     ----------
     lesson
         Name of the one that is open, or empty.
+    named
+        Whether the views are those that a lesson or an address names.
+    report
+        What is looked at, whose settings alone are shown; None for the live run.
     view
         What stands on the page.
     """
@@ -128,8 +73,10 @@ class Sidebar:
         self._copy = copy
         self._teach = teach
         self.lesson = ""
+        self.report: Report | None = None
         self._views: list[str] = []
         self._unwanted: set[str] = set()
+        self.named = False
         self._asked: dict[str, Any] = {}
         self._in_hand: set[str] = set()
         self._has_obeyed = False
@@ -139,11 +86,13 @@ class Sidebar:
 
     def show(self, settings: Settings) -> None:
         """Show the settings that hold."""
-        values = {
-            name: getattr(settings, name)
-            for name, definition in settings.definitions().items()
-            if about(definition).applies(settings)
-        }
+        definitions = settings.definitions()
+        acting = (
+            [name for name, one in definitions.items() if about(one).applies(settings)]
+            if self.report is None
+            else self.report.acting()
+        )
+        values = {name: getattr(settings, name) for name in acting}
         wanted = [name for name in self._views if name not in self._unwanted]
         own = {
             SCENE: settings.scene,
@@ -154,7 +103,10 @@ class Sidebar:
             SHARE: None,
             "": self._answered,
         }
-        self.view.param.update(items=_items(type(settings)), shown={**values, **own})
+        if self.report is not None:
+            kept = {SCENE, SHARE, ""} if acting else {SHARE, ""}
+            own = {NOTE: self.report.note, **{name: own[name] for name in kept}}
+        self.view.param.update(items=items(type(settings)), shown={**values, **own})
 
     def hear(self, name: str, value: Any, hand: bool, count: float) -> None:
         """Follow what the user does with a control."""
@@ -170,6 +122,7 @@ class Sidebar:
             self._session.warm_start = value
         elif name == VIEWS:
             self._unwanted = (self._unwanted | set(self._views)) - set(value)
+            self.named = False
             self._rearrange()
         elif name == SHARE:
             self._on_share(value)
@@ -202,9 +155,16 @@ class Sidebar:
             self.show(self._session.wanted)
         return [name for name in views if name not in self._unwanted]
 
+    @property
+    def plots(self) -> str:
+        """The views that are wanted, separated by commas, or nothing if all are."""
+        wanted = (view.name for view in ALL_VIEWS if view.name not in self._unwanted)
+        return ",".join(wanted) if self._unwanted else ""
+
     def draw(self, views: Iterable[str]) -> None:
         """Draw these views and no others, until the user wants more."""
         self._unwanted = {view.name for view in ALL_VIEWS} - set(views)
+        self.named = bool(self._unwanted)
         self.show(self._session.wanted)
 
     def _on_scene(self, scene: str) -> None:
@@ -225,7 +185,9 @@ class Sidebar:
         if value == LINK:
             self._copy()
         elif value == SAVE:
-            self.view.file = [self._saved(), self._heard]
+            facts = self._session.facts
+            was_warm = facts is not None and facts.was_warm
+            self.view.file = [saved(self._session.settings, was_warm=was_warm), self._heard]
         elif value == DEFAULTS:
             self._adopt(type(self._session.settings).checked({}))
         elif value == CLASS:
@@ -273,22 +235,3 @@ class Sidebar:
                 self._on_setting(*load_in(text, filename, self._session.wanted))
         except SettingError as refusal:
             self._complain(str(refusal))
-
-    def _saved(self) -> str:
-        facts = self._session.facts
-        warm = facts is not None and facts.was_warm
-        return (WARM_NOTE if warm else "") + dump(self._session.settings)
-
-
-@cache
-def _items(settings: type[Settings]) -> list[dict[str, Any]]:
-    """Say what controls there are, those behind "more" before the choice of views."""
-    made = [item_of(name, definition) for name, definition in settings.definitions().items()]
-    found = [item for item in made if item is not None]
-    open_ones = [item for item in found if not item["more"]]
-    groups = [*ORDER, *(item["group"] for item in open_ones)]
-    open_ones.sort(key=lambda item: groups.index(item["group"]))
-    after = max(i for i, item in enumerate(open_ones) if item["group"] == METHOD) + 1
-    open_ones.insert(after, WARM_ITEM)
-    more = [item for item in found if item["more"]]
-    return [SCENE_ITEM, LESSON_ITEM, COMPARE_ITEM, *open_ones, *more, VIEWS_ITEM, SHARE_ITEM]

@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from app.address import VIEWS
+from app.gallery import Gallery
 from app.lens import Lens
 
 PAGE, PRESENT, EMBED = VIEWS
 ALONE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 MAGNIFIED = {PRESENT: 1.5}
-"""Type of plots; that of words is in the style sheet."""
+BESIDE_A_LESSON = 0.8
+"""Type of plots, and its share where they are smaller; that of words is in the style sheet."""
 
 
 class Stage:
@@ -18,8 +20,8 @@ class Stage:
 
     Parameters
     ----------
-    page, live
-        All of it, and the run.
+    page, live, plots
+        All of it, the run, and its plots.
 
     Attributes
     ----------
@@ -29,8 +31,9 @@ class Stage:
         What follows the pointer over plots.
     """
 
-    def __init__(self, page: Any, live: Any) -> None:
+    def __init__(self, page: Any, live: Any, plots: Gallery) -> None:
         self._page = page
+        self._plots = plots
         self._was_open = True
         self.lens = Lens()
         live.append(self.lens)
@@ -45,6 +48,11 @@ class Stage:
         """Show the page as a projector needs it, or as usual again."""
         self.show(PAGE if self.is_bare else PRESENT)
 
+    def magnify(self, *, has_lesson: bool) -> None:
+        """Give plots the type that the view and their size ask for."""
+        share = BESIDE_A_LESSON if has_lesson else 1.0
+        self._plots.magnified = max(MAGNIFIED.get(self.view, 1.0) * share, 1.0)
+
     def show(self, view: str) -> None:
         """Show the page so."""
         if view == self.view:
@@ -52,7 +60,6 @@ class Stage:
         if not self.is_bare:
             self._was_open = self._page.sidebar_open
         self.view = view
-        self.lens.magnified = MAGNIFIED.get(view, 1.0)
         self._page.param.update(
             sx=ALONE if self.is_bare else None,
             sidebar_open=self._was_open and not self.is_bare,

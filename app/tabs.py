@@ -1,4 +1,4 @@
-"""The tabs of the page: the live run, and the reports beside it."""
+"""The tabs of the page: the live run, what if, and the reports beside it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.address import TABS
+from app.panes import looks
 from app.report import Report
 from app.reports import PaperFigures, StabilityReport, StudyReport
 from app.session import Session
+from app.whatif import WhatIf
 
 IN_HEADER = {
     "& button": {
@@ -32,14 +34,16 @@ BELOW = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 
 
 
 class Tabs:
-    """The choice between the live run, which goes on in any case, and the reports.
+    """The choice between the live run, which goes on in any case, and what is beside it.
 
     Parameters
     ----------
     session
-        Has the reports made.
+        Has all of it made.
     live
         The live run.
+    what_if
+        The tab that asks over ranges.
     changed
         Called when another one was chosen.
 
@@ -51,32 +55,39 @@ class Tabs:
         What is chosen, of which nothing else is seen.
     """
 
-    def __init__(self, session: Session, live: Any, changed: Callable[[], None]) -> None:
+    def __init__(
+        self, session: Session, live: Any, what_if: WhatIf, changed: Callable[[], None]
+    ) -> None:
         self._live = live
         self._changed = changed
-        reports: list[Report] = [
+        beside: list[WhatIf | Report] = [
+            what_if,
             PaperFigures(session.figures),
             StudyReport(session),
             StabilityReport(session.stability),
         ]
-        self._beside = dict(zip(TABS[1:], reports, strict=True))
+        self._beside = dict(zip(TABS[1:], beside, strict=True))
         self.bar = pmui.RadioButtonGroup(
             options=list(TABS), value=TABS[0], size="small", margin=(0, 12), sx=IN_HEADER
         )
         self.bar.param.watch(self._on_choice, "value")
-        self.main = pn.Column(
-            live, *(tab.view for tab in self._beside.values()), sizing_mode="stretch_width"
-        )
+        self.main = pn.Column(live, *(tab.view for tab in self._beside.values()), **looks("main"))
 
     @property
     def shows_the_run(self) -> bool:
         """Whether the live run is looked at."""
         return bool(self._live.visible)
 
+    @property
+    def report(self) -> Report | None:
+        """The report that is looked at, or None where all settings do something."""
+        found = self._beside.get(self.bar.value)
+        return found if isinstance(found, Report) else None
+
     def refresh(self) -> None:
-        """Show what the reports have come to."""
-        for report in self._beside.values():
-            report.refresh()
+        """Show what the sweep and the reports have come to."""
+        for tab in self._beside.values():
+            tab.refresh()
 
     def leave_the_header(self) -> None:
         """Stand above what is chosen: a phone's header has no room."""

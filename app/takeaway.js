@@ -1,6 +1,6 @@
 const SVG = "http://www.w3.org/2000/svg", FONT = "system-ui, sans-serif", LINE = 20, FINE = 2
-const DASHES = {dashed: "6 4", dotted: "2 3"}, WIDTHS = {band: 7}, PALE = ["pale", "band"]
-export function render({model, view}) {
+const DASHES = {dashed: "6 4", dotted: "2 3"}, WIDTHS = {band: 7, thin: 1.5}, EDGE = "#8a8a8a"
+export function render({model}) {
   const make = (tag, more = {}, ...children) => {
     const made = Object.assign(document.createElement(tag), more)
     made.append(...children)
@@ -17,7 +17,8 @@ export function render({model, view}) {
     make("a", {href, download: name}).click()
     setTimeout(() => URL.revokeObjectURL(href), 1e4)
   }
-  const models = () => [...view.model.document._all_models.values()]
+  const named = (name) =>
+    Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)
   const ruler = make("canvas").getContext("2d")
   const wide = (text, weight) => {
     ruler.font = `${weight} 14px ${FONT}`
@@ -26,7 +27,15 @@ export function render({model, view}) {
   const mark = ({className, style}, x, y) => {
     const color = style.getPropertyValue("--mark"), middle = {cx: x + 8, cy: y}
     if (className === "square") {
-      return drawn("rect", {x: x + 2, y: y - 6, width: 12, height: 12, fill: color})
+      return drawn("rect", {x: x + 2, y: y - 6, width: 12, height: 12, fill: color,
+        stroke: EDGE})
+    }
+    if (className === "front") {
+      const edge = {x: x + 1, y: y - 6, width: 14, height: 12, fill: "#d9d9d9", stroke: EDGE}
+      const group = drawn("g", {})
+      group.append(drawn("rect", edge), drawn("rect", {...edge, y: y - 1, height: 2, fill: color,
+        stroke: "none"}))
+      return group
     }
     if (className === "dot") { return drawn("circle", {...middle, r: 4, fill: color}) }
     if (className === "ring") {
@@ -36,14 +45,12 @@ export function render({model, view}) {
       return drawn("text", {x: x + 4, y: y + 5, fill: color, "font-weight": 700}, "×")
     }
     return drawn("line", {x1: x, x2: x + 16, y1: y, y2: y, stroke: color,
-      "stroke-width": WIDTHS[className] ?? 3, "stroke-dasharray": DASHES[className] ?? "none",
-      opacity: PALE.includes(className) ? 0.45 : 1})
+      "stroke-width": WIDTHS[className] ?? 3, "stroke-dasharray": DASHES[className] ?? "none"})
   }
   // Name and legend stand on the card, beside the plot.
   const head = (slug, width, color) => {
-    const pane = models().find(({tags}) => tags.includes(`${slug}.title`))
-    const words = new DOMParser().parseFromString(pane.text, "text/html").body.textContent
-    const {body} = new DOMParser().parseFromString(words, "text/html")
+    const {text} = named(`${slug}.title`)
+    const {body} = new DOMParser().parseFromString(text, "text/html")
     const group = drawn("g", {"font-family": FONT, "font-size": 14, fill: color})
     let x = 12, y = LINE
     const put = (text, shape, weight) => {
@@ -61,7 +68,7 @@ export function render({model, view}) {
     return [group, y + LINE / 2]
   }
   const pictured = (slug) => {
-    const plot = models().find((one) => one.x_range?.name === `${slug}.x`)
+    const range = named(`${slug}.x`), [plot] = range.document.roots()
     const seen = Bokeh.index.find_one(plot), {width} = seen.bbox
     const inner = seen.export("svg", false).ctx.get_svg()
     const {backgroundColor: paper, color} = getComputedStyle(document.body)

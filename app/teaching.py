@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any, ClassVar
 
 import param
 from panel.custom import JSComponent
 
+from app.classroom import Room
 from app.form import STYLE
-from app.lesson import LESSONS, OFFERED, content, readings
+from app.lesson import LESSONS, NO_CHOICE, OFFERED, content, readings
 from app.panes import script
 from app.session import Session
 from app.sidebar import Sidebar
@@ -17,10 +18,10 @@ from app.views.catalogue import VIEWS
 from solver.lessons.lesson import Lesson
 from solver.settings import Settings
 
-CHOICE = "the-choice"
-"""Name of the message that tells what was predicted; it is none of a setting."""
+CHOICE, COUNT = "the-choice", "the-count"
+"""Messages that tell what was predicted, and that all may see how often; they name no setting."""
 OWN_STYLE = """
-:host { font-size: 15px; line-height: 1.45; }
+:host { font-size: var(--prose, 15px); line-height: 1.45; }
 h2 { margin: 0 0 6px; font-size: 20px; line-height: 1.25; }
 p { margin: 8px 0; }
 article { padding: 2px 10px 10px; }
@@ -34,6 +35,11 @@ small { opacity: 0.8; }
 button { width: auto; padding: 5px 12px; margin: 3px 8px 3px 0; text-align: left; }
 button:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
 button.main { color: #fff; background: #1565c0; border-color: #1565c0; }
+.choices button[aria-pressed=true] { border-color: #1976d2; outline: 2px solid #1976d2; }
+.choices button, .counts li { background: linear-gradient(to right,
+  color-mix(in srgb, #1976d2 30%, transparent) var(--share, 0%), transparent var(--share, 0%)); }
+.counts { padding: 0; list-style: none; }
+.counts li { padding: 4px 12px; margin: 4px 0; }
 .choices button { display: block; width: 100%; padding: 7px 12px; margin: 6px 0; }
 .value { font-weight: 600; white-space: nowrap; font-variant-numeric: tabular-nums; }
 sup { line-height: 0; }
@@ -56,7 +62,7 @@ class LessonPane(JSComponent):
     """A lesson, or where there is none, the offer of one.
 
     Messages from the browser are those of a `Form`; also `CHOICE` with the index of what was
-    predicted, and the sidebar's choice of a lesson.
+    predicted, `COUNT`, and the sidebar's choice of a lesson.
 
     Attributes
     ----------
@@ -68,14 +74,21 @@ class LessonPane(JSComponent):
         As in `Form`, for the controls of the lesson.
     values
         Name and text of every quantity in its sentences; pictures bring them.
+    poll
+        What the class predicts: whether this page `leads` it, how many have `predicted` and `of`
+        how many, and the `counts` of all choices once they are to be seen; empty without a class.
+    recalls
+        Whether what was predicted before a page was loaded again holds on; the browser knows it.
     """
 
     offered = param.List(default=[])
     lesson = param.Dict(default={})
     shown = param.Dict(default={})
     values = param.List(default=[])
+    poll = param.Dict(default={})
+    recalls = param.Boolean(default=False)
 
-    _esm = script("points.js", "controls.js", "lesson.js")
+    _esm = script("values.js", "points.js", "controls.js", "lesson.js")
     _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
 
 
@@ -104,6 +117,7 @@ class Teaching:
         self._sidebar = sidebar
         self._changed = changed
         self._choice: int | None = None
+        self._room: Room | None = None
         self.lesson: Lesson | None = None
         self.view = LessonPane(
             name="lesson",
@@ -121,9 +135,20 @@ class Teaching:
         return self.lesson.name if self.lesson else ""
 
     @property
+    def controls(self) -> Collection[str]:
+        """Names of the settings that one may change beside the plots: a lesson has but its own."""
+        return (self.view if self.lesson else self._sidebar.view).shown
+
+    @property
     def asks(self) -> bool:
         """Whether a question waits for an answer, which nothing on the page may give away."""
-        return self.lesson is not None and self._choice is None
+        return self.lesson is not None and (self._choice is None or self._waits)
+
+    @property
+    def _waits(self) -> bool:
+        """Whether the answer comes with the class that is followed."""
+        room = self._session.attendance.follows
+        return room is not None and room.poll is not None and not room.poll.is_answered
 
     def open(self, name: str) -> None:
         """Begin a lesson, with its scene and settings; without a name, leave all as it is."""
@@ -142,21 +167,64 @@ class Teaching:
         if self.lesson is not None and settings.scene != self.lesson.settings.scene:
             self.open("")
 
+    def catch_up(self) -> None:
+        """Show the lesson to the class that is led here, or that of the class that is followed."""
+        attendance = self._session.attendance
+        if attendance.leads is not None:
+            attendance.leads.ask(self.name, is_answered=not self.asks)
+        elif attendance.follows is not None:
+            self._attend(attendance.follows)
+        if self._room is not attendance.follows:
+            self._room = attendance.follows
+            self._tell()
+        self.view.poll = self._polled()
+
+    def _attend(self, room: Room) -> None:
+        poll = room.poll
+        name = poll.lesson if poll is not None else ""
+        if name != self.name:
+            # The settings of another scene come with a picture.
+            if not name or LESSONS[name].settings.scene == room.settings.scene:
+                self.take(name)
+        elif poll is not None and poll.is_answered and "choice" not in self.view.lesson:
+            self._choice = NO_CHOICE if self._choice is None else self._choice
+            self._tell()
+
+    def _polled(self) -> dict[str, Any]:
+        attendance = self._session.attendance
+        room, poll = attendance.room, attendance.poll
+        if room is None or poll is None or self.lesson is None:
+            return {}
+        counts = poll.counts(len(self.lesson.choices)) if poll.is_open else []
+        leads = attendance.leads is not None
+        return {"leads": leads, "predicted": poll.predicted, "of": room.present, "counts": counts}
+
     def _tell(self) -> None:
         """Show what there is of the lesson, and have no more drawn and told than it needs."""
-        lesson, choice = self.lesson, self._choice
+        lesson, choice = self.lesson, None if self.asks else self._choice
         self._sidebar.lesson = self.name
         self._sidebar.draw(lesson.views if lesson else [view.name for view in VIEWS])
         self._session.watch(readings=readings(lesson, choice) if lesson else ())
-        self.view.lesson = content(lesson, choice) if lesson else {}
+        self.view.lesson = {**content(lesson, choice), **self._in_class()} if lesson else {}
         self._changed()
 
+    def _in_class(self) -> dict[str, Any]:
+        """Say what else there is of a lesson that is followed: its ends are the leader's."""
+        if self._session.attendance.follows is None:
+            return {}
+        return {"follows": True, "chosen": self._choice}
+
     def _hear(self, name: str, value: Any, hand: bool, count: float) -> None:
-        if name != CHOICE:
-            self._sidebar.hear(name, value, hand, count)
-        elif self.asks:
+        poll = self._session.attendance.poll
+        if name == COUNT and poll is not None:
+            poll.is_open = True
+        elif name == CHOICE and self.asks:
+            if poll is not None and self._waits:
+                poll.vote(self, value)
             self._choice = value
             self._tell()
+        elif name not in (CHOICE, COUNT):
+            self._sidebar.hear(name, value, hand, count)
 
     def _show(self) -> None:
         """Show on the lesson's controls what those of the sidebar show."""

@@ -75,6 +75,14 @@ class Transport:
             "Shift+ArrowRight": partial(self.move_iteration, 1),
         }
 
+    def chooses(self) -> dict[str, Callable[[Any], None]]:
+        """Give what a tap or a drag on a plot does, by what it chooses."""
+        return {
+            "instant": self.choose_time,
+            "time": self.choose_time,
+            "substructure": self.choose_substructure,
+        }
+
     def toggle(self) -> None:
         """Run or pause."""
         if self._session.goes_on:
@@ -172,7 +180,7 @@ class Transport:
         )
         does = "Do one iteration and wait (s)."
         self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
-        does = "Start the run again, as its settings say and not from the run before (r)."
+        does = "Start the run again, from its usual start (r)."
         self._reset = button(
             "Reset", "restart_alt", self.reset, variant="outlined", description=does
         )
@@ -182,7 +190,7 @@ class Transport:
             lambda name: self._session.set_pace(PACES[name]),
             value=next(name for name, pace in PACES.items() if pace == self._session.pace),
             width=160,
-            description="Iterations per second that are shown; the method itself is not slowed.",
+            description="Iterations shown in a second; waiting is no part of the run time.",
         )
 
     def _make_sliders(self) -> None:

@@ -1,10 +1,22 @@
-"""A table of points that a user brings, and the load path that it is for."""
+"""Files of a user: a table of points for a load path is brought, settings are saved."""
 
 from __future__ import annotations
 
+from solver.checked import dump
 from solver.definitions import Curve, SettingError
 from solver.settings import Settings
 from solver.tables import read_table
+
+WARM_NOTE = """\
+# The run on the page started from the solution of the run before it, so its iterations and times
+# are not those of these settings alone, which start as `start` says.
+"""
+"""Stands in a file that is saved while such a run is looked at."""
+
+
+def saved(settings: Settings, *, was_warm: bool) -> str:
+    """Write a settings file, of a run that may have started from the run before it."""
+    return (WARM_NOTE if was_warm else "") + dump(settings)
 
 
 def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[float]]]:

@@ -31,6 +31,7 @@ from solver.reference.distance import Distance, distance_to
 from solver.report_commands import REFUSED, add_reports
 from solver.scenes import CATALOGUE, discretise
 from solver.settings import Settings
+from solver.sweep_command import add_sweep
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -72,6 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     settings.add_argument("scene")
     settings.set_defaults(command=_settings)
     add_reports(commands)
+    add_sweep(commands)
     add_lesson(commands)
     return parser
 

@@ -20,14 +20,17 @@ from solver.study.paper_figures import paper_figures
 from solver.study.reduction_cost import print_reduction_cost
 from solver.study.row_report import prepare
 from solver.study.stability import cases_of, stability
-from solver.study.stability_report import HEAD, line, notes, passes, write_report
+from solver.study.stability_report import HEAD, counts, line, notes, passes, write_report
 from solver.study.stability_report import summary as summary_of
 from solver.study.stability_units import invariance
 from solver.study.study_files import NO_PAGE, write_study
-from solver.study.study_report import aligned, conditions, growth_table, table, verdicts
+from solver.study.study_report import aligned, conditions, growth_table, table, winners
 from solver.study.survey import Row, Verdict, survey
+from solver.study.sweep.overhead import print_overhead
 from solver.study.thread_gain import print_thread_gain
 
+SIDE = 20
+"""Of the square chart whose overhead is measured."""
 REFUSED = 2
 """Exit code of refused input."""
 
@@ -41,6 +44,9 @@ def add_reports(commands: Any) -> None:
     )
     cost.add_argument(
         "--threads", type=int, default=1, help="so many threads against one instead, on blocks"
+    )
+    cost.add_argument(
+        "--sweep", action="store_true", help="400 runs of a sweep against their own time instead"
     )
     cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
@@ -75,7 +81,7 @@ def _check_repeats(chosen: argparse.Namespace) -> None:
 
 
 @contextlib.contextmanager
-def _writing(folder: Path) -> Iterator[None]:
+def writing(folder: Path) -> Iterator[None]:
     """Refuse a folder that cannot be made or written to."""
     try:
         yield
@@ -90,6 +96,9 @@ def _benchmark(chosen: argparse.Namespace) -> int:
     _check_repeats(chosen)
     if chosen.threads > 1:
         print_thread_gain(chosen.threads, chosen.repeats)
+        return 0
+    if chosen.sweep:
+        print_overhead(SIDE)
         return 0
     measure = print_reduction_cost if chosen.reduction else print_iteration_cost
     measure(chosen.repeats)
@@ -108,7 +117,7 @@ def _figures(chosen: argparse.Namespace) -> int:
             "slipfront: figures need matplotlib: pip install 'slipfront[figures]'", file=sys.stderr
         )
         return REFUSED
-    with _writing(chosen.out):
+    with writing(chosen.out):
         chosen.out.mkdir(parents=True, exist_ok=True)
         figures = paper_figures()
         files = write_figures(figures, chosen.out)
@@ -123,14 +132,14 @@ def _figures(chosen: argparse.Namespace) -> int:
 def _study(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
     _check_repeats(chosen)
-    with _writing(chosen.out):
+    with writing(chosen.out):
         chosen.out.mkdir(parents=True, exist_ok=True)
         found = error_against_time(settings, chosen.repeats)
         sizes = growth(settings) if chosen.growth else []
         files, drawn = write_study(found, sizes, chosen.out)
     print("\n".join(conditions(found)), end="\n\n")
     print(aligned(table(found)), end="\n\n")
-    print("\n".join(verdicts(found)))
+    print(aligned(winners(found)))
     if sizes:
         print(f"\n{aligned(growth_table(sizes))}")
     if not drawn:
@@ -142,13 +151,14 @@ def _study(chosen: argparse.Namespace) -> int:
 def _stability(chosen: argparse.Namespace) -> int:
     scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
     matrix = cases_of(scene, quick=chosen.quick)
-    with _writing(chosen.out):
+    with writing(chosen.out):
         prepare(chosen.out, "stability")
         print(HEAD)
         rows = stability(matrix, lambda row: print(line(row), flush=True))
         apart = invariance() if scene in (None, "bar") else {}
         files = write_report(rows, apart, chosen.out)
-    print("\n".join(["", summary_of(rows), *notes(apart), f"{len(files)} files in {chosen.out}"]))
+    print("\n".join(["", summary_of(rows), aligned(counts(rows)), "", *notes(apart)]))
+    print(f"{len(files)} files in {chosen.out}")
     return 0 if passes(rows, apart) else 1
 
 
@@ -160,7 +170,7 @@ def _survey(chosen: argparse.Namespace) -> int:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
     numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
     rows: list[Row] = []
-    with _writing(chosen.out):
+    with writing(chosen.out):
         prepare(chosen.out, "survey")
         print(survey_report.HEAD)
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept

@@ -49,15 +49,15 @@ class Settings(Checked):
         10,
         (1, 20_000),
         (1, 50),
-        "Number of substructures; their sizes differ by at most one element.",
+        "Number of pieces (substructures) that a body is cut into.",
         group="Decomposition",
         title="Substructures",
         essential=True,
     )
     multiscale = switch(
         True,
-        "Solve the coarse problem: macro forces between substructures are in equilibrium at every "
-        "iteration.",
+        "Also balance the mean forces between substructures at every iteration, by a small coarse "
+        "problem. Without it, a load travels one substructure an iteration.",
         group="Decomposition",
         title="Multiscale (coarse problem)",
         applies=lambda settings: settings.n_substructures > 1,
@@ -66,8 +66,9 @@ class Settings(Checked):
     method = choice(
         "fast",
         ["fast", "paper"],
-        "Sets search direction, acceleration, start, relaxation, finish and tolerance at once: to "
-        "what reaches the accuracy soonest, or to the paper's. Each can still be set alone.",
+        "fast: what reaches the accuracy soonest. paper: the iteration of the paper. Sets search "
+        "direction, acceleration, start, relaxation, finish and tolerance at once; each can be "
+        "changed afterwards.",
         group="Method",
         title="Method",
         essential=True,
@@ -75,8 +76,9 @@ class Settings(Checked):
     search_direction = choice(
         "auto",
         ["paper", "auto"],
-        "Rule for the search direction: the paper's, from the length of a substructure, or on "
-        "friction points from the length that is expected to slide and that of an element.",
+        "How k, the stiffness that joins the two stages of an iteration, is chosen. paper: from "
+        "the length of a substructure. auto: at points that may slip, from the length that is "
+        "expected to slide and that of an element.",
         group="Method",
         title="Search direction",
         essential=True,
@@ -85,7 +87,7 @@ class Settings(Checked):
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Factor on the search direction k. Changes the path, not the limit.",
+        "Multiplies the search direction k: other iterations, the same solution.",
         group="Method",
         title="Factor on k",
         logarithmic=True,
@@ -95,7 +97,7 @@ class Settings(Checked):
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Further factor on the search direction of the friction points alone.",
+        "Multiplies k once more, at friction points alone.",
         group="Method",
         title="Friction k factor",
         logarithmic=True,
@@ -104,7 +106,8 @@ class Settings(Checked):
         0.8,
         (0.01, 1.0),
         (0.1, 1.0),
-        "Share of the new iterate that is kept; 0.5 is Douglas-Rachford, 1 Peaceman-Rachford.",
+        "How far an iteration goes towards its new result: 1 all the way (Peaceman-Rachford), 0.5 "
+        "half of it (Douglas-Rachford). Less is slower and safer.",
         group="Method",
         title="Relaxation",
         essential=True,
@@ -112,7 +115,8 @@ class Settings(Checked):
     linear_stage = choice(
         "full",
         ["full", "pgd"],
-        "How the linear stage is solved: full space-time fields, or a separated basis (PGD).",
+        "full: a value for every point and instant. pgd: a sum of a few modes, each a shape in "
+        "space times a function of time (model reduction).",
         group="Method",
         title="Linear stage",
         essential=True,
@@ -121,7 +125,7 @@ class Settings(Checked):
         10,
         (1, 1000),
         (1, 20),
-        "Most modes that a substructure's basis keeps; more are dropped, the smallest first.",
+        "Most modes kept for a substructure; the smallest are dropped.",
         group="Method",
         title="Most PGD modes",
         applies=_is_reduced,
@@ -131,7 +135,8 @@ class Settings(Checked):
         1e-4,
         (1e-14, 1.0),
         (1e-8, 1e-1),
-        "Share of a substructure's field that downsizing may drop; a residual below it is left.",
+        "Share of a substructure's field that may be lost: so much is dropped with the smallest "
+        "modes, and no mode is added for a residual below it.",
         group="Method",
         title="PGD tolerance",
         logarithmic=True,
@@ -141,8 +146,8 @@ class Settings(Checked):
         0.1,
         (0.0, 1.0),
         (0.0, 1.0),
-        "Share of the residual that the update of the time functions may leave before modes are "
-        "added; 0 always adds, 1 never does.",
+        "Modes are added only if new time functions for the old ones leave more than this share of "
+        "the residual. 0: always; 1: never.",
         group="Method",
         title="PGD enrichment threshold",
         applies=_is_reduced,
@@ -151,7 +156,7 @@ class Settings(Checked):
         2,
         (1, 1000),
         (1, 10),
-        "Most pairs of modes that one iteration adds to a substructure's basis.",
+        "Most modes that one iteration adds to a substructure.",
         group="Method",
         title="PGD pairs per iteration",
         applies=_is_reduced,
@@ -160,8 +165,8 @@ class Settings(Checked):
         0.0,
         (0.0, 1.0),
         (0.0, 0.5),
-        "Substructures of equal operators share one basis when at most this share of each one's "
-        "field lies outside the other's; 0 shares nothing.",
+        "Equal substructures use the same modes if these miss at most this share of each one's "
+        "field. 0: each has modes of its own.",
         group="Method",
         title="PGD basis sharing",
         applies=lambda settings: _is_reduced(settings) and settings.n_substructures > 1,
@@ -169,8 +174,8 @@ class Settings(Checked):
     local_stage = choice(
         "full",
         ["full", "reduced"],
-        "Where the interface laws are evaluated: everywhere, or at reference points and instants "
-        "alone, from which the basis rebuilds the field.",
+        "full: contact and friction laws are evaluated at all points and instants. reduced: at "
+        "some of them, and the modes give the rest.",
         group="Method",
         title="Local stage",
         applies=_is_reduced,
@@ -179,7 +184,7 @@ class Settings(Checked):
         0.5,
         (0.0, 1.0),
         (0.1, 1.0),
-        "Share of the friction points that are reference points, at least one for each mode.",
+        "Share of the friction points at which the laws are evaluated; at least one for each mode.",
         group="Method",
         title="Reference points",
         applies=_is_sampled,
@@ -188,7 +193,7 @@ class Settings(Checked):
         0.5,
         (0.0, 1.0),
         (0.1, 1.0),
-        "Share of the instants that are reference instants, at least one for each mode.",
+        "Share of the instants at which the laws are evaluated; at least one for each mode.",
         group="Method",
         title="Reference instants",
         applies=_is_sampled,
@@ -196,7 +201,8 @@ class Settings(Checked):
     acceleration = choice(
         "anderson",
         ["none", "anderson"],
-        "Anderson mixes the newest iterate with those before, so that their residual is least.",
+        "anderson: combine the last iterates so that the two stages agree best, which saves "
+        "iterations. none: take the newest as it is.",
         group="Method",
         title="Acceleration",
         applies=lambda settings: not _is_reduced(settings),
@@ -205,8 +211,8 @@ class Settings(Checked):
     start = choice(
         "nested",
         ["zero", "nested"],
-        "Where the iteration starts: from zero, or from the solution of coarser meshes, uncut and "
-        "accelerated, each started so itself. Their time is billed to the run.",
+        "zero: start from nothing. nested: solve coarser meshes first, and start from their "
+        "solution; the run time includes that.",
         group="Method",
         title="Start",
         essential=True,
@@ -214,8 +220,8 @@ class Settings(Checked):
     k_update = choice(
         "none",
         ["none", "status"],
-        "How the search direction changes along the run: not at all, or once, when the contact "
-        "status has settled, with a smaller k where points slip; taken back if it does not help.",
+        "none: k stays as it is. status: once stick and slip have settled, k becomes smaller where "
+        "points slip; taken back if that does not help.",
         group="Method",
         title="Update of k",
         applies=lambda settings: not _is_reduced(settings),
@@ -223,9 +229,9 @@ class Settings(Checked):
     finish = choice(
         "status",
         ["none", "status"],
-        "Whether a run may end with a status step: stick, slip and opening are taken from an "
-        "iterate and, where the step itself shows them to be wrong, mended; taken only if the "
-        "field so found obeys all laws up to rounding.",
+        "status: end the run with a status step: keep the present stick, slip and opening, solve "
+        "the linear problem that is left, and take its solution if it obeys all laws. none: only "
+        "iterate.",
         group="Method",
         title="Finish",
         applies=lambda settings: not _is_reduced(settings),
@@ -234,7 +240,8 @@ class Settings(Checked):
         0.01,
         (1e-12, 1.0),
         (1e-6, 0.1),
-        "The run ends when the estimated error of the contact force falls below this share of it.",
+        "The run ends when the contact force is estimated to be wrong by less than this share of "
+        "it; 0.01 is 1 %.",
         group="Stop",
         title="Accuracy",
         logarithmic=True,
@@ -244,8 +251,8 @@ class Settings(Checked):
         1e-3,
         (1e-30, 1.0),
         (1e-16, 1e-2),
-        "A run that no status step finishes goes on until the LATIN indicator eta is below this, "
-        "too. Eta is not an error.",
+        "Unless a status step ends it, a run also goes on until the LATIN indicator η is below "
+        "this. η is not an error.",
         group="Stop",
         title="Tolerance on η",
         logarithmic=True,
@@ -254,7 +261,7 @@ class Settings(Checked):
         1000,
         (1, 1_000_000),
         (10, 5000),
-        "The run ends after this many iterations.",
+        "The run stops after so many iterations, converged or not.",
         group="Stop",
         title="Most iterations",
         logarithmic=True,
@@ -263,8 +270,8 @@ class Settings(Checked):
         1,
         (1, 64),
         (1, 4),
-        "Threads that share the work of an iteration on a large structure, for a machine with "
-        "nothing else to do. The iterates are the same to the bit.",
+        "Threads that share an iteration on a large structure, where the machine has nothing else "
+        "to do. The results are the same to the bit.",
         group="Method",
         title="Threads",
     )

@@ -18,11 +18,14 @@ from playwright.sync_api import Browser, expect
 from processes import PATIENCE
 from worker_line import Line
 
+from app.errand import Errand
+from app.worker.bench import Bench
 from solver.study.paper_runs import PaperRuns
 
 LONGEST_FIRST = (
     "test_page_controls_of_block_and_layers",
     "test_page_tabs",
+    "test_page_asks_what_if",
     "test_page_survives_its_server",
     "test_page_controls_of_bar_and_strand",
     "test_page_in_a_browser",
@@ -38,6 +41,7 @@ LONGEST_FIRST = (
     "test_random_scenes",
     "test_page_paper_figures",
     "test_page_is_taken_away",
+    "test_sweep_on_a_cluster",
 )
 """Files of a quarter of a minute or more. A worker has a file to itself, so that whoever came to
 one of these last would work on alone."""
@@ -91,3 +95,16 @@ def lines() -> Iterator[list[Line]]:
 def line() -> Iterator[Line]:
     with closing(Line()) as opened:
         yield opened
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    with Bench() as opened:
+        yield opened
+
+
+@pytest.fixture
+def errand(bench: Bench) -> Iterator[Errand]:
+    made = Errand(bench)
+    yield made
+    made.cancel()

@@ -31,7 +31,7 @@ from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
 
 from app.form import POINTS
-from app.sidebar import CLASS, SHARE
+from app.items import CLASS, SHARE
 from solver.scenes import CATALOGUE
 
 EXPIRY = 60.0

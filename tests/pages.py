@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from browser import Server
 from playwright.sync_api import Browser, Locator, Page, expect
@@ -29,8 +30,8 @@ def visits(server: Server, chrome: Browser) -> Iterator[Visit]:
     complaints: list[str] = []
     said_before = len(server.log)
 
-    def visit(query: str = "", width: int = 1280, height: int = 720) -> Page:
-        page = chrome.new_page(viewport={"width": width, "height": height})
+    def visit(query: str = "", width: int = 1280, height: int = 720, **device: Any) -> Page:
+        page = chrome.new_page(viewport={"width": width, "height": height}, **device)
         page.set_default_timeout(1e3 * PATIENCE)
         page.on(
             "console",
@@ -98,7 +99,7 @@ def bodies_drawn(page: Page, number: str) -> None:
     page.wait_for_function(
         f"""() => {{
           const documents = window.Bokeh ? Bokeh.documents : []
-          const models = documents.length ? documents[0]._all_models.values() : []
+          const models = documents.flatMap(({{_all_models}}) => [..._all_models.values()])
           for (const {{type, data}} of models) {{
             if (type === "ColumnDataSource" && data.xs && data.ys && data.value) {{
               return (data.xs.length && data.xs[0].length === 4 ? data.xs.length : 0) {number}

@@ -64,11 +64,11 @@ def test_one_who_comes_late_or_has_lost_a_picture_gets_the_last_again() -> None:
 def test_who_leaves_is_given_nothing_more() -> None:
     room = Room("ABCD", BAR)
     one = Follower(room)
-    assert len(room) == 1
+    assert room.present == 1
     one.paint()
     one.seat.close()
     room.show(BAR, (), picture(1))
-    assert len(room) == 0
+    assert room.present == 0
     assert one.given == []
 
 
@@ -128,7 +128,7 @@ def test_a_follower_that_changes_a_setting_goes_on_alone_and_can_come_back(pages
     assert own.hired == 1
     room = follower.attendance.left
     assert room is not None
-    assert len(room) == 0
+    assert room.present == 0
     follower.attendance.follow(room)
     follower.start(room.settings)
     follower.ask()
@@ -154,6 +154,25 @@ def test_the_address_of_a_follower_names_its_class_alone(pages: Two) -> None:
     assert found is None
     assert room.code in complaint
     assert class_from_query("?scene=bar") == (None, "")
+
+
+def test_a_poll_counts_the_last_prediction_of_everybody_and_ends_with_its_lesson() -> None:
+    room = Room("ABCD", BAR)
+    room.ask("best-k", is_answered=False)
+    poll = room.poll
+    assert poll is not None
+    for voter, choice in (("one", 1), ("two", 0), ("one", 2)):
+        poll.vote(voter, choice)
+    assert (poll.predicted, poll.counts(4)) == (2, [1, 0, 1, 0])
+    room.ask("best-k", is_answered=True)
+    assert room.poll is poll
+    assert poll.is_answered
+    room.ask("coarse-problem", is_answered=False)
+    assert room.poll is not poll
+    assert room.poll is not None
+    assert room.poll.predicted == 0
+    room.ask("", is_answered=True)
+    assert room.poll is None
 
 
 def test_a_seat_stands_for_no_process() -> None:

@@ -42,6 +42,42 @@ def test_a_page_that_joins_sees_the_leaders_run_and_goes_on_alone_when_it_change
     expect(follower.locator(".class").first).to_contain_text("has ended")
 
 
+def test_a_class_predicts_before_it_sees_and_its_counts_open_when_the_lecturer_asks(
+    open_page: Visit,
+) -> None:
+    leader = open_page("?lesson=coarse-problem")
+    expect(leader.locator(".question")).to_be_visible()
+    leader.get_by_role("button", name="Open drawer").click()
+    press(leader, "Class")
+    code = code_of(leader)
+    leader.get_by_text("QR code").click()
+    expect(leader.locator(".code svg")).to_be_visible()
+    expect(leader.get_by_text(f"/app?class={code}")).to_be_visible()
+    students = [open_page(f"?class={code}", width=390, height=844) for _ in range(2)]
+    choices = [one.get_by_role("group", name="Your prediction") for one in (leader, *students)]
+    first = choices[0].get_by_role("button").first.inner_text()
+    for student, mine in zip(students, choices[1:], strict=True):
+        expect(mine.get_by_role("button").first).to_have_text(first)
+        expect(student.locator(".card")).to_have_count(0)
+        expect(student.get_by_role("button", name="Show me")).to_have_count(0)
+    choices[1].get_by_role("button").nth(1).click()
+    expect(choices[1].get_by_role("button").nth(1)).to_have_attribute("aria-pressed", "true")
+    choices[2].get_by_role("button").nth(0).click()
+    choices[2].get_by_role("button").nth(1).click()
+    expect(leader.get_by_text("2 of 2 have predicted.")).to_be_visible()
+    expect(choices[1].get_by_role("button").nth(1)).not_to_contain_text("— 2")
+    press(leader, "Show what they predict")
+    for group in choices:
+        expect(group.get_by_role("button").nth(1)).to_contain_text("— 2")
+    expect(students[0].locator(".card")).to_have_count(0)
+    press(leader, "Show me")
+    for page in (leader, *students):
+        expect(page.locator(".why")).to_be_visible()
+        expect(page.locator(".card").first).to_be_attached()
+        expect(page.get_by_role("list", name="What the class predicted")).to_contain_text("— 2")
+    expect(status(students[0])).to_contain_text("iteration")
+
+
 def test_a_class_that_is_not_there_is_told(open_page: Visit) -> None:
     page = open_page("?class=NOPE")
     expect(status(page)).to_contain_text("there is no class NOPE")

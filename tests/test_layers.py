@@ -25,8 +25,10 @@ LAYERS = [
     ["scenes"],
     ["reduction"],
     ["latin"],
-    ["files", "study"],
+    ["files"],
+    ["study"],
     ["lessons", "report_commands"],
+    ["sweep_command"],
     ["cli"],
     ["__main__"],
 ]

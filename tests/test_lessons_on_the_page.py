@@ -155,6 +155,16 @@ def test_the_next_lesson_starts_its_own_run_which_is_compared_with_none_before(
     assert page._teaching.asks
 
 
+def test_a_lesson_has_none_but_its_own_settings_dragged(page: Dashboard) -> None:
+    tell(page, CHOICE, NO_CHOICE)
+    assert page._gallery.sliders == {}
+    tell(page, "the-lesson", "how-fast-how-big")
+    tell(page, CHOICE, NO_CHOICE)
+    assert set(page._gallery.sliders) == {"peak"}
+    tell(page, "the-lesson", "")
+    assert set(page._gallery.sliders) > {"peak", "pressure"}
+
+
 def test_who_leaves_a_lesson_keeps_the_run_and_has_all_views_and_controls(page: Dashboard) -> None:
     begun, settings = page.session.ticket, page.session.wanted
     tell(page, "the-lesson", "")

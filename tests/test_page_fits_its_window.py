@@ -1,8 +1,26 @@
-"""Two rows of plots fit a projector's window, and keys move the run only where it is seen."""
+"""Plots, figures and lessons fit a projector's window; keys move the run only where it is seen."""
 
+import pytest
+from pages import press
 from playwright.sync_api import expect
 
+from app.lesson import LESSONS
+
 WAIT = 60_000
+NOTHING_SCROLLS = """() => {
+  const found = [], look = (root) => root.querySelectorAll("*").forEach((one) => {
+    const {overflowX, overflowY} = getComputedStyle(one), scrolls = (how) => /auto|scroll/.test(how)
+    const away = one.closest(".sidebar") || one.classList.contains("points")
+    if (!away && scrolls(overflowY) && one.scrollHeight > one.clientHeight + 1 ||
+        !away && scrolls(overflowX) && one.scrollWidth > one.clientWidth + 1) {
+      found.push(String(one.className || one.tagName))
+    }
+    if (one.shadowRoot && !away) { look(one.shadowRoot) }
+  })
+  look(document)
+  return found.length === 0
+}"""
+"""Whether the window shows the whole of all that it shows, except of the sidebar."""
 
 
 def test_two_rows_of_plots_fit_a_window_under_all_buttons_and_words(open_page):
@@ -30,3 +48,35 @@ def test_keys_move_the_run_only_where_it_is_seen(open_page):
     expect(page.locator(".figures")).not_to_contain_text("before")
     page.locator("body").press("r")
     expect(page.locator(".figures")).to_contain_text("before (first settings)", timeout=WAIT)
+
+
+def test_key_figures_of_two_runs_fit_beside_the_sidebar(open_page):
+    page = open_page('?method=paper&max_iterations=9&compare={"multiscale":false}', 1280, 720)
+    figures = page.locator(".figures")
+    expect(figures.locator("tbody tr")).to_have_count(3, timeout=WAIT)
+    expect(figures).to_contain_text("Iterations to 1 %")
+    ends = figures.evaluate(
+        "(one) => [...one.shadowRoot.querySelectorAll('table')].map("
+        "(table) => table.getBoundingClientRect().right)"
+    )
+    assert [end <= 1280 for end in ends] == [True]
+
+
+@pytest.mark.parametrize("view", ["page", "present"])
+def test_all_that_a_lesson_names_is_seen_without_scrolling(open_page, view):
+    page = open_page(f"?lesson={next(iter(LESSONS))}&view={view}", 1280, 720)
+    for lesson in LESSONS.values():
+        region = page.get_by_role("region", name="Lesson")
+        expect(region).to_contain_text(lesson.question, timeout=WAIT)
+        page.wait_for_function(NOTHING_SCROLLS)
+        wrong = [choice for place, choice in enumerate(lesson.choices) if place != lesson.right]
+        press(page, max(wrong, key=len))
+        cards = page.locator(".card")
+        expect(cards).to_have_count(len(lesson.views), timeout=WAIT)
+        for card in cards.all():
+            expect(card).to_be_in_viewport(ratio=1)
+        expect(page.get_by_role("button", name="Explore freely")).to_be_in_viewport(ratio=1)
+        page.wait_for_function(NOTHING_SCROLLS)
+        following = page.get_by_role("button", name="Next: ")
+        if following.count():
+            following.press("Enter")

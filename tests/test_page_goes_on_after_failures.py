@@ -23,12 +23,13 @@ from app.keeper import GIVEN_UP, RESTARTS
 from app.pages import Pages
 from app.session import Session
 from app.transport import Transport
-from app.worker import bench, link
+from app.worker import link
 from app.worker.bench import STOPPED, Bench
 from app.worker.link import Link
 from app.worker.orders import Run, Step
 from app.worker.reports import Died, Facts, Picture, Report
 from solver.scenes.bar import BarSettings
+from solver.study import seats
 
 BROKEN: list[list[Report]] = [
     [Picture(1, Facts(is_broken=True), b"")],
@@ -144,7 +145,7 @@ def no_fork_server(*arguments: Any) -> Any:
 
 
 def test_a_job_whose_process_does_not_start_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bench, "start", no_fork_server)
+    monkeypatch.setattr(seats, "start_process", no_fork_server)
     errand = Errand(Bench())
     errand.ask("any", print)
     await_end(errand)
@@ -159,30 +160,11 @@ def await_end(errand: Errand) -> None:
         time.sleep(0.01)
 
 
-def not_to_be_sent(send: Any) -> Any:
-    return _CannotBeRead()
-
-
-class _CannotBeRead:
-    def __reduce__(self) -> Any:
-        return _refuse, ()
-
-
-def _refuse() -> None:
-    raise LookupError("made to break")
-
-
-def test_a_job_whose_result_cannot_be_read_says_so_and_is_logged(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+def test_a_job_that_breaks_says_so() -> None:
     errand = Errand(Bench())
-    errand.ask("any", not_to_be_sent)
+    errand.ask("any", _refused)
     await_end(errand)
-    assert "made to break" in errand.notice
-    assert "_refuse" in caplog.text
-    errand.ask("another", _refused)
-    await_end(errand)
-    assert "made to break" in errand.notice
+    assert errand.notice == "It broke (LookupError: made to break)."
 
 
 def _refused(send: Any) -> Any:

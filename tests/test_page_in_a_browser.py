@@ -39,10 +39,10 @@ def test_a_run_that_has_converged_stays_beside_the_next_one_which_may_start_from
     open_page: Visit,
 ) -> None:
     page = open_page("?finish=none")
-    expect(status(page)).to_contain_text("converged")
+    expect(status(page)).to_contain_text("✓ converged")
     page.get_by_role("switch", name="Start from the run before").click()
     slider(page, "Peak load").press("ArrowRight")
-    expect(status(page)).to_contain_text("Started from the run before it")
+    expect(status(page)).to_contain_text("Started from the run before:")
     expect(status(page)).to_contain_text("from coarser meshes")
     expect(page.locator(".figures")).to_contain_text("before")
     page.locator("body").press("r")
@@ -99,7 +99,7 @@ def test_a_bad_address_is_explained_and_its_scene_is_shown(open_page: Visit) -> 
     expect(status(page)).to_contain_text("16 substructures")
 
 
-def test_a_phone_sees_the_run_first_and_has_all_tabs_in_reach(open_page: Visit) -> None:
+def test_a_narrow_window_sees_the_run_first_and_has_all_tabs_in_reach(open_page: Visit) -> None:
     page = open_page("?scene=block&method=paper&max_iterations=5", width=390, height=844)
     bodies_drawn(page, "> 1000")
     expect(page.get_by_text("Deformed bodies").first).to_be_visible()

@@ -12,12 +12,14 @@ from contextlib import ExitStack, closing
 import panel as pn
 import pytest
 from bokeh.document import Document
+from bokeh.models import Plot
 from browser import ROOT
 from lone_link import LoneLink
 from panel.io.state import set_curdoc
 
 from app.address import settings_from_query, sight_from_query
 from app.dashboard import Dashboard
+from app.innards import forget
 from app.pages import Pages
 from app.session import Session
 from app.worker.bench import Bench
@@ -61,18 +63,27 @@ def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
     assert page() is None
 
 
-def test_a_page_that_nobody_has_built_starts_no_process_and_has_one_row(
+def test_a_page_that_nobody_has_built_starts_no_process(
     dashboard: Dashboard, link: LoneLink
 ) -> None:
     dashboard.tick()
     assert link.hired == 0
     dashboard.loaded()
     assert link.hired == 1
-    # The rest comes in slices, between which others are served.
-    assert len(dashboard._plots) == 3
-    for count in (3, 3, 3, 3, 3, 8, 8):
-        dashboard.tick()
-        assert len(dashboard._plots) == count
+
+
+def test_the_server_makes_no_figure_for_a_page() -> None:
+    document = Document()
+    with set_curdoc(document):
+        pn.extension(notifications=True)
+        with closing(
+            Session(Pages(1), Bench(), scene_settings("bar").checked({}), LoneLink().hire)
+        ) as session:
+            dashboard = Dashboard(session)
+            dashboard.page.server_doc(document)
+            assert len(dashboard._gallery.shown) == 8
+            assert not list(document.select({"type": Plot}))
+            forget(document)
 
 
 def test_an_address_that_waits_at_an_iteration_costs_one_order_however_far_that_is(
@@ -99,10 +110,8 @@ def test_views_and_sliders_are_those_that_apply(
 ) -> None:
     dashboard = make(query)
     dashboard.loaded()
-    for _ in range(views + 1):
-        dashboard.tick()
     transport = dashboard.transport
-    assert len(dashboard._plots) == views
+    assert len(dashboard._gallery.shown) == views
     assert (transport._substructure in transport._sliders.objects) == substructures
 
 

@@ -72,7 +72,7 @@ def test_a_table_and_a_program_are_saved(open_page: Visit) -> None:
 
 def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -> None:
     page = open_page("?elements=20&instants=21&max_iterations=60")
-    expect(status(page)).to_contain_text("converged")
+    expect(status(page)).to_contain_text("✓ converged")
     compared = page.get_by_role("combobox", name="Compare with")
     compared.select_option("monoscale | multiscale")
     expect(page.locator(".figures")).to_contain_text("A (multiscale off)")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from queue import SimpleQueue
@@ -19,6 +20,7 @@ from processes import PATIENCE, wait_for
 
 from app import reports
 from app.errand import Errand, Found
+from app.glossary import explained
 from app.report_plots import overlay, plot
 from app.reports import PaperFigures
 from app.worker.bench import Bench
@@ -164,10 +166,11 @@ def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
     drawn = 0
     for pane, section in zip(view._sheet, found.sections, strict=True):
         if isinstance(section, Plot):
-            assert all(escape(c.label) in pane[0].object for p in section.panels for c in p.curves)
+            legend = re.sub("</?abbr[^>]*>", "", pane[0].object)
+            assert all(escape(c.label) in legend for p in section.panels for c in p.curves)
             drawn += len(pane) - 1
         else:
-            assert pane.object == section
+            assert pane.object == explained(section)
     assert drawn == len(panels)
 
 

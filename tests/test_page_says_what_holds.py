@@ -62,6 +62,8 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
         ("?tab=figures", Sight("Figures"), []),
         ("?view=present", Sight(view="present"), []),
         ("?view=cinema", Sight(), ['view = "cinema"']),
+        ("?plots=Scene,Convergence", Sight(plots="Scene,Convergence"), []),
+        ("?view=embed&plots=Sceen", Sight(view="embed"), ['plots = "Sceen"', "Stick and slip"]),
         ("?tab=STUDY&pace=Fastest", Sight("Study"), ['pace = "Fastest"']),
         ("?instant=2&pace=7&tab=studies", Sight(), ["instant = 2", 'pace = "7"', '"studies"']),
         ("?instant=nan&tab=Figures&seed=2", Sight("Figures"), ["instant"]),

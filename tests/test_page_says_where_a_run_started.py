@@ -10,7 +10,7 @@ from studios import Shown
 
 from app.pages import Pages
 from app.session import Session
-from app.sidebar import Sidebar
+from app.sidebar import SAVE, SHARE, Sidebar
 from app.worker.bench import Bench
 from app.worker.recording import Recording
 from app.worker.reports import Facts
@@ -34,11 +34,15 @@ def recording(choice: StartChoice | None, **changes: Any) -> Recording:
 @pytest.mark.parametrize(
     ("choice", "changes", "words"),
     [
-        (NEARER, {}, "Started from the run before it: k-free indicator after one iteration 0.01"),
-        (NEARER, {}, "from zero 1."),
-        (FARTHER, {}, "Started from zero, since the run before it is not clearly nearer"),
-        (FARTHER, {"start": "nested"}, "from coarser meshes 1."),
-        (None, {}, "Started from zero: the run before it was not at hand."),
+        (
+            NEARER,
+            {},
+            "Started from the run before: after one iteration its k-free indicator is 0.01",
+        ),
+        (NEARER, {}, "from zero it is 1."),
+        (FARTHER, {}, "Started from zero. The run before is not clearly nearer"),
+        (FARTHER, {"start": "nested"}, "from coarser meshes it is 1."),
+        (None, {}, "Started from zero, as there was no run before to start from."),
     ],
 )
 def test_the_status_line_gives_the_start_and_both_indicators(
@@ -64,9 +68,11 @@ def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     settings = BarSettings.checked({"method": "paper", "peak": 910.0})
     with closing(Session(Pages(1), Bench(), settings)) as session:
         sidebar = Sidebar(session, lambda: None, lambda text: None, lambda: None, lambda name: None)
-        plain = sidebar._saved()
+        sidebar.hear(SHARE, SAVE, hand=False, count=1.0)
+        plain, _ = sidebar.view.file
         session.facts = Facts(was_warm=True)
-        told = sidebar._saved()
+        sidebar.hear(SHARE, SAVE, hand=False, count=2.0)
+        told, _ = sidebar.view.file
     assert told.endswith(plain)
     assert "started from the solution of the run before it" in told.replace("\n# ", " ")
     assert "started" not in plain

@@ -21,7 +21,7 @@ def test_views_of_the_bases_come_and_go_and_one_that_is_not_wanted_stays_away(
     expect(page.locator(".card")).to_have_count(8)
     choose_linear_stage(page, "pgd")
     expect(page.locator(".card")).to_have_count(11)
-    expect(status(page)).to_contain_text(re.compile("modes? at most, [0-9]+ stored"))
+    expect(status(page)).to_contain_text(re.compile("modes? a substructure, [0-9]+ in all"))
     for name in VIEWS:
         expect(page.get_by_role("checkbox", name=name)).to_be_checked()
     expect(card(page, "Convergence")).to_contain_text("full stage")
@@ -33,7 +33,7 @@ def test_views_of_the_bases_come_and_go_and_one_that_is_not_wanted_stays_away(
     expect(page.locator(".card")).to_have_count(8)
     expect(page.get_by_role("checkbox", name=re.compile("^PGD"))).to_have_count(0)
     expect(slider(page, "Substructure")).to_have_count(0)
-    expect(status(page)).not_to_contain_text("stored")
+    expect(status(page)).not_to_contain_text("in all")
     expect(card(page, "Singular values")).not_to_contain_text("PGD")
     expect(card(page, "Convergence")).not_to_contain_text("full stage")
     choose_linear_stage(page, "pgd")

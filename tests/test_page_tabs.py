@@ -39,14 +39,32 @@ def test_the_page_makes_a_study_of_its_settings_when_asked(page: Page) -> None:
     expect(measured).to_be_visible()
 
 
+def test_a_study_of_other_settings_says_so_and_is_done_again(page: Page) -> None:
+    open_report(page, "Study")
+    if not page.get_by_text("How it was measured").count():
+        press(page, "Start")
+    expect(page.get_by_text("How it was measured")).to_be_visible()
+    expect(page.get_by_role("combobox", name="Method", exact=True)).to_be_hidden()
+    pressure = page.get_by_role("textbox", name="Pressure p (N/m)")
+    pressure.fill("6000")
+    pressure.press("Enter")
+    other = page.get_by_text("These results are of other settings: pressure 5000 N/m.")
+    expect(other).to_be_visible()
+    press(page, "Do it again")
+    expect(page.get_by_text("pressure 6000 N/m").first).to_be_visible()
+    expect(other).to_be_hidden()
+    press(page, "Live")
+    expect(page.get_by_role("combobox", name="Method", exact=True)).to_be_visible()
+
+
 def test_the_stability_table_fills_row_by_row_and_can_be_filtered(page: Page) -> None:
     open_report(page, "Stability")
     press(page, "Start")
     cells = page.locator("td.verdict")
     expect(cells.nth(5)).to_be_visible()
-    press(page, "Not right")
+    press(page, "Hide the right ones")
     expect(page.locator("td.verdict:visible", has_text="right")).to_have_count(0)
-    expect(page.locator("td.verdict:visible").first).to_have_text("told")
+    expect(page.locator("td.verdict:visible").first).to_have_text("unsolved")
     press(page, "Cancel")
     expect(page.get_by_text(re.compile("runs pass"))).to_be_visible()
 

@@ -72,9 +72,9 @@ def test_pictures_are_bytes_in_the_browser_too() -> None:
 
 def test_what_a_picture_sets_has_its_name_in_the_figure() -> None:
     for view in VIEWS:
-        made = make_figure(view, lambda height: None)
+        made = make_figure(view)
         names = {model.name for model in made.references() if model.name}
-        expected = {"x", "y"} | {marks.kind for marks in view.plot.marks}
+        expected = {"x", "y", "title"} | {marks.kind for marks in view.plot.marks}
         expected |= {"bodies", "box"} if view.plot.equal else {"curves"}
         expected |= {"colors", "scale", "bar"} if view.plot.scale else set()
         assert {f"{view.slug}.{name}" for name in expected} <= names

@@ -97,6 +97,24 @@ def test_a_broken_wire_regains_its_force_over_its_tension_by_the_friction(
     assert taken("recovery_length", run) == pytest.approx(exact, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("scene", "changes", "exact"),
+    [
+        ("bar", {"peak": 900.0}, 0.18),
+        ("bar", {"peak": 1600.0}, math.nan),
+        ("incline", {"slope": 20.0, "friction": 0.5, "slack": 1.0}, math.tan(math.radians(20))),
+        ("incline", {"slope": 20.0, "friction": 0.3, "slack": 1e-3}, math.nan),
+    ],
+)
+def test_what_holds_as_a_whole_takes_the_load_over_what_presses(
+    scene: str, changes: dict[str, Any], exact: float
+) -> None:
+    """F / (p L) where the slip has not come to the clamp, and the tangent of a slope."""
+    sizes = SMALL if scene == "bar" else {"elements": 12, "elements_up": 4, "instants": 11}
+    found = taken("holding_friction", ran(scene, **changes, **sizes))
+    assert found == pytest.approx(exact, rel=1e-9, nan_ok=True)
+
+
 def test_a_wire_that_never_regains_its_force_says_so() -> None:
     run = ran("strand", load="ramp", grip="displacement", friction=0.03, peak=2000.0, instants=11)
     assert taken("recovery_length", run) == math.inf
@@ -121,6 +139,13 @@ def test_a_run_without_errors_has_none() -> None:
     run = ran("bar", **SMALL)
     for text in ("iterations_to_force@0.1", "seconds_to_displacement@0.1", "error_force"):
         assert math.isnan(taken(text, run)), text
+
+
+def test_more_instants_take_more_memory_and_a_field_of_them_is_the_least_of_it() -> None:
+    found = [taken("memory", ran("bar", elements=200, instants=instants)) for instants in (51, 801)]
+    field = 8.0 * 201 * (801 - 51)
+    assert found[1] - found[0] > 3.0 * field
+    assert found[1] < 1e3 * field
 
 
 def test_modes_are_those_of_the_largest_basis_and_a_smooth_field_needs_fewer() -> None:
@@ -183,7 +208,35 @@ def test_every_quantity_can_be_taken_of_every_scene() -> None:
     for scene in CATALOGUE:
         run = ran(scene, errors=True, **(SMALL if scene in ("bar", "strand") else SMALL_BLOCK))
         for name, quantity in QUANTITIES.items():
+            if name == "memory" and scene != "bar":  # it takes a process of its own
+                continue
             needed = quantity.parameter is not None and quantity.parameter.needed
             found = reading(f"{name}@0.1" if needed else name)
             assert isinstance(found(run), int | float), name
             assert found.title
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes"),
+    [
+        ("bar", {}),
+        ("bar", {"linear_stage": "pgd"}),
+        ("strand", {}),
+        ("strand", {"broken": 0}),
+        ("incline", SMALL_BLOCK),
+        ("block", SMALL_BLOCK),
+        ("layers", {"elements_up": 2}),
+        ("layers", {"elements_up": 2, "bending": "moment"}),
+    ],
+)
+def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
+    scene: str, changes: dict[str, Any]
+) -> None:
+    run = ran(scene, errors=True, **{**SMALL, **changes})
+    for name, quantity in QUANTITIES.items():
+        needed = quantity.parameter is not None and quantity.parameter.needed
+        value = taken(f"{name}@0.1" if needed else name, run)
+        if not quantity.applies(run.settings):
+            assert math.isnan(value), name
+        elif name not in ("residual_displacement", "holding_friction"):  # which the load decides
+            assert not math.isnan(value), name

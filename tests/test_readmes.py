@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parents[1]
 FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"
 MATHEMATICS, MEASUREMENTS = ROOT / "solver" / "README.md", ROOT / "solver" / "study" / "README.md"
 LESSONS = ROOT / "app" / "lessons" / "README.md"
-READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, MEASUREMENTS]
+SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
+READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, MEASUREMENTS, SWEEPS]
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
 LONGEST = 150
 """Lines of the first page."""

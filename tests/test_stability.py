@@ -29,9 +29,9 @@ from solver.study.stability import (
     judge,
     stability,
 )
-from solver.study.stability_cases import REFUSED, RIGHT, TOLD, UNCLEAR, Case, graded
+from solver.study.stability_cases import REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, graded
 from solver.study.stability_plane import PRESSED
-from solver.study.stability_report import COLOURS, COLUMNS, notes, passes, summary, values
+from solver.study.stability_report import COLOURS, COLUMNS, counts, passes, summary, values
 from solver.study.stability_units import invariance
 
 GOOD = Outcome(
@@ -48,7 +48,7 @@ GOOD = Outcome(
     condition_structure=1e3,
     condition_substructure=10.0,
 )
-KNOWN_TOLD = {
+KNOWN_UNSOLVED = {
     ("k_scale", "0.001"): "k is a thousandth of the stiffness in play",
     ("contrast", "1e6"): "one k does not suit six decades",
     ("layers", "as it is"): "the paper's k is that of a body as short as it is thick",
@@ -77,11 +77,11 @@ def test_every_quick_case_comes_to_what_is_expected(rows):
 def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
     for row in rows:
         place = (row.case.group, row.case.name)
-        if row.verdict is Verdict.TOLD and row.case.expected == REFUSED:
+        if row.verdict is Verdict.UNSOLVED and row.case.expected == REFUSED:
             assert row.outcome.ending == REFUSED
             assert "is refused; allowed: " in row.outcome.advice
-        elif row.verdict is Verdict.TOLD:
-            assert place in KNOWN_TOLD
+        elif row.verdict is Verdict.UNSOLVED:
+            assert place in KNOWN_UNSOLVED
             assert row.outcome.ending in {Ending.STALLED, Ending.EXHAUSTED}
         else:
             assert row.verdict is Verdict.RIGHT
@@ -94,7 +94,7 @@ def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
         (changed(error_force=1e-5), Verdict.NEAR),
         (changed(error_force=2e-3), Verdict.FAIL),
         (changed(error_displacement=0.5), Verdict.FAIL),
-        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.TOLD),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.UNSOLVED),
         (changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""), Verdict.FAIL),
         (changed(ending=Ending.STALLED), Verdict.RIGHT),
         (changed(error_force=math.nan), Verdict.FAIL),
@@ -103,7 +103,7 @@ def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
         (changed(warned="overflow"), Verdict.FAIL),
         (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
         (changed(doubt="it is one of several", finite=False), Verdict.FAIL),
-        (Outcome(REFUSED, "load = 1 is refused"), Verdict.TOLD),
+        (Outcome(REFUSED, "load = 1 is refused"), Verdict.UNSOLVED),
     ],
 )
 def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
@@ -115,12 +115,12 @@ def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
     unclear = changed(doubt="the reference finds no solution")
     refused = Outcome(REFUSED, "load = 1 is refused")
     for found, passing in (
-        (wrong, {TOLD, UNCLEAR}),
+        (wrong, {UNSOLVED, UNCLEAR}),
         (unclear, {UNCLEAR}),
         (refused, {REFUSED}),
-        (GOOD, {RIGHT, TOLD, UNCLEAR}),
+        (GOOD, {RIGHT, UNSOLVED, UNCLEAR}),
     ):
-        for expected in (RIGHT, TOLD, UNCLEAR, REFUSED):
+        for expected in (RIGHT, UNSOLVED, UNCLEAR, REFUSED):
             row = Row(Case("a", "b", {}, expected), "default", found, judge(found))
             assert row.as_expected is (expected in passing)
 
@@ -219,16 +219,18 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
 def test_every_verdict_has_its_own_colour_and_words(rows):
     assert set(COLOURS) == set(Verdict)
     assert len(set(COLOURS.values())) == len(Verdict)
-    text = " ".join(notes({"units": 0.0}))
-    assert all(f"{verdict}: " in text for verdict in Verdict)
-    assert summary(rows).startswith(f"{len(rows)} of {len(rows)} runs pass")
+    found = counts(rows)[1:]
+    assert [verdict for verdict, _, _ in found] == list(Verdict)
+    assert len({meaning for _, _, meaning in found}) == len(Verdict)
+    assert sum(int(runs) for _, runs, _ in found) == len(rows)
+    assert summary(rows) == f"{len(rows)} of {len(rows)} runs pass."
     assert tuple(values(rows[0])) == COLUMNS
 
 
 def test_one_scene_alone_can_be_asked(tmp_path, capsys):
     assert {case.scene for case in cases_of("strand")} == {"strand"}
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
-    assert "Invariance" not in capsys.readouterr().out
+    assert "In other units" not in capsys.readouterr().out
     assert main(["stability", "rope", "--out", str(tmp_path)]) == 2
     assert ", ".join(CATALOGUE) in capsys.readouterr().err
 

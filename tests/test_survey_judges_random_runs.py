@@ -17,7 +17,7 @@ from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.study.survey import AT_ROUNDING, BROKEN, REFUSED, Outcome, Row, Verdict, judge
 from solver.study.survey_draw import KEPT, LARGEST_FIELD, draw, is_foolish
-from solver.study.survey_report import summary, wrong_lines
+from solver.study.survey_report import counts, table_of_missed, wrong_lines
 from solver.study.survey_residual import kkt_residual
 
 SMALL = {
@@ -85,14 +85,14 @@ def test_factors_on_k_are_foolish_together_or_alone():
         (changed(error_force=0.021), Verdict.WRONG),
         (changed(error_force=math.nan), Verdict.WRONG),
         (changed(error_force=0.5, doubt="several"), Verdict.UNCLEAR),
-        (changed(error_force=0.5, ending=Ending.STALLED), Verdict.TOLD),
+        (changed(error_force=0.5, ending=Ending.STALLED), Verdict.UNSOLVED),
         (changed(error_force=0.5, doubt="several", certified=True, residual=1e-13), Verdict.RIGHT),
         (changed(certified=True, residual=2.0 * AT_ROUNDING), Verdict.WRONG),
         (changed(certified=True, residual=3e-7, floor=3e-7), Verdict.RIGHT),
         (changed(certified=True), Verdict.WRONG),
         (changed(finite=False), Verdict.WRONG),
         (Outcome(BROKEN, "ValueError: no"), Verdict.WRONG),
-        (Outcome(REFUSED, "k_scale = 1 is refused"), Verdict.TOLD),
+        (Outcome(REFUSED, "k_scale = 1 is refused"), Verdict.UNSOLVED),
     ],
 )
 def test_the_verdict_follows_from_errors_residual_and_status(outcome, verdict):
@@ -128,7 +128,7 @@ def test_the_command_writes_a_table_and_a_page_of_its_own(tmp_path, capsys):
     text = page.read_text(encoding="utf-8")
     assert text.count("<tr>") >= 4
     assert "http" not in text
-    assert "3 runs: " in capsys.readouterr().out
+    assert "median iterations" in capsys.readouterr().out
     main(["survey", "bar", "--row", "1", "--seed", "1", "--out", str(tmp_path)])
     with table.open(encoding="utf-8", newline="") as file:
         (alone,) = csv.DictReader(file)
@@ -148,4 +148,19 @@ def test_a_wrong_row_is_listed_with_what_repeats_it():
     assert "survey bar --seed 9 --row 4" in text
     assert wrong.command in text
     assert "--row 5" not in text
-    assert summary([wrong, right]).startswith("2 runs: 1 right, 0 told, 0 unclear, 1 wrong.")
+    found = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
+    assert found == {"right": "1", "unsolved": "0", "unclear": "0", "wrong": "1"}
+
+
+def test_runs_that_did_not_converge_are_counted_by_whether_a_status_step_may_end_them():
+    settings = CATALOGUE["bar"].settings
+    missed = changed(ending=Ending.EXHAUSTED)
+    rows = [
+        Row(settings.checked({"method": "paper"}), 9, 4, missed, Verdict.UNSOLVED),
+        Row(settings.checked({}), 9, 5, GOOD, Verdict.RIGHT),
+    ]
+    assert [row[1:] for row in table_of_missed(rows)[1:]] == [
+        ["1", "0", "0.0 %", "0"],
+        ["1", "1", "100.0 %", "1"],
+        ["2", "1", "50.0 %", "1"],
+    ]

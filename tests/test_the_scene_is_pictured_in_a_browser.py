@@ -5,6 +5,9 @@ from __future__ import annotations
 from pages import Visit, card, status
 from playwright.sync_api import Page, expect
 
+MODEL = """const model = (name) =>
+  Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)"""
+
 
 def place(page: Page, name: str, share: float) -> tuple[float, float]:
     """Give a place on a plot's frame, at a share of its width and half of its height."""
@@ -13,36 +16,106 @@ def place(page: Page, name: str, share: float) -> tuple[float, float]:
     return found["x"] + share * found["width"], found["y"] + 0.5 * found["height"]
 
 
+def load_arrow(page: Page) -> list[float]:
+    """Give the tail and the head of the handle of the peak load, on the screen."""
+    page.wait_for_function(
+        f"() => {{{MODEL}; return model('scene.handles')?.data.setting.includes('peak')}}"
+    )
+    found: list[float] = page.evaluate(
+        f"() => {{{MODEL}"
+        """
+          const source = model("scene.handles"), {ends, setting} = source.data
+          const [figure] = source.document.roots()
+          const view = Bokeh.index.find_one_by_id(figure.id)
+          const {left, top} = view.canvas_view.el.getBoundingClientRect()
+          const {x_scale, y_scale} = view.frame, first = 4 * setting.indexOf("peak")
+          return [...ends.slice(first, first + 4)].map((place, i) =>
+            i % 2 ? top + y_scale.compute(place) : left + x_scale.compute(place))
+        }"""
+    )
+    return found
+
+
+def test_the_load_arrow_is_dragged_and_the_run_follows(open_page: Visit) -> None:
+    page = open_page("?elements=20&substructures=4")
+    expect(status(page)).to_contain_text("✓ converged")
+    tail, height, head, _ = load_arrow(page)
+    assert head < tail
+    middle = 0.5 * (tail + head)
+    label = page.locator(".gripped")
+    expect(label).to_be_hidden()
+    page.mouse.move(middle + 3, height)
+    page.mouse.move(middle, height)
+    expect(label).to_have_text("Peak load (N): 900")
+    page.mouse.down()
+    peak = page.get_by_role("slider", name="Peak load (N)")
+    # A hand that is held still is taken for one that has let go.
+    for step in range(100):
+        page.mouse.move(middle - 20 - 10 * (step % 3), height)
+        page.wait_for_timeout(50)
+        if page.get_by_text("follows the slider").is_visible():
+            break
+    else:
+        raise AssertionError("no run followed the hand")
+    expect(peak).not_to_have_value("900")
+    page.mouse.up()
+    expect(label).to_be_hidden()
+    expect(status(page)).to_contain_text("✓ converged")
+    value = float(peak.input_value())
+    assert value > 950.0
+    words = f"{MODEL}; return model('scene.words').data.text.join()"
+    page.wait_for_function(f"() => {{{words}.includes('F = −{value / 1e3:.3g} kN')}}")
+
+
 def test_an_instant_is_chosen_on_the_load_path_and_the_picture_follows(open_page: Visit) -> None:
     page = open_page("?elements=20&substructures=4")
-    expect(status(page)).to_contain_text("converged")
+    expect(status(page)).to_contain_text("✓ converged")
     expect(page.get_by_text("Load path").last).to_be_visible()
-    words = "() => Bokeh.documents[0].get_model_by_name('scene.words').data.text.join()"
-    page.wait_for_function(f"({words})().includes('F = −0.9 kN')")
+    words = f"{MODEL}; return model('scene.words').data.text.join()"
+    page.wait_for_function(f"() => {{{words}.includes('F = −0.9 kN')}}")
     page.mouse.click(*place(page, "Load path", 0.4))
-    page.wait_for_function(f"({words})().includes('F = 0.')")
+    page.wait_for_function(f"() => {{{words}.includes('F = 0.')}}")
     expect(page.get_by_text("Instant").first).not_to_contain_text("0.75")
+
+
+MIDDLE = (
+    f"() => {{{MODEL}"
+    """
+      const bodies = model("scene.bodies"), {xs, ys, value} = bodies.data
+      const [figure] = bodies.document.roots()
+      const view = Bokeh.index.find_one_by_id(figure.id)
+      const {x, y} = view.el.getBoundingClientRect()
+      const at = [...value].findIndex((part) => part === 1)
+      const middle = (ends) => ends.reduce((a, b) => a + b) / ends.length
+      const {x_scale, y_scale} = view.frame
+      return [
+        x + x_scale.compute(middle([...xs[at]])), y + y_scale.compute(middle([...ys[at]]))]
+    }"""
+)
+"""Of the first element of the second substructure, on the screen."""
 
 
 def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None:
     page = open_page("?linear_stage=pgd&elements=20&substructures=4&pressure=0")
     expect(status(page)).to_contain_text("iteration")
     page.wait_for_function(
-        "() => (Bokeh.documents[0].get_model_by_name('scene.bodies')?.data.xs || []).length"
+        f"() => {{{MODEL}; return (model('scene.bodies')?.data.xs || []).length}}"
     )
-    where = page.evaluate(
-        """() => {
-          const {xs, ys, value} = Bokeh.documents[0].get_model_by_name("scene.bodies").data
-          const figure = [...Bokeh.documents[0].all_models].find(
-            (one) => one.type === "Plot" && one.x_range.name === "scene.x")
-          const view = Bokeh.index.find_one_by_id(figure.id)
-          const {x, y} = view.el.getBoundingClientRect()
-          const at = [...value].findIndex((part) => part === 1)
-          const middle = (ends) => ends.reduce((a, b) => a + b) / ends.length
-          const {x_scale, y_scale} = view.frame
-          return [
-            x + x_scale.compute(middle([...xs[at]])), y + y_scale.compute(middle([...ys[at]]))]
-        }"""
-    )
-    page.mouse.click(*where)
+    page.mouse.click(*page.evaluate(MIDDLE))
     expect(page.get_by_role("slider", name="Substructure", exact=True)).to_have_value("2")
+
+
+def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away(
+    open_page: Visit,
+) -> None:
+    page = open_page("?elements=20&substructures=4")
+    expect(status(page)).to_contain_text("✓ converged")
+    lines = f"{MODEL}; return model('friction-force.curves').data.xs.map((xs) => xs[0])"
+    shown = f"() => {{{lines}.some((x) => Math.abs(x - 0.275) < 1e-6)}}"
+    assert not page.evaluate(shown)
+    # Arrows of the pressure end there: who does not drag them taps on the bar.
+    page.mouse.click(*page.evaluate(MIDDLE))
+    page.wait_for_function(shown)
+    page.wait_for_timeout(400)
+    page.mouse.click(*page.evaluate(MIDDLE))
+    page.wait_for_function(f"() => !({shown})()")

@@ -79,7 +79,7 @@ def test_a_run_starts_as_its_settings_say_otherwise() -> None:
     first = Shown()
     first.run(1, "bar", NEAR, warm=True, pause_after=3)
     assert not first.pictures[-1].facts.was_warm
-    assert "not at hand" in first.words
+    assert "as there was no" in first.words
 
 
 def test_full_stage_beside_a_warm_run_starts_where_that_does() -> None:

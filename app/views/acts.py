@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from app.worker.portrait import PITCH, THICKNESS
 from solver.arrays import Array
 from solver.discrete.rods import Rods
 from solver.discrete.stack import Given, Side, Stack
+from solver.scenes import behind
 from solver.settings import Settings
 
 OUTWARD = {
@@ -39,6 +40,8 @@ class Act:
         Over time, shape (n_instants,) or, of each place, (n, n_instants).
     unit
         Of the values.
+    setting
+        Name of the setting that scales them, or empty.
     """
 
     symbol: str
@@ -47,6 +50,7 @@ class Act:
     away: tuple[float, float]
     values: Array
     unit: str
+    setting: str = ""
 
 
 def size_of(data: Rods | Stack) -> tuple[float, float]:
@@ -59,43 +63,50 @@ def size_of(data: Rods | Stack) -> tuple[float, float]:
 def acts_on(data: Rods | Stack, settings: Settings) -> list[Act]:
     """Give all that acts and is not zero throughout."""
     found = _on_rods(data, settings) if isinstance(data, Rods) else _on_stack(data)
-    return [act for act in found if np.any(act.values)]
+    names = behind(settings)
+    return [
+        replace(act, setting=names.get(where, "")) for where, act in found if np.any(act.values)
+    ]
 
 
-def _on_rods(data: Rods, settings: Settings) -> Iterator[Act]:
+def _on_rods(data: Rods, settings: Settings) -> Iterator[tuple[str, Act]]:
+    """Give what acts, each with where it does."""
     length, height = size_of(data)
     end, start = np.array([[length, 0.5 * height]]), np.array([[0.0, 0.5 * height]])
     right = OUTWARD["right"]
     if data.rigid_grip:
-        yield Act("u", end, right, right, data.load * data.length / data.stiffness, "m")
+        moved = data.load * data.length / data.stiffness
+        yield "right x", Act("u", end, right, right, moved, "m")
     else:
-        yield Act("F", end, right, right, data.load, "N")
+        yield "right x", Act("F", end, right, right, data.load, "N")
     if data.support is not None:
-        yield Act("u", start, right, OUTWARD["left"], data.support, "m")
+        yield "left x", Act("u", start, right, OUTWARD["left"], data.support, "m")
     if data.body_force is not None:
         middle = np.array([[0.5 * length, height]])
-        yield Act("b", middle, right, right, data.body_force, "N/m")
+        yield "body", Act("b", middle, right, right, data.body_force, "N/m")
     pressure = np.full(len(data.instants), float(settings.values()["pressure"]))
     pressed = np.interp([0.1, 0.3, 0.5, 0.7, 0.9], data.nodes / length, data.bound) > 0.0
     x = np.array([0.1, 0.3, 0.5, 0.7, 0.9])[pressed] * length
     if len(x):
         places = np.stack([x, np.full_like(x, height)], axis=1)
-        yield Act("p", places, OUTWARD["bottom"], OUTWARD["top"], pressure, "N/m")
+        yield "top y", Act("p", places, OUTWARD["bottom"], OUTWARD["top"], pressure, "N/m")
 
 
-def _on_stack(data: Stack) -> Iterator[Act]:
+def _on_stack(data: Stack) -> Iterator[tuple[str, Act]]:
+    """Give what acts, each with where it does."""
     length, height = size_of(data)
     for name, side in data.sides.items():
         if name == "bottom" and data.support is not None:
             continue
         first, last = ends_of(name, length, height)
         for component, given in enumerate((side.x, side.y)):
-            yield _given(given, first, last, component, OUTWARD[name])
+            act = _given(given, first, last, component, OUTWARD[name])
+            yield f"{name} {'xy'[component]}", act
     if data.body_force is not None:
         middle = np.array([[0.5 * length, 0.5 * height]])
         size = np.hypot(*data.body_force)
         towards = data.body_force / np.where(size > 0.0, size, 1.0)
-        yield Act("W", middle, towards, (1.0, 0.0), size * length * height, "N")
+        yield "body", Act("W", middle, towards, (1.0, 0.0), size * length * height, "N")
 
 
 def _given(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
-from app.views.drawing import Curve, Drawing, Plot, Scene, View
+from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, length_of, spanned
 from app.worker.shown import Wires
@@ -38,7 +38,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     curves = []
     if wires.exact is not None and wires.exact_positions is not None:
         exact = wires.exact[:, :, scene.instant] / factor
-        curves += [Curve(wires.exact_positions, one, GREEN, 6, alpha=0.35) for one in exact]
+        curves += [Curve(wires.exact_positions, one, GREEN, 7) for one in exact]
     for place in np.argsort([number == wires.broken for number in wires.numbers], kind="stable"):
         number = wires.numbers[place]
         width = 3.5 if number == wires.broken else 2.0
@@ -67,4 +67,4 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
     return (*keys, *((Key(GREEN, "band", "closed form"),) if is_exact else ()))
 
 
-VIEW = View("Force in the wires", Plot("Position x (m)", "Axial force (N)"), draw, applies)
+VIEW = View("Force in the wires", Plot(POSITION, "Axial force (N)"), draw, applies)

@@ -39,9 +39,9 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     keys = KEYS if has_reference(run.settings) else KEYS[:ERRORS]
     past: History | None = before.history if before else None
     if scene.is_paired:
-        keys = (*keys, Key(BLUE, "pale", "A"))
+        keys = (*keys, Key(BLUE, "thin", "A"))
     if is_reduced:
-        past, keys = run.beside, (*keys, Key(BLUE, "pale", "full stage"))
+        past, keys = run.beside, (*keys, Key(BLUE, "thin", "full stage"))
     values = [value for name, *_ in CURVES for value in now[name]]
     y = in_decades(*decades([*LEAST_SPAN, *values], FLOOR))
     length = before.iteration if before and not is_reduced else 0
@@ -50,7 +50,7 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     if past is not None:
         ghost = past.thinned(MOST_POINTS)
         curves += [
-            Curve(ghost["iteration"], ghost[name], color, 2, alpha=0.35)
+            Curve(ghost["iteration"], ghost[name], color, 1.2)
             for name, color, _, _ in CURVES[ERRORS:]
         ]
     curves += [

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.colors import GREY
-from app.views.drawing import Bodies, Colors, Drawing, Plot, Scene, View, is_plane
+from app.views.colors import GHOST, GREY
+from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, round_up
+from app.worker.portrait import rims
 from app.worker.shown import Mesh
+from solver.arrays import Array
 
+FARTHEST = 5.0
+"""Times the displacement of the bodies: a ghost that moves farther is left out."""
 SHOWN = 0.06
 """Share of the bodies' size that the largest displacement takes by default."""
 CIVIDIS = ("#00224e", "#1a386f", "#434e6c", "#61656f", "#7d7c78", "#9b9476", "#bcae6c", "#dfc858")
@@ -28,16 +32,39 @@ def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | No
     limits = held(old, float(field.stress.min()), float(field.stress.max()))
     unit, name = decimal_scale(max(-limits[0], limits[1]), "Pa")
     low, high = (limit / unit for limit in limits)
-    reach = round_up(factor * field.largest) if field.largest > 0.0 else 0.0
+    reach = round_up(factor * reach_of(scene)) if field.largest > 0.0 else 0.0
+    outlines, ghosts = ghosts_of(scene, factor)
     return Drawing(
         bodies=Bodies(mesh.quads, moved, field.stress / np.float32(unit), _box(mesh, reach)),
         colors=Colors(low, high, (low, 0.5 * (low + high), high), name),
         keys=(
             Key(GREY, "bare", scene.look.stress),
             Key(GREY, "bare", f"displacement × {factor:g}"),
+            *ghosts,
         ),
+        curves=[Curve(one[:, 0], one[:, 1], GHOST, 1.5) for one in outlines],
         kept=(limits, fit),
     )
+
+
+def ghosts_of(scene: Scene, factor: float) -> tuple[list[Array], list[Key]]:
+    """Give the outlines of the deformed bodies of what a run is compared with, and their key."""
+    if scene.shadow is None or scene.before is None or not _suits(scene):
+        return [], []
+    portrait = scene.before.stand.portrait
+    nodes = portrait.mesh.nodes + np.float32(factor) * scene.shadow.pose.displacement
+    return [nodes[rim] for rim in rims(portrait)], [Key(GHOST, "line", scene.ghost_name)]
+
+
+def reach_of(scene: Scene) -> float:
+    """Give the largest displacement over the whole time of all bodies that are drawn, m."""
+    own = scene.frame.pose.largest
+    return max(own, scene.shadow.pose.largest) if scene.shadow and _suits(scene) else own
+
+
+def _suits(scene: Scene) -> bool:
+    """Tell whether a ghost moves little enough not to make the bodies small."""
+    return bool(scene.shadow and scene.shadow.pose.largest <= FARTHEST * scene.frame.pose.largest)
 
 
 def _box(mesh: Mesh, reach: float) -> tuple[float, float, float, float]:

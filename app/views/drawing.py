@@ -6,20 +6,25 @@ A view looks at a `Scene` and gives a `Drawing`. The figure that it is drawn on 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from app.views.handles import Handle
 from app.views.legend import Key
 from app.worker.frames import Fields
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
+from solver.arrays import Array
 from solver.scenes import kind_of
 from solver.settings import Settings
+
+POSITION = "Position x (m)"
+"""Title of axes along the bodies."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,8 @@ class Scene:
         Where one looks.
     is_paired
         Whether `before` is a run A, which goes in step with the run at work, B.
+    shadow
+        The iterate of `before` that is drawn beside that of the run at work.
     """
 
     run: Recording
@@ -49,6 +56,7 @@ class Scene:
     instant: int
     look: Look
     is_paired: bool = False
+    shadow: Frame | None = None
 
     @property
     def name(self) -> str:
@@ -104,7 +112,6 @@ class Word:
     x: ArrayLike
     y: ArrayLike
     text: str
-    color: str
     across: str = "left"
     up: str = "middle"
 
@@ -128,12 +135,15 @@ class Bodies:
     ----------
     box
         Left, right, low and high end of what is to be seen, to one scale.
+    along
+        Position of each along the undeformed body, shape (n_quads,), m, where it can be chosen.
     """
 
     corners: NDArray[np.int32]
     places: NDArray[np.float32]
     values: NDArray[np.float32]
     box: tuple[float, float, float, float]
+    along: NDArray[np.float32] | None = None
 
 
 @dataclass(frozen=True)
@@ -164,6 +174,10 @@ class Drawing:
     ----------
     keys
         Its legend.
+    handles
+        What can be dragged.
+    contacts
+        Interfaces that can be chosen: their names, and where each lies, shape (n, 2), m.
     kept
         What the view wants to be given with the next scene, as limits that it would rather hold.
     """
@@ -177,6 +191,8 @@ class Drawing:
     bodies: Bodies | None = None
     colors: Colors | None = None
     keys: Sequence[Key] = ()
+    handles: Sequence[Handle] = ()
+    contacts: Mapping[str, Array] = field(default_factory=dict)
     kept: Any = None
 
 
@@ -205,6 +221,8 @@ class Plot:
     chooses
         What a tap or a drag chooses: with its height "instant" or "substructure", with its place
         along x "time"; or nothing.
+    is_touched
+        Whether one drags handles in it, which settings follow, and taps on interfaces and places.
     whole
         Whether the values across, up, or both are whole numbers: "", "x", "y".
     """
@@ -219,6 +237,7 @@ class Plot:
     words: bool = False
     names: str = ""
     chooses: str = ""
+    is_touched: bool = False
     whole: str = ""
 
 

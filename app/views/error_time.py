@@ -32,7 +32,7 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
     x = in_decades(*decades(times, 1e-6))
     y = in_decades(decades(errors, FLOOR)[0], 2.0)
     curves = [_curve(one.history, colors[one.ticket], 2) for one in past]
-    keys = [Key(BLUE, "line", "B" if twin else "now")]
+    keys = [Key(BLUE, "line", "B" if twin else "this run")]
     if run.settings.is_reduced:
         keys.append(Key(BLUE, "dashed", "full stage"))
         curves.append(_curve(run.beside, BLUE, 2.5, "dashed"))

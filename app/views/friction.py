@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.views.colors import BLUE, GREEN, GREY, ORANGE, SKY
-from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, is_plane
+from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
+from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import across, decimal_scale, length_of, spanned, upright
 from solver.settings import Settings
@@ -36,17 +36,17 @@ def draw(scene: Scene, _kept: Any) -> Drawing | None:
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if begun.closed_form is not None:
-        curves.append(Curve(places, begun.closed_form[:, instant] / factor, GREEN, 6, alpha=0.35))
+        curves.append(Curve(places, begun.closed_form[:, instant] / factor, GREEN, 7))
         keys.append(Key(GREEN, "band", "closed form"))
     if scene.ghost is not None:
         before, fields, then = scene.ghost
-        curves.append(Curve(before.stand.positions, fields.friction[:, then] / factor, SKY, 2))
-        keys.append(Key(SKY, "line", scene.ghost_name))
+        curves.append(Curve(before.stand.positions, fields.friction[:, then] / factor, GHOST, 2))
+        keys.append(Key(GHOST, "line", scene.ghost_name))
     if run.reference is not None:
         force = run.reference.friction[:, instant] / factor
-        curves.append(Curve(places, force, ORANGE, 4, alpha=0.8))
+        curves.append(Curve(places, force, ORANGE, 4.5))
     curves.append(Curve(places, scene.frame.fields.friction[:, instant] / factor, BLUE))
     return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")))
 
 
-VIEW = View("Friction force", Plot("Position x (m)", "Friction force (N/m)"), draw, applies)
+VIEW = View("Friction force", Plot(POSITION, "Friction force (N/m)"), draw, applies)

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
+from app.glossary import explained
+
 
 @dataclass(frozen=True)
 class Key:
@@ -14,8 +16,8 @@ class Key:
     Attributes
     ----------
     mark
-        "line", "dashed", "dotted", "pale", "band", "square", "dot", "ring", "cross", or "bare" for
-        none.
+        "line", "dashed", "dotted", "thin", "band", "square", "front" (a line on a square), "dot",
+        "ring", "cross", or "bare" for none.
     """
 
     color: str
@@ -27,7 +29,7 @@ def card_title(name: str, keys: Sequence[Key]) -> str:
     """Write a view's name with its legend beside it (HTML)."""
     entries = "".join(
         f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
-        f"{escape(key.text)}</span>"
+        f"{explained(escape(key.text))}</span>"
         for key in keys
     )
-    return f"<b>{escape(name)}</b>{entries}"
+    return f"<b>{explained(escape(name))}</b>{entries}"

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.views.colors import BLUE, ORANGE, SKY, VERMILION
+from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned
@@ -37,10 +37,10 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if scene.before is not None and (ghost := _newest(scene.before, axes)):
-        curves.append(scaled(ghost, SKY, 2))
-        keys.append(Key(SKY, "line", scene.ghost_name))
+        curves.append(scaled(ghost, GHOST, 2))
+        keys.append(Key(GHOST, "line", scene.ghost_name))
     if run.reference is not None:
-        curves.append(scaled(_pair(run, run.reference), ORANGE, 4, alpha=0.8))
+        curves.append(scaled(_pair(run, run.reference), ORANGE, 4.5))
     curves.append(scaled(now, BLUE))
     time = begun.instants[scene.instant]
     at = [float(np.interp(time, begun.all_instants, one)) for one in now]

@@ -7,7 +7,17 @@ from typing import Any
 import numpy as np
 
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
-from app.views.drawing import Axis, Curve, Drawing, Plot, Scene, View, has_instants, is_plane
+from app.views.drawing import (
+    POSITION,
+    Axis,
+    Curve,
+    Drawing,
+    Plot,
+    Scene,
+    View,
+    has_instants,
+    is_plane,
+)
 from app.views.legend import Key
 from app.views.scales import decimal_scale, spanned, upright
 from app.worker.shown import ShownModes
@@ -80,10 +90,13 @@ def _length(size: float) -> str:
 
 SPACE_MODES = View(
     "PGD space modes",
-    Plot("Position x (m)", "Displacement / largest"),
+    Plot(POSITION, "Share of the largest displacement"),
     draw_space,
     applies_in_space,
 )
 TIME_FUNCTIONS = View(
-    "PGD time functions", Plot("Time t (s)", "Time function / largest"), draw_time, applies_in_time
+    "PGD time functions",
+    Plot("Time t (s)", "Share of the largest value"),
+    draw_time,
+    applies_in_time,
 )

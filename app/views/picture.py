@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from app.views import sketch
 from app.views.acts import OUTWARD, Act, acts_on, ends_of, holds, size_of
-from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN, GREY, VERMILION, shaded
-from app.views.deformed import fitting
+from app.views.colors import BACKWARD, FORCE, FORWARD, GHOST, GIVEN, GREY, VERMILION, shaded
+from app.views.deformed import fitting, ghosts_of, reach_of
 from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, Word
+from app.views.handles import Handle, choices, on_arrow, on_bodies
 from app.views.legend import Key
 from app.views.scales import decimal_scale
 from app.worker.portrait import Portrait, Pose
-from app.worker.shown import Floats
 from solver.arrays import Array
 from solver.discrete.rods import Rods
 from solver.discrete.stack import Stack, Support
+from solver.settings import Settings
 
 ARROW = 0.17
 """Length of the largest arrow, as a share of the size of what is drawn."""
@@ -41,17 +43,26 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
     strokes = [Curve(*artist.placed(one), GREY, 1, "dotted") for one in artist.outlines()]
     strokes += [Curve(*artist.placed(one), GREY, 1.5) for one in artist.held()]
     last = int(portrait.mesh.parts.max())
-    words = []
+    words: list[Word] = []
+    arrows = []
     for act in acts:
         color = GIVEN if act.unit == "m" else FORCE
-        arrows, found = artist.arrows(act)
-        strokes.append(Curve(*artist.placed(arrows), color, 2.5))
-        words += [Word(*artist.placed(place), text, color, *align) for place, text, align in found]
+        own, found = artist.arrows(act)
+        arrows.append((act, own))
+        drawn = sketch.joined(sketch.arrow(tail, head, artist.size) for tail, head in own)
+        strokes.append(Curve(*artist.placed(drawn), color, 2.5))
+        words += [Word(*artist.placed(place), text, *align) for place, text, align in found]
     settings = scene.run.settings
     if settings.is_reduced and last:
         chosen = scene.look.substructure
         part = last if chosen is None else min(chosen, last)
         strokes += [Curve(*artist.placed(one), VERMILION, 2.5) for one in artist.outline_of(part)]
+    outlines, ghosts = ghosts_of(scene, factor or fit)
+    strokes += [Curve(*artist.placed(one), GHOST, 1.5) for one in outlines]
+    place = scene.look.place
+    if place is not None:
+        strokes.append(Curve(*artist.placed(artist.across(place)), VERMILION, 1.5))
+        ghosts = [*ghosts, Key(VERMILION, "line", f"x = {place:.3g} m")]
     width = 7 if portrait.chains.max() == 0 else 4
     slips = [Curve(*artist.placed(artist.band(status)), color, width) for status, color in SLIPS]
     return Drawing(
@@ -59,12 +70,15 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
             portrait.mesh.quads,
             np.stack(artist.placed(artist.nodes), axis=1).astype(np.float32),
             portrait.mesh.parts.astype(np.float32),
-            artist.box(acts),
+            artist.box(acts, reach_of(scene)),
+            portrait.mesh.nodes[portrait.mesh.quads, 0].mean(axis=1),
         ),
         colors=Colors(0, max(last, 1), ()),
         curves=[*strokes, *slips],
         words=words,
-        keys=_keys(portrait, factor or fit),
+        contacts=artist.contacts(scene.run.stand.interfaces),
+        handles=artist.handles(arrows, scene.run.settings),
+        keys=(*_keys(portrait, factor or fit), *ghosts),
         kept=fit,
     )
 
@@ -84,7 +98,7 @@ class _Artist:
         self._portrait, self._pose, self._factor, self._time = portrait, pose, factor, time
         self._data = portrait.data
         self._length, self._height = size_of(self._data)
-        self._size = max(self._length, self._height)
+        self.size = max(self._length, self._height)
         tilt = self._data.tilt if isinstance(self._data, Stack) else None
         self._tilts = np.zeros(1) if tilt is None else tilt
         self._tilt = float(self._now(tilt)) if tilt is not None else 0.0
@@ -95,16 +109,16 @@ class _Artist:
         found = sketch.turned(np.asarray(points, dtype=np.float64), self._tilt)
         return found[..., 0], found[..., 1]
 
-    def box(self, acts: Sequence[Act]) -> tuple[float, float, float, float]:
-        """Give left, right, low and high end of what is to be seen at any instant."""
-        moves = self._factor * self._pose.largest
-        sides = dict.fromkeys(OUTWARD, (ROOM + HATCH) * self._size + moves)
+    def box(self, acts: Sequence[Act], reach: float) -> tuple[float, float, float, float]:
+        """Give the ends of what is seen at any instant; nothing moves farther than the reach."""
+        moves = self._factor * reach
+        sides = dict.fromkeys(OUTWARD, (ROOM + HATCH) * self.size + moves)
         if isinstance(self._data, Stack) and self._data.support is not None:
-            sides["bottom"] = float(self._gap(self._data.support).max()) + 2 * HATCH * self._size
+            sides["bottom"] = float(self._gap(self._data.support).max()) + 2 * HATCH * self.size
         for act in acts:
             side = next(name for name, away in OUTWARD.items() if away == act.away)
-            words = WORDS * self._size if side in ("left", "right") else 0.0
-            sides[side] = max(sides[side], (ARROW + ROOM) * self._size + words + moves)
+            words = WORDS * self.size if side in ("left", "right") else 0.0
+            sides[side] = max(sides[side], (ARROW + ROOM) * self.size + words + moves)
         left, low = -sides["left"], -sides["bottom"]
         right, high = self._length + sides["right"], self._height + sides["top"]
         corners = np.array([[left, low], [right, low], [right, high], [left, high]])
@@ -135,7 +149,7 @@ class _Artist:
         return self._rods_held(self._data) if isinstance(self._data, Rods) else self._stack_held()
 
     def _rods_held(self, data: Rods) -> Iterator[Array]:
-        depth = HATCH * self._size
+        depth = HATCH * self.size
         moved = 0.0 if data.support is None else self._factor * float(self._now(data.support))
         clamp = sketch.line((moved, -depth), (moved, self._height + depth))
         yield sketch.hatched(clamp, depth, behind=1.0)
@@ -149,12 +163,12 @@ class _Artist:
                 yield sketch.hatched(edge, depth)
 
     def _stack_held(self) -> Iterator[Array]:
-        data, depth = self._data, HATCH * self._size
+        data, depth = self._data, HATCH * self.size
         assert isinstance(data, Stack)
         if data.support is not None:
             x = np.linspace(0.0, self._length, len(data.support.gap))
             edge = np.stack([x, -self._gap(data.support)], axis=1)
-            beyond = ROOM * self._size + self._factor * self._pose.largest
+            beyond = ROOM * self.size + self._factor * self._pose.largest
             aside = np.array([[beyond, 0.0]])
             edge = np.concatenate([edge[:1] - aside, edge, edge[-1:] + aside])
             yield sketch.hatched(edge, depth)
@@ -168,13 +182,39 @@ class _Artist:
                 yield sketch.rollers(first + aside, last + aside, 0.5 * depth)
         if data.spring is not None:
             foot = self._moved(np.array([[self._length, 0.0]]))[0] + [0.0, depth]
-            wall = np.array([self._length + 0.25 * self._size, depth])
+            wall = np.array([self._length + 0.25 * self.size, depth])
             yield sketch.spring(foot, wall, 0.5 * depth)
             half = np.array([0.0, depth])
             yield sketch.hatched(np.stack([wall - half, wall + half]), depth)
 
-    def arrows(self, act: Act) -> tuple[Array, list[tuple[Array, str, tuple[str, str]]]]:
-        """Give the arrows of what acts, and the value beside them: place, words, alignment."""
+    def across(self, place: float) -> Array:
+        """Give a line through all bodies at a place along them, m."""
+        return self._moved(np.array([[place, 0.0], [place, self._height]]))
+
+    def contacts(self, names: Sequence[str]) -> dict[str, Array]:
+        """Give where interfaces lie, as far as there are several to choose from."""
+        places = self._portrait.places + np.float32(self._factor) * self._pose.slid
+        found = {name: places[self._portrait.chains == number] for number, name in enumerate(names)}
+        return {name: np.stack(self.placed(one), axis=1) for name, one in choices(found).items()}
+
+    def handles(
+        self, arrows: Sequence[tuple[Act, Sequence[Array]]], settings: Settings
+    ) -> list[Handle]:
+        """Give what can be dragged, with the arrows of what acts, where it lies on the page."""
+        data = self._data
+        support = data.support if isinstance(data, Stack) else None
+        found = list(on_bodies(data, settings, None if support is None else self._gap(support)))
+        for act, own in arrows:
+            if act.setting:
+                found += [on_arrow(act.setting, settings, arrow, self.size) for arrow in own]
+        if found:
+            x, y = self.placed(np.stack([one.ends for one in found]))
+            ends = np.stack([x, y], axis=2)
+            found = [replace(one, ends=own) for one, own in zip(found, ends, strict=True)]
+        return found
+
+    def arrows(self, act: Act) -> tuple[list[Array], list[tuple[Array, str, tuple[str, str]]]]:
+        """Give tails and heads of what acts, and the value beside it: place, words, alignment."""
         peak = float(np.abs(act.values).max())
         unit, name = decimal_scale(peak, act.unit)
         now = self._now(act.values)
@@ -185,8 +225,8 @@ class _Artist:
         is_aside = np.ndim(act.towards) < 2 and abs(float(towards @ away)) < 0.5
         ends, drawn, words = [], [], []
         for place, share in zip(self._moved(act.places), shares, strict=True):
-            length = ARROW * self._size * float(share) * towards
-            base = place + (0.5 * ROOM * self._size) * away if is_aside else place
+            length = ARROW * self.size * float(share) * towards
+            base = place + (0.5 * ROOM * self.size) * away if is_aside else place
             if is_aside:
                 tail, head = base - 0.5 * length, base + 0.5 * length
             elif length @ away >= 0.0:
@@ -194,15 +234,15 @@ class _Artist:
             else:
                 tail, head = base - length, base
             if abs(share) > LEAST:
-                drawn.append(sketch.arrow(tail, head, self._size))
+                drawn.append(np.stack([tail, head]))
             outer = base if is_aside else max((tail, head), key=lambda end: float(end @ away))
-            ends.append(outer + 0.25 * ROOM * self._size * away)
+            ends.append(outer + 0.25 * ROOM * self.size * away)
         chosen = range(len(ends)) if np.ndim(now) else [len(ends) // 2]
         for number in chosen:
             value = float(np.broadcast_to(now, len(ends))[number]) / unit
             says = f"{act.symbol} = {_plain(value)} {name}"
             words.append((ends[number], says, _aligned(act.away)))
-        return sketch.joined(drawn), words
+        return drawn, words
 
     def band(self, status: int) -> Array:
         """Give the stretches of all contacts that have a status."""
@@ -211,12 +251,12 @@ class _Artist:
         strokes = []
         for chain in range(int(portrait.chains.max()) + 1):
             own = portrait.chains == chain
-            strokes += _stretches(places[own], pose.status[own] == status)
+            strokes += sketch.stretches(places[own], pose.status[own] == status)
         return sketch.joined(strokes)
 
     def _gap(self, support: Support) -> Array:
         """Give the gap as it is drawn: magnified as displacements are, and at most so deep."""
-        return np.minimum(self._factor * support.gap, DEEPEST * self._size)
+        return np.minimum(self._factor * support.gap, DEEPEST * self.size)
 
     def _moved(self, places: Array) -> Array:
         """Give where the nodes nearest to undeformed places have gone, as seen from there."""
@@ -232,19 +272,6 @@ class _Artist:
         return found if values.ndim > 1 else found[0]
 
 
-def _stretches(places: Floats, chosen: Array) -> list[Array]:
-    """Give a line over every run of chosen points, which reaches halfway to its neighbours."""
-    if len(places) == 1:
-        return []
-    middles = 0.5 * (places[1:] + places[:-1])
-    ends = np.concatenate([places[:1], middles, places[-1:]])
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], chosen.astype(np.int8), [0]])))
-    return [
-        np.concatenate([ends[[first]], places[first:last], ends[[last]]])
-        for first, last in edges.reshape(-1, 2)
-    ]
-
-
 def _aligned(away: tuple[float, float]) -> tuple[str, str]:
     """Say how words stand beside what points away from a body: across and up."""
     across = {1.0: "left", -1.0: "right"}.get(away[0], "center")
@@ -258,6 +285,14 @@ def _plain(value: float) -> str:
 
 VIEW = View(
     "Scene",
-    Plot("", "", palette=tuple(SHADES), equal=True, words=True, chooses="substructure"),
+    Plot(
+        "",
+        "",
+        palette=tuple(SHADES),
+        equal=True,
+        words=True,
+        chooses="substructure",
+        is_touched=True,
+    ),
     draw,
 )

@@ -71,6 +71,19 @@ def spring(first: Array, last: Array, width: float) -> Array:
     return np.asarray(first + at * (last - first) + width * aside[:, None] * [-along[1], along[0]])
 
 
+def stretches(places: Array, chosen: Array) -> list[Array]:
+    """Give a line over every run of chosen points, which reaches halfway to its neighbours."""
+    if len(places) == 1:
+        return []
+    middles = 0.5 * (places[1:] + places[:-1])
+    ends = np.concatenate([places[:1], middles, places[-1:]])
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], chosen.astype(np.int8), [0]])))
+    return [
+        np.concatenate([ends[[first]], places[first:last], ends[[last]]])
+        for first, last in edges.reshape(-1, 2)
+    ]
+
+
 def turned(points: Array, angle: float) -> Array:
     """Turn points about the origin, counter-clockwise, rad."""
     if angle == 0.0:

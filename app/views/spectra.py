@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.views.colors import GREY, VERMILION, VIRIDIS, shaded
+from app.views.colors import GREY, LINES, VERMILION, shaded
 from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned
@@ -31,7 +31,7 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     modes = np.arange(1, width + 1)
     curves = [
         Curve(modes, values, color, name=str(number))
-        for values, color, number in zip(scaled, shaded(count), numbers, strict=False)
+        for values, color, number in zip(scaled, shaded(count, LINES), numbers, strict=False)
     ]
     marks: tuple[Marks, ...] = ()
     keys: tuple[Key, ...] = ()
@@ -65,7 +65,7 @@ VIEW = View(
         "Mode n",
         "Singular value / largest",
         logarithmic="y",
-        palette=VIRIDIS,
+        palette=LINES,
         scale="substructure",
         marks=(CROSS, RING),
         names="substructure",

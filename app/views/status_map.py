@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from app.views.colors import BACKWARD, FORWARD, GREY, OPEN, STICK, VERMILION
-from app.views.drawing import Drawing, Image, Plot, Scene, View
+from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, STICK, VERMILION
+from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import across, length_of, spanned, upright
+from app.worker.frames import Stand
+from app.worker.shown import Bytes
 
 KEYS = (
     Key(BACKWARD, "square", "slip −"),
@@ -39,9 +41,32 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
         upright(begun.cuts, y, color=GREY, width=1),
         across([float(instants[scene.instant])], x, color=VERMILION, width=3),
     ]
+    ghosts = []
+    if scene.ghost is not None:
+        before, fields, _ = scene.ghost
+        curves.insert(0, _fronts(before.stand, fields.status))
+        ghosts.append(Key(FRONT, "front", scene.ghost_name))
     can_open = begun.coefficient is not None
     keys = (*KEYS, *OPENED) if can_open else (*KEYS, CHOSEN)
-    return Drawing(x, y, curves, image=image, keys=keys)
+    return Drawing(x, y, curves, image=image, keys=(*keys, *ghosts))
+
+
+def _fronts(stand: Stand, status: Bytes) -> Curve:
+    """Give the lines between points and instants of different status."""
+    x, t = _edges(stand.positions), _edges(stand.instants)
+    i, j = np.nonzero(status[1:] != status[:-1])
+    vertical = (x[i + 1], x[i + 1], t[j], t[j + 1])
+    i, j = np.nonzero(status[:, 1:] != status[:, :-1])
+    level = (x[i], x[i + 1], t[j + 1], t[j + 1])
+    first, last, low, high = np.concatenate([vertical, level], axis=1)
+    gap = np.full(len(first), np.nan)
+    xs, ts = np.stack([first, last, gap], axis=1), np.stack([low, high, gap], axis=1)
+    return Curve(xs.ravel(), ts.ravel(), FRONT, 1)
+
+
+def _edges(axis: np.ndarray) -> np.ndarray:
+    half = 0.5 * _step(axis)
+    return np.concatenate([axis - half, axis[-1:] + half])
 
 
 def _step(axis: np.ndarray) -> float:
@@ -50,8 +75,6 @@ def _step(axis: np.ndarray) -> float:
 
 VIEW = View(
     "Stick and slip",
-    Plot(
-        "Position x (m)", "Time t (s)", palette=(BACKWARD, STICK, FORWARD, OPEN), chooses="instant"
-    ),
+    Plot(POSITION, "Time t (s)", palette=(BACKWARD, STICK, FORWARD, OPEN), chooses="instant"),
     draw,
 )

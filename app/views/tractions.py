@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.views.colors import BLUE, GREY, ORANGE, PURPLE
-from app.views.drawing import Curve, Drawing, Plot, Scene, View, is_plane
+from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, length_of, spanned, upright
 from app.worker.frames import Fields
@@ -35,12 +35,12 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     keys, past = list(KEYS), list[Key]()
     if scene.ghost is not None:
         before, fields, then = scene.ghost
-        curves += _pair(before.stand.positions, fields, then, factor, width=2, alpha=0.4)
-        past.append(Key(BLUE, "pale", scene.ghost_name))
+        curves += _pair(before.stand.positions, fields, then, factor, width=1.2)
+        past.append(Key(BLUE, "thin", scene.ghost_name))
     places = begun.positions
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
-        curves += _pair(places, run.reference, instant, factor, ORANGE, width=4, alpha=0.8)
+        curves += _pair(places, run.reference, instant, factor, ORANGE, width=4.5)
     for sign in (1.0, -1.0):
         curves.append(Curve(places, sign * bound[:, instant] / factor, GREY, 1.5, "dashed"))
     curves += _pair(places, now, instant, factor)
@@ -56,15 +56,14 @@ def _pair(
     factor: float,
     color: str = "",
     width: float = 2.5,
-    alpha: float = 1.0,
 ) -> list[Curve]:
     """Give pressure and friction, in their own colours or in one."""
     found = []
     for field, own in ((fields.pressure, PURPLE), (fields.friction, BLUE)):
         if field is not None:
             values = field[:, instant] / factor
-            found.append(Curve(places, values, color or own, width, alpha=alpha))
+            found.append(Curve(places, values, color or own, width))
     return found
 
 
-VIEW = View("Contact tractions", Plot("Position x (m)", "Traction (Pa)"), draw, is_plane)
+VIEW = View("Contact tractions", Plot(POSITION, "Traction (Pa)"), draw, is_plane)

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from html import escape
 from typing import Any
 
 import numpy as np
 
 from app.views.catalogue import fitting
-from app.views.drawing import Axis, Bodies, Drawing, Image, Marks, Scene, View
+from app.views.colors import VERMILION
+from app.views.drawing import POSITION, Axis, Bodies, Drawing, Image, Marks, Scene, View
 from app.views.legend import card_title
+from app.views.scales import upright
 from app.worker.block import Attributes, Packer, Quads
 from app.worker.readings import values
 from app.worker.shown import Look
 from solver.settings import Settings
 
-TAKE_AWAY = "take-away"
-"""Name of the component that saves what is seen."""
+TAKE_AWAY, PLOTS = "take-away", "plots"
+"""Names of the components that save what is seen, and that show it."""
 
 
 class Easel:
@@ -29,14 +32,15 @@ class Easel:
 
     def paint(self, scene: Scene, words: Mapping[str, str]) -> bytes:
         """Draw every view that is seen; give what has changed of the page."""
-        models: dict[str, Attributes] = {TAKE_AWAY: {"caption": caption(scene)}}
+        seen_now = {"caption": caption(scene)}
+        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, PLOTS: seen_now}
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
         for view in seen(scene.run.settings, scene.look):
             drawing = view.draw(scene, self._kept.get(view.slug))
             if drawing is not None:
                 self._kept[view.slug] = drawing.kept
-                models.update(parts(view, drawing))
+                models.update(parts(view, marked(view, drawing, scene.look.place)))
         return self.say(words, models)
 
     def say(
@@ -58,15 +62,24 @@ def seen(settings: Settings, look: Look) -> list[View]:
     return [view for view in fitting(settings) if view.name in look.views]
 
 
+def marked(view: View, drawing: Drawing, place: float | None) -> Drawing:
+    """Mark a place, m, where positions run across a plot."""
+    if place is None or view.plot.x_label != POSITION or drawing.y is None:
+        return drawing
+    mark = upright([place], drawing.y, color=VERMILION, width=1.5)
+    return replace(drawing, curves=[*drawing.curves, mark])
+
+
 def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
     """Give what the models of a view's figure are set to, by their names."""
-    found: dict[str, Attributes] = {"title": {"text": escape(card_title(view.name, drawing.keys))}}
+    found: dict[str, Attributes] = {"title": {"text": card_title(view.name, drawing.keys)}}
     for name, axis in (("x", drawing.x), ("y", drawing.y)):
         found.update(_axis(name, axis))
-    if view.plot.words or not view.plot.equal:
-        found["curves"] = _curves(drawing)
+    found["curves"] = _curves(drawing)
     if view.plot.words:
         found["words"] = _words(drawing)
+    if view.plot.is_touched:
+        found["handles"], found["contacts"] = _handles(drawing), _contacts(drawing)
     for kind in view.plot.marks:
         found[kind.kind] = _marks(kind, drawing)
     if drawing.image is not None:
@@ -110,9 +123,27 @@ def _words(drawing: Drawing) -> Attributes:
         "x": np.array([word.x for word in words], float),
         "y": np.array([word.y for word in words], float),
         "text": [word.text for word in words],
-        "color": [word.color for word in words],
         "across": [word.across for word in words],
         "up": [word.up for word in words],
+    }
+
+
+def _handles(drawing: Drawing) -> Attributes:
+    handles = drawing.handles
+    return {
+        "ends": np.array([one.ends for one in handles], float).ravel(),
+        "setting": [one.setting for one in handles],
+        "value": [one.value for one in handles],
+        "rate": [float(f"{one.rate:.6g}") for one in handles],
+    }
+
+
+def _contacts(drawing: Drawing) -> Attributes:
+    places = drawing.contacts.values()
+    return {
+        "xs": [one[:, 0] for one in places],
+        "ys": [one[:, 1] for one in places],
+        "name": list(drawing.contacts),
     }
 
 
@@ -133,4 +164,6 @@ def _image(image: Image) -> Attributes:
 
 def _bodies(bodies: Bodies) -> Iterator[tuple[str, Attributes]]:
     yield "bodies", {"quads": Quads(bodies.corners, bodies.places), "value": bodies.values}
+    if bodies.along is not None:
+        yield "along", {"x": bodies.along}
     yield "box", {"edge": list(bodies.box)}

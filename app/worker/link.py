@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
-import os
-import sys
 import threading
-from collections.abc import Callable, Iterator
-from importlib.machinery import ModuleSpec
+from collections.abc import Callable
 from multiprocessing.connection import Connection
-from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
 
 from app.worker import process
 from app.worker.orders import Order
 from app.worker.reports import Died, Report
+from solver.study.processes import start_process
 
-ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]
-
-_starting = threading.Lock()
 
 
 class Link:
@@ -105,50 +98,5 @@ def warm_up() -> None:
 def start(
     main: Callable[..., None] = process.main, *arguments: object
 ) -> tuple[BaseProcess, Connection]:
-    """Start a process, and give the server's end of its pipe.
-
-    Parameters
-    ----------
-    main, arguments
-        What it does, from an importable module: called with its end of the pipe, and these.
-    """
-    context = _context()
-    ours, theirs = context.Pipe()
-    worker = context.Process(  # type: ignore[attr-defined]  # every concrete context has it
-        target=main, args=(theirs, *arguments), name="slipfront-worker", daemon=True
-    )
-    with _starting, _children_surroundings():
-        worker.start()
-    # As long as this end were open here, the end of the process would not be seen.
-    theirs.close()
-    return worker, ours
-
-
-def _context() -> BaseContext:
-    if "forkserver" not in multiprocessing.get_all_start_methods():
-        return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(PRELOADED)
-    return context
-
-
-@contextlib.contextmanager
-def _children_surroundings() -> Iterator[None]:
-    """Let children start with one BLAS thread, and without importing the server's main module.
-
-    The main module of `panel serve` imports all of Panel, which would take each worker seconds.
-    multiprocessing leaves out a main module that is named like a package's `__main__`.
-    """
-    main = sys.modules["__main__"]
-    spec, before = main.__spec__, {name: os.environ.get(name) for name in ONE_THREAD}
-    main.__spec__ = ModuleSpec("app.__main__", None)
-    os.environ.update(ONE_THREAD)
-    try:
-        yield
-    finally:
-        main.__spec__ = spec
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+    """Start a process of the page's server, as `start_process` does."""
+    return start_process(main, *arguments, preloaded=PRELOADED)

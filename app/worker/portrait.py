@@ -64,6 +64,19 @@ class Pose:
     status: Bytes
 
 
+def rims(portrait: Portrait) -> list[NDArray[np.intp]]:
+    """Give the nodes around every body, a rectangle while undeformed, back to the first."""
+    data, mesh = portrait.data, portrait.mesh
+    bodies = data.wires if isinstance(data, Rods) else data.bodies
+    found = []
+    for quads in mesh.quads.reshape(bodies, -1):
+        own = np.unique(quads)
+        x, y = mesh.nodes[own].T
+        sides = ((y == y.min(), x), (x == x.max(), y), (y == y.max(), -x), (x == x.min(), -y))
+        found.append(np.concatenate([own[on][np.argsort(along[on])] for on, along in sides]))
+    return found
+
+
 class Sitter:
     """A problem as its portraits see it.
 

@@ -187,10 +187,11 @@ class WorkerRun:
         iterate, before = self._sought or (self._newest, self._before)
         return self._sampler.frame(iterate, look, before)
 
-    def keep_frame(self, look: Look) -> None:
-        """Keep the fields that are looked at, for others to be compared with."""
+    def keep_frame(self, look: Look) -> Frame:
+        """Keep the fields that are looked at, for others to be compared with; give all of them."""
         frame = self.frame(look)
         self.recording.frame, self.recording.shown = frame.fields, frame.iteration
+        return frame
 
     def _open(self) -> None:
         """Do the first iteration, from the start that is better: its picture comes first."""
@@ -206,8 +207,8 @@ class WorkerRun:
         newest = next(self._generator)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(
-                "Numbers stopped being finite at the first iteration; bring k_scale and the loads "
-                "nearer to 1."
+                "Numbers stopped being finite at the first iteration; bring k_scale nearer to 1, "
+                "and the loads to ordinary sizes."
             )
         self._newest = newest
         self.has_news = True

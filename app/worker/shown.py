@@ -158,6 +158,8 @@ class Look:
     substructure
         The one whose modes are looked at, counted from 0; None is the last one, and so is a number
         that is too large.
+    place
+        The position along the bodies that is marked, m, or None.
     magnification
         Factor on the displacement of bodies; None leaves it to the view.
     views
@@ -172,6 +174,7 @@ class Look:
     phase: float = 0.75
     stress: str = STRESSES[0]
     substructure: int | None = None
+    place: float | None = None
     magnification: float | None = None
     views: tuple[str, ...] = ()
     complaint: str = ""

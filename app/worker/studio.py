@@ -6,6 +6,7 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable
+from dataclasses import replace
 from html import escape
 
 from app.views.drawing import Scene
@@ -49,6 +50,7 @@ class Studio:
         self._twin: Twin | None = None
         self._last: Iterate | None = None
         self._before: Recording | None = None
+        self._shadow: Frame | None = None
         self._past: deque[Recording] = deque(maxlen=PAST_RUNS)
         self._table: Tabulate | None = None
         self._paint_at: float | None = None
@@ -111,7 +113,7 @@ class Studio:
         settings, before = self._run.recording.settings, self._before
         # Runs of another scene are nothing to compare with.
         if order.is_alone or (before is not None and type(before.settings) is not type(settings)):
-            self._before = None
+            self._before = self._shadow = None
             self._past.clear()
 
     def _pair(self, order: Run) -> None:
@@ -135,8 +137,7 @@ class Studio:
         self._last = run.last
         if run.recording.is_worth_keeping:
             run.obey(Seek(run.ticket, None))
-            run.keep_frame(self._look)
-            self._before = run.recording
+            self._before, self._shadow = run.recording, run.keep_frame(self._look)
             self._past.append(run.recording)
 
     def _watch(self, look: Look) -> None:
@@ -186,12 +187,14 @@ class Studio:
             self._send(File(block))
 
     def _scene(self, run: WorkerRun, frame: Frame, instant: int) -> Scene:
-        twin, before = self._twin, self._before
+        twin, before, look = self._twin, self._before, self._look
+        if self._shadow is not None and self._shadow.look != look:
+            self._shadow = replace(self._shadow, look=look)
+        shadow = self._shadow
         if twin is not None:
-            twin.keep_frame(self._look)
-            before = twin.recording
+            shadow, before = twin.keep_frame(look), twin.recording
         past = tuple(self._past)
-        return Scene(run.recording, before, past, frame, instant, self._look, twin is not None)
+        return Scene(run.recording, before, past, frame, instant, look, twin is not None, shadow)
 
     def _words(self, run: WorkerRun, scene: Scene) -> dict[str, str]:
         frame, state, complaint = scene.frame, run.state, self._look.complaint

@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.worker.orders import Pace, Run, Seek, Step
 from app.worker.recording import Recording
 from app.worker.run import WorkerRun
+from app.worker.sampler import Frame
 from app.worker.shown import Look
 
 
@@ -74,10 +75,9 @@ class Twin:
         """Look elsewhere."""
         self._run.look_at(look)
 
-    def keep_frame(self, look: Look) -> None:
-        """Keep the fields that are to be drawn beside those of B."""
-        if self._run.is_presentable:
-            self._run.keep_frame(look)
+    def keep_frame(self, look: Look) -> Frame | None:
+        """Keep the fields that are to be drawn beside those of B, and give what they are of."""
+        return self._run.keep_frame(look) if self._run.is_presentable else None
 
     def _direct(self, goal: int | None) -> None:
         run = self._run

@@ -7,26 +7,32 @@ from collections.abc import Sequence
 from html import escape
 from typing import Literal
 
+from app.glossary import explained
 from app.labels import changes_of, label_of
 from app.views.drawing import Scene
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
 from app.worker.shown import has_reference
+from solver.definitions import about
 from solver.latin import Ending
+from solver.settings import Settings
 
 ENDINGS = {
     Ending.CONVERGED: "✓ converged",
-    Ending.EXHAUSTED: "■ out of iterations",
-    Ending.STALLED: "■ stalled",
+    Ending.EXHAUSTED: "■ not converged",
+    Ending.STALLED: "■ not converged, stalled",
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
 STATES = {
     "running": "<b>running</b>, iteration {}",
     "paused": "<b>paused</b> at iteration {}",
-    "held": "<b>waits</b> for the study that is timed, at iteration {}",
+    "held": "<b>waits</b> for the study to be timed, at iteration {}",
 }
 AT_REST = "■ at rest"
+COUNTED = "iteration", "friction force error"
+"""Stand beside their numbers in the status line, where scripts read them; the figures mark them."""
+PAUSED = "Run goes on, Step does one iteration."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
 HEADS = (
     "Iteration",
@@ -39,21 +45,8 @@ HEADS = (
     "Iterations to 1 %",
 )
 ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
-MEANINGS = {
-    "Iteration": "The one that is shown; each improves all instants at once.",
-    "LATIN indicator η": "Distance between the two stages of the method; no error, as it also "
-    "depends on the search direction k.",
-    "k-free indicator": "By how much the iterate breaks the laws of the interfaces, as a share of "
-    "the energy in play, whatever k is.",
-    "Estimated force error": "How wrong the contact force is, as the run itself estimates it, "
-    "without a reference.",
-    "Displacement error": "Distance to the reference solution, as a share of its size.",
-    "Friction force error": "Distance to the reference solution, as a share of its size.",
-    "Run time": "All that the run needs to end: set-up, iterations, indicators, estimate.",
-    "Iterations to 1 %": "After which the friction force is within 1 % of the "
-    "reference for the first time.",
-}
-"""What stands over a figure's name when one points at it."""
+CHIEF, ESTIMATE = "Friction force error", "Estimated force error"
+"""What is left where all is folded to a line, with a reference and without one."""
 
 
 def status_line(
@@ -85,8 +78,8 @@ def status_line(
     else:
         line = f"{STATES[state].format(done)} · {scale}"
     if (bases := frame.bases) is not None:
-        counted = "1 mode" if bases.largest == 1 else f"{bases.largest} modes"
-        line += f" · {counted} at most, {bases.found.stored} stored"
+        counted = "1 mode" if bases.largest == 1 else f"up to {bases.largest} modes"
+        line += f" · {counted} a substructure, {bases.found.stored} in all"
     if (last := run.last) is not None:
         line += f" · η = {number(last.indicator)}"
         if math.isfinite(last.error_force):
@@ -98,20 +91,31 @@ def status_line(
     more += [f"<b>{escape(run.notice)}</b>"] if run.notice else []
     more += [start_line(run)] if run.is_warm else []
     if run.status is not None:
-        more.append(NOTHING_ACTS if run.stand.is_idle else escape(run.status.advice))
-    return f"{line}<br>{' '.join(more)}" if more else line
+        advice = NOTHING_ACTS if run.stand.is_idle else run.status.advice
+        more.append(_in_titles(run.settings, escape(advice)))
+    elif state == "paused":
+        more.append(PAUSED)
+    return explained(f"{line}<br>{' '.join(more)}" if more else line, COUNTED)
+
+
+def _in_titles(settings: Settings, advice: str) -> str:
+    """Call settings in an advice what the sidebar calls them (HTML)."""
+    for name, definition in settings.definitions().items():
+        if "_" in name:
+            advice = advice.replace(name, f"<i>{escape(about(definition).title)}</i>")
+    return advice
 
 
 def start_line(run: Recording) -> str:
     """Say from where a run started that could have started from the one before it (HTML)."""
     own = "coarser meshes" if run.settings.values()["start"] == "nested" else "zero"
     if run.choice is None:
-        return f"Started from {own}: the run before it was not at hand."
+        return f"Started from {own}, as there was no run before to start from."
     previous, other = number(run.choice.previous), number(run.choice.own)
-    figures = f"k-free indicator after one iteration {previous}, from {own} {other}"
+    figures = f"after one iteration its k-free indicator is {previous}; from {own} it is {other}"
     if run.choice.is_previous:
-        return f"Started from the run before it: {figures}."
-    return f"Started from {own}, since the run before it is not clearly nearer: {figures}."
+        return f"Started from the run before: {figures}."
+    return f"Started from {own}. The run before is not clearly nearer: {figures}."
 
 
 def key_figures(scene: Scene) -> str:
@@ -125,19 +129,27 @@ def key_figures(scene: Scene) -> str:
     if before is not None and scene.is_paired:
         rows = _paired(run, before, iteration)
     elif before is not None:
-        rows.append((f"before ({escape(before.title)})", _cells(before, before.iteration)))
+        rows.append((f"run before ({escape(before.title)})", _cells(before, before.iteration)))
     shown = [
         place
         for place, text in enumerate(HEADS)
         if has_reference(run.settings) or text not in ERRORS
     ]
-    heads = (HEADS[place] for place in shown)
-    head = "".join(f'<th title="{escape(MEANINGS.get(text, ""))}">{text}</th>' for text in heads)
+    chief = CHIEF if CHIEF in (HEADS[place] for place in shown) else ESTIMATE
+    head = "".join(f"<th{_mark(place, chief)}>{explained(HEADS[place])}</th>" for place in shown)
     body = "".join(
-        f"<tr><th>{name}</th>{''.join(f'<td>{cells[place]}</td>' for place in shown)}</tr>"
+        f'<tr><th title="{name}">{name}</th>{_row(cells, shown, chief)}</tr>'
         for name, cells in rows
     )
     return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _row(cells: Sequence[str], shown: Sequence[int], chief: str) -> str:
+    return "".join(f"<td{_mark(place, chief)}>{cells[place]}</td>" for place in shown)
+
+
+def _mark(place: int, chief: str) -> str:
+    return ' class="chief"' if HEADS[place] == chief else ""
 
 
 def _paired(run: Recording, twin: Recording, iteration: int) -> list[tuple[str, Sequence[str]]]:

@@ -55,13 +55,19 @@ class Status:
     advice: str
 
 
-_CERTIFIED = "A status step ended the run: all laws and equilibrium hold up to rounding"
-_PROVEN = "The contact force is within the accuracy of the solution, which a status step has found."
-_EXPECTED = (
-    "The contact force has changed so little of late that its error is estimated to be below the "
-    "accuracy. A status step, which would prove it, costs more than the run."
+_CERTIFIED = (
+    "Certified: equilibrium and all contact laws hold up to rounding, so no iteration can better "
+    "this solution on this mesh"
 )
-CANCELLED = Status(Ending.CANCELLED, "The run was stopped; it can be started again.")
+_PROVEN = (
+    "Accurate enough: a status step has found the exact solution on this mesh, and the contact "
+    "force is within the accuracy of it."
+)
+_EXPECTED = (
+    "Accurate enough by estimate: the contact force hardly changes any more. Proof by a status "
+    "step would take longer than the whole run."
+)
+CANCELLED = Status(Ending.CANCELLED, "The run was stopped before its end; start it again.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,9 +236,7 @@ class StopRules:
         if math.isfinite(indicator) and iteration - self._best_at >= STALL_WINDOW:
             return Status(Ending.STALLED, self._stall_advice(agreed))
         if iteration >= self._most:
-            still = indicator <= self._tolerance
-            laws = " before the contact force is known to be accurate" if still else ""
-            return Status(Ending.EXHAUSTED, f"The iterations are used up{laws}. {self._remedy()}")
+            return Status(Ending.EXHAUSTED, self._exhausted_advice(indicator))
         return None
 
     def _agrees(self, iterate: Iterate, behaviour: BehaviourIndicator) -> bool:
@@ -243,33 +247,42 @@ class StopRules:
         enough = agreement(self._tolerance)
         return behaviour.total <= enough or self._estimate.is_proven_within(enough, iterate)
 
+    def _exhausted_advice(self, indicator: float) -> str:
+        is_low = indicator <= self._tolerance
+        unknown = "The contact force is not known to be accurate enough"
+        why = unknown if is_low else "The LATIN indicator is still above its tolerance"
+        remedy = "Raise max_iterations, or try another k_scale."
+        return f"{why}. {self._remedy(remedy)}"
+
     def _stall_advice(self, agreed: bool) -> str:
         if self._best < LOWEST and agreed:
-            return "The indicator is down to rounding: this is as near as it gets."
+            return "The LATIN indicator is down to rounding: more iterations change nothing."
         if self._best < LOWEST:
             return (
-                "The LATIN indicator is down to rounding, but the interface laws do not hold: the "
-                "friction force is too small beside the load, or k too far from the stiffness, "
-                "for more digits. Bring friction, the load and k_scale nearer to each other."
+                "The LATIN indicator is down to rounding, yet the k-free indicator shows that the "
+                "contact laws are broken: friction is too small beside the load, or k too far from "
+                "the stiffness, for more digits. Bring friction, the load and k_scale nearer to "
+                "each other."
             )
         if self._best <= self._tolerance:
             return (
-                "The LATIN indicator is below the tolerance, but the interface laws do not hold: "
-                "the k-free indicator says so. Try another k_scale."
+                "The LATIN indicator is below its tolerance, yet the k-free indicator shows that "
+                "the contact laws are broken: k is far from what suits. Try another k_scale."
             )
         if self._relaxation > 0.9:
-            return "The indicator does not fall any more. Lower the relaxation to 0.8."
-        return f"The indicator does not fall any more. {self._remedy()}"
+            return "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
+        remedy = "Accept a larger tolerance, or try another k_scale."
+        return f"The LATIN indicator has stopped falling. {self._remedy(remedy)}"
 
-    def _remedy(self) -> str:
+    def _remedy(self, otherwise: str) -> str:
         if self._is_reduced:
-            return "The separated bases may be too small: raise pgd_modes, lower pgd_tolerance."
-        return "Raise max_iterations, loosen the tolerance, or try another k_scale."
+            return "The modes may be too few: raise pgd_modes, lower pgd_tolerance."
+        return otherwise
 
 
 def _diverged(iteration: int) -> Status:
     return Status(
         Ending.DIVERGED,
-        f"Numbers stopped being finite at iteration {iteration}; the iterate before it is "
-        "kept. Lower the relaxation, or bring k_scale and the loads nearer to 1.",
+        f"Numbers stopped being finite at iteration {iteration}, so that before it is kept. Lower "
+        "the relaxation, or bring k_scale nearer to 1 and the loads to ordinary sizes.",
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from solver.definitions import Pairs
@@ -90,3 +91,9 @@ def points_of(settings: Settings, name: str) -> Pairs:
     """
     assert isinstance(settings, SceneSettings)
     return settings.points(name)
+
+
+def behind(settings: Settings) -> Mapping[str, str]:
+    """Name the settings that place or scale what acts on a scene, by what they are behind."""
+    assert isinstance(settings, SceneSettings)
+    return settings.behind()

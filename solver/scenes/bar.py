@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -146,6 +146,10 @@ class BarSettings(SceneSettings):
     def n_nodes(self) -> int:
         """Number of nodes."""
         return self.elements + 1
+
+    def _candidates(self) -> Mapping[str, str]:
+        own = {"left x": "support_displacement", "body": "body_force"}
+        return {"right x": "peak", "top y": "pressure", **own}
 
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""

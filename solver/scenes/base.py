@@ -24,8 +24,8 @@ class SceneSettings(Settings):
     friction_law = choice(
         "coulomb",
         ["coulomb", "compliant"],
-        "Points stick until the friction force reaches its bound (Coulomb), or give way before "
-        "they slip, with a spring in series (Jenkins' element, as in joints and fretting).",
+        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
+        "way like a spring before it slips (Jenkins' element), as in joints and fretting.",
         group="Contact",
         title="Friction law",
     )
@@ -33,8 +33,7 @@ class SceneSettings(Settings):
         100.0,
         (1e-3, 1e9),
         (1.0, 1e4),
-        "Tangential stiffness of the contact before it slips, over E S / L^2 along a rod, or E / L "
-        "in the plane.",
+        "Stiffness of that spring, as a multiple of E S / L² along a rod, or E / L in the plane.",
         group="Contact",
         title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",
@@ -54,6 +53,18 @@ class SceneSettings(Settings):
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
         raise NotImplementedError
+
+    def behind(self) -> Mapping[str, str]:
+        """Name the settings that place or scale what acts on the scene, where any does.
+
+        By what they are behind: "right x" along a side, "body" throughout, "gap", "break".
+        """
+        found = self._candidates()
+        return {what: name for what, name in found.items() if self.applies(name)}
+
+    def _candidates(self) -> Mapping[str, str]:
+        """Name what may be behind something; `behind` leaves out what does not apply."""
+        return {}
 
     def times(self) -> Array:
         """Give the instants, shape (n_instants,), s; a single one stands at the end."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 import solver.scenes.shared as shared
@@ -79,6 +81,11 @@ class BlockSettings(SideSettings):
     top = redefined(SideSettings.param["top"], "displacement")
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
+
+    def _candidates(self) -> Mapping[str, str]:
+        # Where both forces act, the larger stands for their sum.
+        force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
+        return {**super()._candidates(), "body": force, "gap": "radius"}
 
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset reaches; that of the body force is a factor."""

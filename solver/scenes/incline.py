@@ -6,6 +6,7 @@ pulls at the foot of the uphill side once it has slid down by the slack.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -88,6 +89,9 @@ class InclineSettings(PlaneSettings):
     young = shared.young("Body", 1e7, (1e6, 1e12))
     elements = redefined(PlaneSettings.param["elements"], 24)
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
+
+    def _candidates(self) -> Mapping[str, str]:
+        return {"body": "weight"}
 
     def size_of(self, path: str) -> float:
         """Give the largest angle of the slope that a preset reaches."""

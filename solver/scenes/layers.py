@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 import solver.scenes.shared as shared
@@ -29,6 +31,7 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Pressure",
         unit="Pa",
+        applies=lambda settings: isinstance(settings.pressure_load, str),
         essential=True,
     )
     pressure_load = curve(
@@ -49,6 +52,7 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Pull",
         unit="Pa",
+        applies=lambda settings: isinstance(settings.pull_load, str),
         essential=True,
     )
     pull_load = curve(
@@ -64,8 +68,8 @@ class LayersSettings(PlaneSettings):
     bending = choice(
         "deflection",
         ["deflection", "moment"],
-        "What bends the stack at its right end: a prescribed transverse displacement, or a moment "
-        "that all layers share.",
+        "What bends the stack at its right end. deflection: a given transverse displacement. "
+        "moment: a given moment, which all layers share.",
         group="Load",
         title="Bending",
         essential=True,
@@ -78,7 +82,7 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Deflection",
         unit="m",
-        applies=lambda settings: settings.bending == "deflection",
+        applies=lambda settings: settings.bends_by("deflection"),
         essential=True,
     )
     moment = quantity(
@@ -89,7 +93,7 @@ class LayersSettings(PlaneSettings):
         group="Load",
         title="Moment",
         unit="N·m/m",
-        applies=lambda settings: settings.bending == "moment",
+        applies=lambda settings: settings.bends_by("moment"),
         essential=True,
     )
     bend_load = curve(
@@ -133,6 +137,15 @@ class LayersSettings(PlaneSettings):
     def n_bodies(self) -> int:
         """Number of bodies."""
         return self.layers
+
+    def bends_by(self, kind: str) -> bool:
+        """Tell whether the end is bent so, as far as a preset and not a table says."""
+        return self.bending == kind and isinstance(self.bend_load, str)
+
+    def _candidates(self) -> Mapping[str, str]:
+        end = "moment" if self.bending == "moment" and self.moment else "pull"
+        own = {"right x": end, "right y": "deflection"}
+        return {"top y": "pressure", "bottom y": "pressure", **own}
 
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""

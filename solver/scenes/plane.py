@@ -34,7 +34,7 @@ class PlaneSettings(SceneSettings):
     plane = choice(
         "strain",
         ["strain", "stress"],
-        "Plane strain (a long body) or plane stress (a thin one).",
+        "strain: a body that is long across the picture. stress: a thin one.",
         group="Body",
         title="Plane",
     )
@@ -67,8 +67,8 @@ class PlaneSettings(SceneSettings):
     interpolation = choice(
         "bilinear",
         ["bilinear", "biquadratic"],
-        "Bilinear elements with incompatible modes, or biquadratic ones, with twice as many nodes "
-        "each way: for smooth tractions of nearly incompressible bodies.",
+        "bilinear, with incompatible modes, or biquadratic, with twice as many nodes each way: "
+        "smooth tractions where bodies are nearly incompressible.",
         group="Body",
         title="Elements",
     )
@@ -81,7 +81,7 @@ class PlaneSettings(SceneSettings):
         2,
         (1, 5000),
         (1, 16),
-        "Number of substructures over the height of a body.",
+        "Number of pieces (substructures) over the height of a body.",
         group="Decomposition",
         title="Substructures up",
         essential=True,
@@ -90,9 +90,9 @@ class PlaneSettings(SceneSettings):
         1,
         (0, 10),
         (0, 4),
-        "Degree of the macro basis on each side of a substructure: 0 resultants alone, 1 also "
-        "moments and linear extension. A side more than three times as long as the substructure "
-        "is deep behind it gets more, as the root of that ratio.",
+        "What the coarse problem balances on each side of a substructure. 0: resultants; 1: also "
+        "moments and linear extension. Sides more than three times as long as the substructure is "
+        "deep get more by themselves.",
         group="Decomposition",
         title="Macro degree",
         applies=lambda settings: settings.multiscale and settings.n_substructures > 1,
@@ -101,7 +101,7 @@ class PlaneSettings(SceneSettings):
         1.0,
         (1e-6, 1e6),
         (0.01, 100.0),
-        "Further factor on the search direction of the contacts' normal components alone.",
+        "Multiplies k once more, along the normals of contacts alone.",
         group="Method",
         title="Normal k factor",
         logarithmic=True,

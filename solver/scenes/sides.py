@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -82,8 +82,8 @@ def _shapes(side: str, component: str) -> dict[str, Parameter]:
             0.0,
             (-1e6, 1e6),
             (-1.0, 1.0),
-            "Linear variation along the side: at distance s from its lower or left end the value "
-            "is the mean times 1 + slope (2 s / length - 1).",
+            "How unevenly the value is spread along the side: from the mean times 1 - slope at "
+            "its lower or left end to the mean times 1 + slope at the other, and linear between.",
             group=group,
             title=f"{title} slope",
             applies=given,
@@ -105,6 +105,18 @@ def _shapes(side: str, component: str) -> dict[str, Parameter]:
 class SideSettings(PlaneSettings):
     """Settings of a rectangle whose left, right and top side can be held or loaded."""
 
+    def _candidates(self) -> Mapping[str, str]:
+        found = {}
+        for side in LOADED_SIDES:
+            axes = "yx" if side == "top" else "xy"
+            for component, axis in zip(COMPONENTS, axes, strict=True):
+                kind = "displacement" if self._prescribes(side, component) else "traction"
+                found[f"{side} {axis}"] = f"{side}_{component}_{kind}"
+        return found
+
+    def _prescribes(self, side: str, component: str) -> bool:
+        return PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
+
     def side(self, side: str) -> Side:
         """Give what is given along a side, for x and y."""
         normal, tangential = (self._given(side, component) for component in COMPONENTS)
@@ -112,7 +124,7 @@ class SideSettings(PlaneSettings):
 
     def _given(self, side: str, component: str) -> Given:
         kind = getattr(self, side)
-        prescribed = PRESCRIBED[kind][COMPONENTS.index(component)]
+        prescribed = self._prescribes(side, component)
         if kind in AT_REST:
             rest = np.zeros(self.instants)
             return Given(prescribed, rest, rest)
@@ -123,8 +135,7 @@ class SideSettings(PlaneSettings):
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
         side, component, _ = path.split("_")
-        prescribed = PRESCRIBED[getattr(self, side)][COMPONENTS.index(component)]
-        kind = "displacement" if prescribed else "traction"
+        kind = "displacement" if self._prescribes(side, component) else "traction"
         return float(getattr(self, f"{side}_{component}_{kind}"))
 
 
@@ -134,10 +145,10 @@ def _define(side: str) -> None:
         choice(
             "free",
             PRESCRIBED,
-            "What is given: nothing (free), no normal displacement (roller), none at all "
-            "(clamped), both displacements, both tractions, the normal displacement with the "
-            "tangential traction (pushed), or the tangential displacement with the normal "
-            "traction (dragged).",
+            "What is given. free: nothing. roller: no normal displacement. clamped: no "
+            "displacement. displacement: both displacements. traction: both tractions. pushed: "
+            "normal displacement, tangential traction. dragged: tangential displacement, normal "
+            "traction.",
             group=side.capitalize(),
             title=f"{side.capitalize()} side",
             essential=True,

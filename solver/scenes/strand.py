@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -54,8 +54,8 @@ class StrandSettings(SceneSettings):
     grip = choice(
         "force",
         ["force", "displacement"],
-        "What is given at the right end: the same force for every wire, or one displacement for "
-        "all, that which an unbroken wire needs for this force.",
+        "What is given at the right end. force: the same force for every wire. displacement: the "
+        "same displacement for all, that which an unbroken wire needs for this force.",
         group="Load",
         title="Grip",
         essential=True,
@@ -78,7 +78,7 @@ class StrandSettings(SceneSettings):
         2,
         (0, 200),
         (0, 20),
-        "Number of the broken wire; 0 breaks none.",
+        "Which wire is broken, counted from 1; 0: none.",
         group="Strand",
         title="Broken wire",
         essential=True,
@@ -106,8 +106,8 @@ class StrandSettings(SceneSettings):
         6,
         (1, 20_000),
         (1, 50),
-        "Number of substructures of a wire, at least two where a wire is broken: all wires are cut "
-        "at the break, and alike.",
+        "Number of pieces (substructures) that a wire is cut into, at least two where one is "
+        "broken: all wires are cut at the break, and alike.",
         group="Decomposition",
         title="Substructures per wire",
         essential=True,
@@ -130,6 +130,9 @@ class StrandSettings(SceneSettings):
     def n_nodes(self) -> int:
         """Number of nodes of all wires."""
         return self.wires * (self.elements + 1)
+
+    def _candidates(self) -> Mapping[str, str]:
+        return {"right x": "peak", "top y": "pressure", "break": "break_position"}
 
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""

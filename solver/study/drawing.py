@@ -13,15 +13,21 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
+from matplotlib.tri import Triangulation
 from PIL import Image
 
+from solver.arrays import Array
 from solver.study.figure_data import HUES, Line, Panel, PaperFigure
 from solver.study.figure_page import TITLE, WORDS, figure_sections
 from solver.study.page import Plot, Section, page
+from solver.study.sweep.chart import Map
 
 COLORS = ("#404040", *HUES)
 """Of lines by their hue; the first is neutral."""
@@ -39,6 +45,9 @@ LETTERS = 13
 """Letters of a legend that an inch holds; the mark beside each entry takes eight."""
 ROWS, ROW = 3, 0.2
 """Rows of a legend that the height leaves room for, and what each further one adds, inches."""
+LEVELS = 7
+"""Lines of equal value on a map."""
+CONTOURS: dict[str, Any] = {"colors": "w", "linewidths": 0.8}
 
 
 def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
@@ -104,11 +113,61 @@ def png(plot: Plot) -> bytes:
         frameon=False,
         handlelength=2.6,
     )
+    return _small(sheet)
+
+
+def _small(sheet: Figure) -> bytes:
+    """Give a figure as a PNG of few colours."""
     drawn, small = io.BytesIO(), io.BytesIO()
     sheet.savefig(drawn, format="png", dpi=RESOLUTION)
     image = Image.open(drawn).convert("RGB")
     image.quantize(COLOURS, Image.Quantize.MAXCOVERAGE).save(small, format="png", optimize=True)
     return small.getvalue()
+
+
+def chart_png(chart: Panel | Map) -> bytes:
+    """Draw a chart of a sweep, as a PNG."""
+    return png(Plot("", [chart])) if isinstance(chart, Panel) else map_png(chart)
+
+
+def map_png(chart: Map) -> bytes:
+    """Draw a map: a colour for every run, and lines of equal value between them, as a PNG."""
+    sheet = Figure(figsize=(1.6 * WIDTH, 1.3 * HEIGHT), layout="constrained")
+    axes = sheet.subplots()
+    norm = LogNorm() if chart.scale.logarithmic else Normalize()
+    if np.isfinite(chart.z).any():
+        draw = _surface if chart.is_sampled else _cells
+        sheet.colorbar(draw(axes, chart, norm), label=chart.scale.label)
+    axes.set(xlabel=chart.x.label, xscale=chart.x.scale, ylabel=chart.y.label, yscale=chart.y.scale)
+    axes.set_title(chart.title, fontsize=10)
+    return _small(sheet)
+
+
+def _cells(axes: Axes, chart: Map, norm: Normalize) -> ScalarMappable:
+    """Draw a cell for every run."""
+    x, y, z = chart.x_values, chart.y_values, np.ma.masked_invalid(chart.z)
+    if min(z.shape) > 1 and z.min() < z.max():
+        levels = _levels(chart, z.min(), z.max())
+        axes.clabel(axes.contour(x, y, z, levels, **CONTOURS), fontsize=8, fmt="%.3g")
+    return axes.pcolormesh(x, y, z, norm=norm, cmap="cividis", shading="nearest")
+
+
+def _surface(axes: Axes, chart: Map, norm: Normalize) -> ScalarMappable:
+    """Draw the facets between the runs, and a dot for each of these."""
+    rows, columns = np.nonzero(np.isfinite(chart.z))
+    x, y, z = chart.x_values[columns], chart.y_values[rows], chart.z[rows, columns]
+    facets = Triangulation(columns / chart.z.shape[1], rows / chart.z.shape[0]).triangles
+    net = Triangulation(x, y, facets)
+    axes.plot(x, y, ".", color="w", markersize=3)
+    if z.min() < z.max():
+        lines = axes.tricontour(net, z, _levels(chart, z.min(), z.max()), **CONTOURS)
+        axes.clabel(lines, fontsize=8, fmt="%.3g")
+    return axes.tripcolor(net, z, norm=norm, cmap="cividis", shading="gouraud")
+
+
+def _levels(chart: Map, low: float, high: float) -> Array:
+    spread = np.geomspace if chart.scale.logarithmic else np.linspace
+    return np.asarray(spread(low, high, LEVELS + 2)[1:-1])
 
 
 def inline(image: bytes, words: str) -> str:

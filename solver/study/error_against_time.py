@@ -198,6 +198,13 @@ def forms_of(settings: Settings) -> dict[str, Settings]:
     return {method: settings.replace(**form) for method, form in forms.items()}
 
 
+def acting(settings: Settings) -> set[str]:
+    """Give the names of the settings that a study depends on: those that no form sets itself."""
+    forms = [settings.replace(**PLAIN), settings.replace(**FORMS["LATIN PGD"])]
+    names = settings.definitions().keys() - {"method", *PLAIN}
+    return {name for name in names if any(form.applies(name) for form in forms)}
+
+
 def is_quadratic(problem: Problem) -> bool:
     """Tell whether public QP solvers are asked: for a known bound on a rigid support.
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import statistics
 from dataclasses import dataclass
 
-import numpy as np
-
 from solver.definitions import SettingError
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise, entry_of
 from solver.settings import Settings
 from solver.study.error_against_time import INCREMENTAL, by_increments, course_of, forms_of
+from solver.study.exponent import Exponent, exponent_of
 from solver.study.progress import Tell, silent
 
 MEASURED = (
@@ -52,12 +51,9 @@ class Growth:
     sizes: tuple[Size, ...]
 
     @property
-    def exponent(self) -> float | None:
-        """Slope of log(seconds) over log(size), by least squares; None below two sizes."""
-        if len(self.sizes) < 2:
-            return None
-        points = np.log([(found.size, found.seconds) for found in self.sizes])
-        return float(np.polyfit(points[:, 0], points[:, 1], 1)[0])
+    def exponent(self) -> Exponent | None:
+        """With which the seconds grow with the size; None below two sizes."""
+        return exponent_of([one.size for one in self.sizes], [one.seconds for one in self.sizes])
 
 
 def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:

@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.probes import AxialForce
 from solver.latin import Record
+from solver.laws import OPEN
 from solver.reduction.svd import InterfaceField, decompositions
+from solver.reference.distance import determinate_forces
 from solver.scenes.strand import StrandSettings, strand
 from solver.study.finished import FinishedRun
+from solver.study.memory import memory_of
 
 SMALLEST_SWING = 0.05
 """Share of the whole range that a path must turn back by to begin another half cycle."""
@@ -49,6 +52,11 @@ def until(column: str, error: str) -> Callable[[FinishedRun, float | None], floa
         return math.inf if first is None else float(getattr(first, column))
 
     return of
+
+
+def memory(run: FinishedRun, at: float | None) -> float:
+    """Give the memory that the run takes, B, which takes another run; NaN where none is told."""
+    return memory_of(run.settings)
 
 
 def modes(run: FinishedRun, at: float | None) -> float:
@@ -92,6 +100,34 @@ def peak_pressing(run: FinishedRun, at: float | None) -> float:
         if (normal := run.iterate.contact(name).normal_force) is not None
     ]
     return float(sum(one.sum(axis=0) for one in pressing).max()) if pressing else math.nan
+
+
+def holding_friction(run: FinishedRun, at: float | None) -> float:
+    """Give the smallest coefficient of friction at which no interface slides as a whole.
+
+    All its friction over all that presses, at the worst instant. NaN where one slides: the run
+    then cannot tell how much more it would take.
+    """
+    needed, friction = 0.0, float(run.settings.values()["friction"])
+    if not friction:
+        return math.nan
+    # A point that a clamp holds, too, never slips.
+    determinate = determinate_forces(run.problem)
+    for name, law in run.problem.rubbing.items():
+        contact = run.iterate.contact(name)
+        *_, tangential = run.problem.contact_places[name]
+        is_free = (contact.status == OPEN) | ~determinate[tangential]
+        ways = [(contact.status == way) | is_free for way in (-1, 1)]
+        if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
+            return math.nan
+        if contact.normal_force is None:
+            bound = law.by_point(law.bound).sum() * run.problem.scales.force
+            pressing = np.full(run.problem.n_instants, bound / friction)
+        else:
+            pressing = contact.normal_force.sum(axis=0)
+        held = np.abs(contact.tangential_force.sum(axis=0))[pressing > 0.0]
+        needed = max(needed, float((held / pressing[pressing > 0.0]).max(initial=0.0)))
+    return needed
 
 
 def end_displacement(run: FinishedRun, at: float | None) -> float:

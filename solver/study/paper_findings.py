@@ -79,7 +79,8 @@ def rates(
     words = ", ".join(f"{ratio:.2f} for {QUANTITIES[name]}" for name, ratio in ratios.items())
     start, end = window
     return Finding(
-        f"Iterations {start} to {end}, rate multiscale over monoscale: {words}.",
+        f"From iteration {start} to {end}, the rate of convergence multiscale over that monoscale "
+        f"is {words}.",
         {f"rate_{start}_{end}_{name}": ratio for name, ratio in ratios.items()},
         all(abs(ratio - 1.0) <= EQUAL_RATE for ratio in ratios.values()),
     )
@@ -141,13 +142,14 @@ def mode_counts(found: Sequence[Decomposition], noise: float) -> Finding:
         for each in found
     ]
     words = ", ".join(
-        f"{'/'.join(map(str, row))} in {number}" for number, row in enumerate(counts, start=1)
+        f"{'/'.join(map(str, row))} in substructure {number}"
+        for number, row in enumerate(counts, start=1)
     )
     names = [f"{share:g}" for share in SHARES]
     one_percent = [row[1] for row in counts]
     return Finding(
-        f"Modes for 10/1/0.1 % of the force of each substructure: {words}, of "
-        f"{len(found[0].values)} that there are.",
+        f"Modes that leave at most 10/1/0.1 % of a substructure's friction force: {words}. All "
+        f"would be {len(found[0].values)}.",
         {
             f"modes_{number}_{name}": count
             for number, row in enumerate(counts, start=1)
@@ -174,8 +176,8 @@ def as_a_front(found: Sequence[Decomposition]) -> Finding:
     ratios = np.array([against_front(each.values)[:5] for each in found])
     low, high = float(ratios.min()), float(ratios.max())
     return Finding(
-        f"In 3 to 5, σₙ/σ₁ of modes 1 to 5 is {low:.2f} to {high:.2f} times the 1/(2n − 1) of a "
-        "front of constant speed.",
+        f"In substructures 3 to 5 the singular values 1 to 5, over the first, are {low:.2f} to "
+        f"{high:.2f} times 1/(2n − 1), that of a front of constant speed.",
         {"front_low": low, "front_high": high},
         low >= 0.5 and high <= 1.5,
     )
@@ -201,7 +203,8 @@ def sign_changes(one: Decomposition, other: Decomposition) -> Finding:
     ]
     words = " and ".join(", ".join(map(str, row)) for row in counts)
     return Finding(
-        f"Modes 1, 3, 5 change sign {words} times: later modes are more local.",
+        f"Modes 1, 3, 5 change sign {words} times (substructures 4 and 5): later modes are more "
+        "local.",
         {
             f"sign_changes_{number}_{order}": count
             for number, row in zip((4, 5), counts, strict=True)

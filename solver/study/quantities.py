@@ -12,6 +12,8 @@ from typing import Literal
 
 from solver.definitions import SettingError
 from solver.reduction.svd import InterfaceField
+from solver.scenes import kind_of
+from solver.settings import Settings
 from solver.study import measures
 from solver.study.finished import FinishedRun
 
@@ -44,6 +46,28 @@ SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
 WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 
 
+def _with_bases(settings: Settings) -> bool:
+    return settings.is_reduced
+
+
+def _on_rods(settings: Settings) -> bool:
+    return kind_of(settings) != "plane"
+
+
+def _in_the_plane(settings: Settings) -> bool:
+    """Tell where the pressing force is an unknown."""
+    return not _on_rods(settings)
+
+
+def _over_a_displacement(settings: Settings) -> bool:
+    """Tell where the loop of the scene goes over a displacement, not over an angle."""
+    return settings.scene != "incline" and settings.values().get("bending") != "moment"
+
+
+def _with_a_broken_wire(settings: Settings) -> bool:
+    return bool(settings.values().get("broken"))
+
+
 @dataclass(frozen=True, eq=False)
 class Quantity:
     """A number that a finished run has.
@@ -64,6 +88,11 @@ class Quantity:
         indicators of every iteration.
     is_share
         Whether it is a share of a whole, which is told in per cent.
+    is_of_course
+        Whether it follows from how the run went, not only from what it came to: then a run that
+        starts elsewhere has another.
+    applies
+        Whether runs of these settings may have it.
     """
 
     name: str
@@ -73,6 +102,8 @@ class Quantity:
     parameter: Parameter | None = None
     reads: Literal["errors", "indicators"] | None = None
     is_share: bool = False
+    is_of_course: bool = False
+    applies: Callable[[Settings], bool] = lambda settings: True
 
 
 @dataclass(frozen=True)
@@ -102,7 +133,8 @@ class Reading:
 def _recorded(
     column: str, title: str, reads: Literal["errors", "indicators"], *, is_share: bool = False
 ) -> Quantity:
-    return Quantity(column, title, "", measures.recorded(column), ITERATION, reads, is_share)
+    read = measures.recorded(column)
+    return Quantity(column, title, "", read, ITERATION, reads, is_share, is_of_course=True)
 
 
 def _error(column: str, title: str) -> Quantity:
@@ -110,12 +142,14 @@ def _error(column: str, title: str) -> Quantity:
 
 
 def _until(name: str, title: str, column: str, error: str, unit: str = "") -> Quantity:
-    return Quantity(name, title, unit, measures.until(column, error), WITHIN, "errors")
+    read = measures.until(column, error)
+    return Quantity(name, title, unit, read, WITHIN, "errors", is_of_course=True)
 
 
 _ALL = (
-    Quantity("iterations", "Iterations", "", lambda run, at: run.iterate.number),
-    Quantity("seconds", "Run time", "s", measures.recorded("seconds")),
+    Quantity("iterations", "Iterations", "", lambda run, at: run.iterate.number, is_of_course=True),
+    Quantity("seconds", "Run time", "s", measures.recorded("seconds"), is_of_course=True),
+    Quantity("memory", "Memory at its peak", "B", measures.memory, is_of_course=True),
     _recorded("indicator", "LATIN indicator", "indicators"),
     _recorded("behaviour", "k-free indicator", "indicators"),
     _recorded(
@@ -149,13 +183,21 @@ _ALL = (
         "error_force",
         "s",
     ),
-    Quantity("modes", "Modes of the largest separated basis", "", measures.modes),
+    Quantity(
+        "modes",
+        "Modes of the largest separated basis",
+        "",
+        measures.modes,
+        is_of_course=True,
+        applies=_with_bases,
+    ),
     Quantity(
         "svd_modes_displacement",
         "Singular vectors of the displacement for an error of",
         "",
         measures.singular(InterfaceField.DISPLACEMENT),
         WITHIN,
+        applies=_on_rods,
     ),
     Quantity(
         "svd_modes_force",
@@ -163,18 +205,31 @@ _ALL = (
         "",
         measures.singular(InterfaceField.FRICTION_FORCE),
         WITHIN,
+        applies=_on_rods,
     ),
     Quantity("peak_displacement", "Largest displacement", "m", measures.peak_displacement),
     Quantity("peak_friction", "Largest friction, all points", "N", measures.peak_friction),
-    Quantity("peak_pressing", "Largest pressing force, all points", "N", measures.peak_pressing),
     Quantity(
-        "end_displacement", "Displacement at the largest load", "m", measures.end_displacement
+        "peak_pressing",
+        "Largest pressing force, all points",
+        "N",
+        measures.peak_pressing,
+        applies=_in_the_plane,
+    ),
+    Quantity("holding_friction", "Smallest friction that holds", "", measures.holding_friction),
+    Quantity(
+        "end_displacement",
+        "Displacement at the largest load",
+        "m",
+        measures.end_displacement,
+        applies=_over_a_displacement,
     ),
     Quantity(
         "residual_displacement",
         "Displacement left without load",
         "m",
         measures.residual_displacement,
+        applies=_over_a_displacement,
     ),
     Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
     Quantity(
@@ -191,12 +246,14 @@ _ALL = (
         "m",
         measures.first_slip_displacement,
         SHARE,
+        applies=_over_a_displacement,
     ),
     Quantity(
         "recovery_length",
         "Length over which a broken wire regains its force",
         "m",
         measures.recovery_length,
+        applies=_with_a_broken_wire,
     ),
 )
 QUANTITIES = {one.name: one for one in _ALL}

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
-from solver.study.page import bullets, table
+from solver.study.page import bullets, plain_table, table
 
 BLUE, LIGHT, ORANGE, GREY, RED = "#0072B2", "#56B4E9", "#E69F00", "#999999", "#D55E00"
 """Okabe and Ito's palette, told apart by the colour-blind."""
@@ -46,9 +46,16 @@ def write_rows(file: Path, columns: Sequence[str], rows: Sequence[Values]) -> No
         writer.writerows(rows)
 
 
-def words(summary: str, notes: Sequence[str]) -> str:
+def tally(verdicts: Sequence[str], meanings: Mapping[str, str]) -> list[list[str]]:
+    """Count the verdicts, and say what each means; with a head."""
+    counts = ([one, str(verdicts.count(one)), meaning] for one, meaning in meanings.items())
+    return [["verdict", "runs", "what it means"], *counts]
+
+
+def words(summary: str, counts: Sequence[Sequence[str]], notes: Sequence[str] = ()) -> str:
     """Write what stands above the rows (HTML)."""
-    return f"<p><b>{escape(summary)}</b></p>\n{bullets(notes)}"
+    listed = f"\n{bullets(notes)}" if notes else ""
+    return f"<p><b>{escape(summary)}</b></p>\n{plain_table(counts)}{listed}"
 
 
 def table_of(columns: Sequence[str], rows: Sequence[Values], colours: Mapping[str, str]) -> str:

@@ -19,7 +19,7 @@ from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.study.conditioning import condition_of_structure, condition_of_substructures
-from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, TOLD, UNCLEAR, Case, cases
+from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, cases
 from solver.study.stability_plane import plane_cases
 from solver.study.stability_strand import strand_cases
 
@@ -36,24 +36,24 @@ class Verdict(StrEnum):
 
     RIGHT = "right"
     NEAR = "near"
-    TOLD = "told"
+    UNSOLVED = "unsolved"
     UNCLEAR = "unclear"
     FAIL = "fail"
 
 
-MEANING = {
+MEANING: dict[str, str] = {
     Verdict.RIGHT: "both errors are at most 1e-6",
     Verdict.NEAR: "called converged, with an error between 1e-6 and 1e-3",
-    Verdict.TOLD: "not the answer, and the status or the refusal says so, and what to try",
-    Verdict.UNCLEAR: "the reference knows several solutions or none, so that no error is judged",
-    Verdict.FAIL: "not finite, a warning leaked, or called converged with an error above 1e-3",
+    Verdict.UNSOLVED: "not the right answer, and the run says so, and what to try",
+    Verdict.UNCLEAR: "not judged, as the reference finds several solutions or none",
+    Verdict.FAIL: "not finite, a stray warning, or called converged with an error above 1e-3",
 }
 
 
 ALLOWED = {
     RIGHT: {Verdict.RIGHT},
-    TOLD: {Verdict.RIGHT, Verdict.TOLD},
-    UNCLEAR: {Verdict.RIGHT, Verdict.TOLD, Verdict.UNCLEAR},
+    UNSOLVED: {Verdict.RIGHT, Verdict.UNSOLVED},
+    UNCLEAR: {Verdict.RIGHT, Verdict.UNSOLVED, Verdict.UNCLEAR},
 }
 """What may come of a case, by what is expected of it."""
 
@@ -137,13 +137,13 @@ def judge(outcome: Outcome) -> Verdict:
     if not outcome.finite or outcome.warned or not outcome.advice:
         return Verdict.FAIL
     if outcome.ending == REFUSED:
-        return Verdict.TOLD
+        return Verdict.UNSOLVED
     if outcome.doubt:
         return Verdict.UNCLEAR
     if outcome.error <= RIGHT_UP_TO:
         return Verdict.RIGHT
     if outcome.ending != Ending.CONVERGED:
-        return Verdict.TOLD
+        return Verdict.UNSOLVED
     return Verdict.NEAR if outcome.error <= WRONG_FROM else Verdict.FAIL
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from solver.definitions import Pairs
 
 RIGHT = "right answer"
-TOLD = "right answer, or told that it is not"
+UNSOLVED = "right answer, or said not to be"
 REFUSED = "refused in words"
-UNCLEAR = "right answer, or told that the reference has several or none"
+UNCLEAR = "right answer, or one that cannot be judged"
 PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
 """Tight, so that whoever is called converged has to be right; enough for most cases."""
 SMALL = {"elements": 20, "substructures": 4, "instants": 41}
@@ -30,8 +30,8 @@ class Case:
     changes
         Settings that differ from the scene's own, beside `PRECISE`.
     expected
-        `RIGHT`; `TOLD` where the method is known to be slow or beyond its digits; `REFUSED` where
-        there is no solution; `UNCLEAR` where friction is so large that there may be several.
+        `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its digits; `REFUSED`
+        where there is no solution; `UNCLEAR` where friction is so large that there may be several.
     quick
         Whether it is one of the few for a short check.
     """
@@ -100,7 +100,7 @@ def _ranges() -> list[Case]:
             name,
             f"{value:g}",
             {name: value, **({"max_iterations": 600} if name == "k_scale" else {})},
-            TOLD
+            UNSOLVED
             if slow.get(name, (0.0, 0.0))[0] < value < slow.get(name, (0.0, 0.0))[1]
             else RIGHT,
             quick=value in QUICK.get(name, ()),
@@ -114,7 +114,7 @@ def _ranges() -> list[Case]:
             "stiffness contrast",
             f"{value:g} towards the load",
             {**SMALL, "section_profile": graded(value, SMALL["elements"])},
-            TOLD if value in (1e4, 1e8, 1e-8) else RIGHT,
+            UNSOLVED if value in (1e4, 1e8, 1e-8) else RIGHT,
             quick=value == 1e8,
         )
         for value in contrasts
@@ -128,7 +128,7 @@ def _contact() -> list[Case]:
 
     return [
         Case("friction", "0", {"friction": 0.0}, quick=True),
-        Case("friction", "1e-12", {"friction": 1e-12}, TOLD, quick=True),
+        Case("friction", "1e-12", {"friction": 1e-12}, UNSOLVED, quick=True),
         Case("friction", "1e6", {"friction": 1e6}, quick=True),
         Case("pressure", "0", {"pressure": 0.0}, quick=True),
         Case("pressure", "1e15 N/m", {"pressure": 1e15}),
@@ -143,7 +143,7 @@ def _loads() -> list[Case]:
         Case("load", "zero", {"peak": 0.0}, quick=True),
         Case("load", "1e-9 N, nothing slides", {"peak": 1e-9}),
         Case("load", "4000 N, every point slides", {"peak": 4000.0}, quick=True),
-        Case("load", "1e15 N", {"peak": 1e15}, TOLD),
+        Case("load", "1e15 N", {"peak": 1e15}, UNSOLVED),
         Case("load", "turns at every instant", {"load": reversals(101, 900.0)}, quick=True),
         Case("load", "one jump", {"load": JUMP}, quick=True),
         Case("load", "plateaus", {"load": PLATEAUS}),
@@ -155,22 +155,22 @@ def _loads() -> list[Case]:
 def _sizes() -> list[Case]:
     parts = (1, 2, 5, 25, 50)
     found = [
-        Case("substructures", f"{number} of 50 elements", {"substructures": number}, TOLD)
+        Case("substructures", f"{number} of 50 elements", {"substructures": number}, UNSOLVED)
         for number in parts
     ]
     found += [
-        Case("substructures", "as many as 20 elements", {**SMALL, "substructures": 20}, TOLD),
+        Case("substructures", "as many as 20 elements", {**SMALL, "substructures": 20}, UNSOLVED),
         Case("instants", "1", {"load": "ramp", "instants": 1}, quick=True),
         Case("instants", "2", {"load": "ramp", "instants": 2}),
         Case(
             "instants",
             "20 001, 4 elements",
             {"elements": 4, "substructures": 2, "instants": 20_001, "max_iterations": 120},
-            TOLD,
+            UNSOLVED,
         ),
         Case("nodes", "2", {"elements": 1, "substructures": 1}, quick=True),
         Case("nodes", "3", {"elements": 2, "substructures": 2}),
-        Case("nodes", "801", {"elements": 800, "instants": 11, "max_iterations": 600}, TOLD),
+        Case("nodes", "801", {"elements": 800, "instants": 11, "max_iterations": 600}, UNSOLVED),
         Case(
             "nodes",
             "20 001, 2 instants",
@@ -181,7 +181,7 @@ def _sizes() -> list[Case]:
                 "instants": 2,
                 "max_iterations": 150,
             },
-            TOLD,
+            UNSOLVED,
         ),
     ]
     return found

@@ -12,10 +12,12 @@ from solver.study.study_report import (
     GROWTH_NOTE,
     TIMES,
     TIMES_NOTE,
+    WINNERS,
+    WINNERS_NOTE,
     conditions,
     growth_table,
     table,
-    verdicts,
+    winners,
 )
 
 TITLE = "Error against run time"
@@ -29,7 +31,7 @@ def study_sections(study: Study, found: Sequence[Growth]) -> list[Section]:
         plain_table(growth_table(found)),
     ]
     return [
-        bullets(verdicts(study)),
+        f"<h2>{WINNERS}</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
         Plot(CURVES, error_panels(study)),
         f"<p>{CAPTION}</p>\n<h2>{TIMES}</h2>\n<p>{TIMES_NOTE}</p>\n{plain_table(table(study))}",
         *(growth if found else []),

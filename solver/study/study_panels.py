@@ -17,8 +17,9 @@ SPAN = (1e-9, 2.0)
 SMALLEST = 2e-9
 CURVES = "Error against run time, set-up included"
 CAPTION = (
-    "Points are runs of a public solver at several tolerances; those below the lower edge stand "
-    "on it. The dashed line is when the incremental solver is done."
+    "A line is a form of LATIN, iteration by iteration; points are runs of a public solver at "
+    "several tolerances; the dashed line is when the incremental solver is done. Errors below the "
+    "lower edge are drawn on it."
 )
 GROWTH = "Growth with the size of the problem"
 

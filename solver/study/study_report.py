@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
 
@@ -12,19 +12,30 @@ from solver.study.growth import Growth
 
 Row = list[str]
 TIMES = "Time to an error of the friction force"
-TIMES_NOTE = "Iterations of LATIN are in brackets."
+TIMES_NOTE = "In brackets: iterations of LATIN."
+WINNERS = "Who is first"
+WINNERS_NOTE = (
+    "The last columns are the time of the best form of LATIN over that of each other solver: below "
+    "1, LATIN is quicker."
+)
 GROWTH_NOTE = (
-    "Time of one iteration of LATIN, of the whole solution by increments; the exponent is the "
-    "slope of its logarithm over that of the size, by least squares."
+    "Time of one iteration of LATIN, and of the whole solution by increments. Twice the size takes "
+    "2 to the power of the exponent as long (a least-squares fit over all sizes, with its margin "
+    "at 95 %)."
 )
 BILLED = (
-    "Everything from settings to result is billed: discretisation, factorisation, coarser meshes, "
-    "iterations; imports and the computation of errors are not. The forms of LATIN end at a "
-    f"friction force error of {GOAL:g} or after {MOST_ITERATIONS} iterations. Errors are relative "
-    "L2 distances over space and time to the incremental solver's result on the same mesh and "
-    "instants, whose own error is 0 by definition. The QP solvers minimise 1/2 w'Kw under "
-    "|g - Kw| <= r at every instant, in units of the largest bound r, each at several tolerances "
-    "(DAQP, which is exact, at one); the table takes the quickest run that is near enough."
+    "The time of a method is all that it takes from settings to result: discretisation, "
+    "factorisation, coarser meshes, iterations. Imports and the computation of errors are not "
+    "counted.",
+    f"The forms of LATIN end at a friction force error of {GOAL:g}, or after {MOST_ITERATIONS} "
+    "iterations.",
+    "Errors are relative L2 distances over space and time to the result of the incremental solver "
+    "on the same mesh and instants, whose own error is therefore 0.",
+)
+PEERS_NOTE = (
+    "The public QP solvers minimise 1/2 w'Kw under |g - Kw| <= r at every instant, in units of the "
+    "largest bound r, at several tolerances each (DAQP, which is exact, at one); the tables take "
+    "the quickest run that is near enough."
 )
 
 
@@ -36,7 +47,7 @@ def conditions(study: Study) -> list[str]:
         f"Scene: {study.settings.scene} ({values}).",
         f"Machine: {study.machine}.",
         f"All methods in one process, in turns; medians of {study.repeats} passes.",
-        BILLED,
+        *BILLED,
     ]
     asked = [
         f"{course.method} {', '.join(f'{step:g}' for step in course.steps)}"
@@ -44,6 +55,7 @@ def conditions(study: Study) -> list[str]:
         if course.kind == "peer"
     ]
     if asked:
+        lines += [PEERS_NOTE]
         lines.append(
             f"Tolerances: {'; '.join(asked)}. Interior points need far less than 1e-8, which with "
             "Table 1 leaves 2e-4 in the friction force; PIQP and Clarabel test the duality gap."
@@ -53,9 +65,11 @@ def conditions(study: Study) -> list[str]:
     return [*lines, *study.troubles]
 
 
-def verdicts(study: Study) -> list[str]:
+def winners(study: Study) -> list[Row]:
     """Say which method is first at each level, and how the best form of LATIN compares."""
-    lines = []
+    others = [course.method for course in study.courses if course.kind != "latin"]
+    head = ["to an error of", "first", "ms", "best form of LATIN", "ms"]
+    rows = [[*head, *(f"LATIN / {method}" for method in others)]]
     for name, level in LEVELS.items():
         times = {
             course.method: reached[0]
@@ -63,26 +77,18 @@ def verdicts(study: Study) -> list[str]:
             if (reached := course.reached(level)) is not None
         }
         first = min(times, key=times.__getitem__)
-        line = f"To {name}: first is {first} with {_ms(times[first])} ms"
-        forms = {
-            course.method: times[course.method]
-            for course in study.courses
-            if course.kind == "latin" and course.method in times
-        }
-        if not forms:
-            lines.append(f"{line}; no form of LATIN gets there.")
-            continue
-        best = min(forms, key=forms.__getitem__)
-        others = ", ".join(
-            f"{_times(forms[best] / times[course.method])} as long as {_the(course.method)}"
-            for course in study.courses
-            if course.kind != "latin" and course.method in times
-        )
-        form = (
-            "it" if best == first else f"the best form of LATIN, {best}, with {_ms(forms[best])} ms"
-        )
-        lines.append(f"{line}; {form} takes {others}.")
-    return lines
+        forms = {method: seconds for method, seconds in times.items() if method not in others}
+        rows.append([name, first, _ms(times[first]), *_best(forms, times, others)])
+    return rows
+
+
+def _best(forms: Mapping[str, float], times: Mapping[str, float], others: Sequence[str]) -> Row:
+    """Give the quickest form of LATIN, its time, and that over the times of all others."""
+    if not forms:
+        return ["none gets there", *("-" for _ in ("ms", *others))]
+    best = min(forms, key=forms.__getitem__)
+    ratios = (f"{forms[best] / times[one]:.2g}" if one in times else "-" for one in others)
+    return [best, _ms(forms[best]), *ratios]
 
 
 def table(study: Study) -> list[Row]:
@@ -109,7 +115,7 @@ def growth_table(found: Sequence[Growth]) -> list[Row]:
         cells = [
             one.setting,
             f"{one.method} ({'whole' if whole else 'an iteration'})",
-            f"{one.exponent:.2f}" if one.exponent is not None else "-",
+            str(one.exponent or "-"),
             " ".join(str(size.size) for size in one.sizes),
             " ".join(f"{1e3 * size.seconds:.2g}" for size in one.sizes),
             "-" if whole else " ".join(iterations),
@@ -168,15 +174,17 @@ def write_tables(study: Study, found: Sequence[Growth], folder: Path) -> list[Pa
         ),
     ]
     if found:
-        head = ["setting", "exponent", "method", "size", "seconds"]
-        rows = (
-            (one.setting, one.exponent, one.method, *astuple(size))
-            for one in found
-            for size in one.sizes
-        )
+        head = ["setting", "exponent", "margin", "method", "size", "seconds"]
         head += ["iterations_to_1_percent", "seconds_to_1_percent"]
-        files.append(_write(folder / "growth.csv", head, rows))
+        files.append(_write(folder / "growth.csv", head, _growth_rows(found)))
     return files
+
+
+def _growth_rows(found: Sequence[Growth]) -> Iterator[Sequence[object]]:
+    for one in found:
+        law = astuple(one.exponent) if one.exponent else ("", "")
+        for size in one.sizes:
+            yield one.setting, *law, one.method, *astuple(size)
 
 
 def _write(file: Path, head: Row, rows: Iterable[Sequence[object]]) -> Path:
@@ -189,11 +197,3 @@ def _write(file: Path, head: Row, rows: Iterable[Sequence[object]]) -> Path:
 
 def _ms(seconds: float) -> str:
     return f"{1e3 * seconds:.3g}"
-
-
-def _times(ratio: float) -> str:
-    return f"{ratio:.2g} times"
-
-
-def _the(method: str) -> str:
-    return f"the {method}" if method == INCREMENTAL else method

@@ -37,17 +37,17 @@ class Verdict(StrEnum):
     """What a run is worth."""
 
     RIGHT = "right"
-    TOLD = "told"
+    UNSOLVED = "unsolved"
     UNCLEAR = "unclear"
     WRONG = "wrong"
 
 
-MEANING = {
+MEANING: dict[str, str] = {
     Verdict.RIGHT: "called converged, and the contact force within twice the accuracy; or "
     "certified, and the equations hold up to rounding where there are several solutions",
-    Verdict.TOLD: "ended otherwise, and its status says so",
-    Verdict.UNCLEAR: "called converged without a certificate, where the reference finds several "
-    "solutions or none",
+    Verdict.UNSOLVED: "not converged, or refused, and the run says so",
+    Verdict.UNCLEAR: "called converged, not certified, and not judged, as the reference finds "
+    "several solutions or none",
     Verdict.WRONG: "called converged with a larger error, certified without solving the equations, "
     "not finite, or ended in an exception",
 }
@@ -180,7 +180,7 @@ def judge(outcome: Outcome, accuracy: float) -> Verdict:
     if outcome.ending == BROKEN or not outcome.finite:
         return Verdict.WRONG
     if outcome.ending != Ending.CONVERGED:
-        return Verdict.TOLD
+        return Verdict.UNSOLVED
     if outcome.certified and not outcome.residual <= max(AT_ROUNDING, 2.0 * outcome.floor):
         return Verdict.WRONG
     if outcome.error_force <= ALLOWED * accuracy or outcome.certified:

@@ -17,6 +17,7 @@ from solver.study.row_report import (
     number,
     prepare,
     table_of,
+    tally,
     words,
     write_rows,
 )
@@ -25,7 +26,7 @@ from solver.study.survey import MEANING, Row, Verdict, groups, is_sound
 
 COLOURS: dict[str, str] = {
     Verdict.RIGHT: BLUE,
-    Verdict.TOLD: ORANGE,
+    Verdict.UNSOLVED: ORANGE,
     Verdict.UNCLEAR: GREY,
     Verdict.WRONG: RED,
 }
@@ -56,7 +57,7 @@ def line(row: Row) -> str:
     """Give one row of the console's table."""
     found = row.outcome
     return (
-        f"{row.number:>5} {row.verdict:<7} {row.scene:<6} {row.method:<12} "
+        f"{row.number:>5} {row.verdict:<8} {row.scene:<6} {row.method:<12} "
         f"{found.ending:<9} {'certified' if found.certified else '':<9} {found.iterations:>5} "
         f"{number(found.estimated_error):>8} {number(found.error_force):>8} "
         f"{number(row.settings.accuracy):>8} {found.seconds:6.2f} s"
@@ -64,31 +65,37 @@ def line(row: Row) -> str:
 
 
 HEAD = (
-    f"{'row':>5} {'verdict':<7} {'scene':<6} {'method':<12} {'ending':<9} {'':<9} {'iter.':>5} "
+    f"{'row':>5} {'verdict':<8} {'scene':<6} {'method':<12} {'ending':<9} {'':<9} {'iter.':>5} "
     f"{'estimate':>8} {'error F':>8} {'accuracy':>8}"
 )
 
 
-def summary(rows: Sequence[Row]) -> str:
-    """Say in a few sentences how many rows came to what."""
-    counts = Counter(row.verdict for row in rows)
-    told = ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict)
+MISSED = "Not converged, of runs that have one solution and a k that is not foolish"
+
+
+def counts(rows: Sequence[Row]) -> list[list[str]]:
+    """Count the verdicts, and say what each means; with a head."""
+    return tally([row.verdict for row in rows], MEANING)
+
+
+def table_of_missed(rows: Sequence[Row]) -> list[list[str]]:
+    """Count the sound runs that did not converge, by whether a status step may end them."""
     sound = [row for row in rows if is_sound(row)]
-    finishing = [row for row in sound if row.may_finish]
-    others = [row for row in sound if not row.may_finish]
-    return (
-        f"{len(rows)} runs: {told}. Ended otherwise than converged, of those that have one "
-        f"solution and no foolish k: {_missed(sound)}. Of these, where a status step may finish: "
-        f"{_missed(finishing)}; elsewhere: {_missed(others)}."
-    )
+    kinds = {
+        "may end with a status step": [row for row in sound if row.may_finish],
+        "only iterate": [row for row in sound if not row.may_finish],
+        "all": sound,
+    }
+    head = ["runs that", "in all", "not converged", "share", "of these out of iterations"]
+    return [head, *([kind, *_missed(own)] for kind, own in kinds.items())]
 
 
-def _missed(rows: Sequence[Row]) -> str:
-    """Count those that did not converge, and among them those whose iterations were used up."""
-    missed = [row for row in rows if row.verdict is Verdict.TOLD]
+def _missed(rows: Sequence[Row]) -> list[str]:
+    """Count runs, those that did not converge, and among them those out of iterations."""
+    missed = [row for row in rows if row.verdict is Verdict.UNSOLVED]
     exhausted = sum(row.outcome.ending == Ending.EXHAUSTED for row in missed)
-    share = f" ({100.0 * len(missed) / len(rows):.1f} %)" if rows else ""
-    return f"{len(missed)} of {len(rows)}{share}, {exhausted} of them out of iterations"
+    share = f"{100.0 * len(missed) / len(rows):.1f} %" if rows else "-"
+    return [str(len(rows)), str(len(missed)), share, str(exhausted)]
 
 
 def table_of_counts(rows: Sequence[Row]) -> list[list[str]]:
@@ -116,7 +123,8 @@ def wrong_lines(rows: Sequence[Row]) -> list[str]:
 
 def ends(rows: Sequence[Row]) -> list[str]:
     """Give the lines that a survey ends with: counts, what they amount to, and what is wrong."""
-    return [aligned(table_of_counts(rows)), "", summary(rows), *wrong_lines(rows)]
+    tables = aligned(table_of_counts(rows)), aligned(counts(rows)), aligned(table_of_missed(rows))
+    return [f"{tables[0]}\n", f"{tables[1]}\n", f"{MISSED}:", tables[2], *wrong_lines(rows)]
 
 
 def values(row: Row) -> dict[str, object]:
@@ -161,9 +169,9 @@ def write_report(rows: Sequence[Row], folder: Path) -> list[Path]:
 
 def html(rows: Sequence[Row]) -> str:
     """Write the page."""
-    notes = [f"{verdict}: {meaning}." for verdict, meaning in MEANING.items()]
     sections = [
-        words(summary(rows), notes),
+        words(f"{len(rows)} runs", counts(rows)),
+        f"<h2>{MISSED}</h2>\n{plain_table(table_of_missed(rows))}",
         f"<h2>By scene and method</h2>\n{plain_table(table_of_counts(rows))}",
         f"<h2>Every run</h2>\n{table_of(COLUMNS, [values(row) for row in rows], COLOURS)}",
     ]

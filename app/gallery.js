@@ -1,0 +1,140 @@
+// The number of the quadrilateral at a point, or -1.
+const pick = ({xs, ys}, x, y) => {
+  const holds = (across, up) => {
+    let inside = false
+    for (let i = 0, j = across.length - 1; i < across.length; j = i++) {
+      const between = up[i] > y !== up[j] > y
+      if (between && x < across[i] + (y - up[i]) / (up[j] - up[i]) * (across[j] - across[i])) {
+        inside = !inside
+      }
+    }
+    return inside
+  }
+  return xs.findIndex((across, i) => holds(across, ys[i]))
+}
+const substructure = (data, x, y) => {
+  const at = pick(data, x, y)
+  return at < 0 ? undefined : data.value[at] + 1
+}
+// How far a point is from lines, of which the nearest has a name.
+const nearest = ({xs, ys, name}, x, y) => {
+  let best, least = Infinity
+  xs.forEach((across, number) => {
+    for (let i = 0; i + 1 < across.length; i++) {
+      const [left, low] = [across[i], ys[number][i]]
+      const [wide, tall] = [across[i + 1] - left, ys[number][i + 1] - low]
+      const share = ((x - left) * wide + (y - low) * tall) / (wide * wide + tall * tall)
+      const on = Math.min(Math.max(share, 0), 1)
+      const far = Math.hypot(x - left - on * wide, y - low - on * tall)
+      if (far < least) { [best, least] = [name[number], far] }
+    }
+  })
+  return [best, least]
+}
+export function render({model}) {
+  const figures = JSON.parse(model.figures), root = document.createElement("div")
+  root.className = "grid"
+  const cards = new Map(), {index, embed} = Bokeh, {Document} = Bokeh.require("document")
+  // A drag tells where it is now, not everywhere it has been.
+  let told = null
+  const listen = (plot, kind, bodies) => {
+    const at = ({x, y}) => bodies ? substructure(bodies.data, x, y) : kind === "time" ? x : y
+    const choose = (event) => {
+      const value = at(event)
+      if (value === undefined) { return }
+      if (!told) { requestAnimationFrame(() => { model.send_msg(told); told = null }) }
+      told = {kind, value}
+    }
+    for (const event of ["tap", "pan"]) { plot.on_event(event, choose) }
+    return choose
+  }
+  // A tap chooses the interface beside it, and marks its place on a body.
+  const NEAR = 4
+  const touch = (plot, bodies, along, contacts) => ({x, y}) => {
+    const {x_scale} = Bokeh.index.find_one_by_id(plot.id).frame
+    const [name, far] = nearest(contacts.data, x, y), at = pick(bodies.data, x, y)
+    if (far * (x_scale.compute(1) - x_scale.compute(0)) < NEAR) {
+      model.send_msg({kind: "interface", value: name})
+    }
+    if (at >= 0) { model.send_msg({kind: "place", value: along.data.x[at]}) }
+  }
+  // What a screen reader says of a plot beside its name: what is drawn, and of which moment.
+  const describe = (element) => {
+    const keys = [...element.querySelectorAll(".key")].map((key) => key.textContent)
+    element.ariaDescription = `${keys.join(", ")}; ${model.caption}`
+  }
+  const make = (slug) => {
+    const {json, name, chooses} = figures[slug]
+    const box = (className) => {
+      const made = document.createElement("div")
+      made.className = className
+      return made
+    }
+    const element = box("card"), title = box("title"), place = box("plot")
+    Object.assign(element, {role: "figure", ariaLabel: name, tabIndex: 0})
+    element.append(title, place)
+    const made = Document.from_json(json), [plot] = made.roots()
+    const words = made.get_model_by_name(`${slug}.title`)
+    const write = () => {
+      title.innerHTML = words.text
+      describe(element)
+    }
+    words.properties.text.change.connect(write)
+    write()
+    const [bodies, held, ...parts] = ["bodies", "handles", "along", "contacts"].map((one) =>
+      made.get_model_by_name(`${slug}.${one}`))
+    const choose = chooses ? listen(plot, chooses, bodies) : null
+    if (held) {
+      const chosen = touch(plot, bodies, ...parts)
+      plot.on_event("tap", chosen)
+      handles(place, plot, held, model, (event) => [choose, chosen].forEach((one) => one(event)))
+    }
+    // Pictures find its models from now on; they are drawn one after the other.
+    cards.set(slug, {element, place, made, plot, drawn: false})
+  }
+  const frame = () => new Promise((done) => requestAnimationFrame(done))
+  let drawing = frame()
+  const draw = async (slug) => {
+    const one = cards.get(slug)
+    if (one.drawn || !one.element.isConnected) { return }
+    one.drawn = true
+    await embed.add_document_standalone(one.made, one.place)
+    dress(one)
+    await frame()
+  }
+  const show = () => {
+    for (const slug of model.shown) {
+      if (!cards.has(slug)) { make(slug) }
+    }
+    const wanted = model.shown.map((slug) => cards.get(slug).element)
+    if (wanted.length !== root.children.length || wanted.some((one, i) => one !== root.children[i])) {
+      root.replaceChildren(...wanted)
+    }
+    for (const slug of model.shown) { drawing = drawing.then(() => draw(slug)) }
+  }
+  // Colours and type of axes are in the style sheet, which Bokeh reads only when it paints.
+  // They do not reach glyphs and the scale of colours.
+  const dress = ({plot}) => {
+    const size = `${Math.round(13 * model.magnified)}px`, {color} = getComputedStyle(root)
+    for (const {glyph} of plot.renderers.filter(({glyph}) => glyph.type === "Text")) {
+      glyph.setv({text_font_size: {value: size}, text_color: {value: color}})
+    }
+    for (const one of plot.right) {
+      one.setv({title_text_color: color, title_text_font_size: size,
+        major_label_text_color: color, major_label_text_font_size: size})
+    }
+    index.find_one_by_id(plot.id)?.invalidate_layout()
+  }
+  const restyle = () => requestAnimationFrame(() => cards.forEach(dress))
+  const watcher = new MutationObserver(restyle)
+  watcher.observe(document.documentElement, {attributes: true, attributeFilter: ["data-theme", "data-built"]})
+  model.on("shown", show)
+  model.on("magnified", restyle)
+  model.on("caption", () => cards.forEach(({element}) => describe(element)))
+  model.on("remove", () => {
+    watcher.disconnect()
+    for (const {made} of cards.values()) { made.clear() }
+  })
+  show()
+  return root
+}

@@ -1,0 +1,78 @@
+"""What one can take hold of, and tap on, in the picture of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.views.acts import size_of
+from app.worker.portrait import PITCH, THICKNESS
+from app.worker.shown import thinned
+from solver.arrays import Array
+from solver.discrete.rods import Rods
+from solver.discrete.stack import Stack
+from solver.scenes import behind
+from solver.settings import Settings
+
+DOUBLED = 0.5
+"""Drag along an arrow that doubles its value, as a share of the picture's size."""
+ROUGH = 9
+"""Points of an interface by which a tap on it is known."""
+STEEPEST = 0.03
+"""Depth of a gap, as a share of the size, below which it is dragged as one so deep."""
+
+
+@dataclass(frozen=True, eq=False)
+class Handle:
+    """A stretch that is dragged along itself.
+
+    Attributes
+    ----------
+    setting
+        Name of the setting that follows.
+    ends
+        Where it lies, shape (2, 2), m; the value grows by the rate from the first to the second.
+    value
+        Of the setting.
+    rate
+        What the value gains on the way of a metre; its decimal logarithm, where the setting's
+        slider is logarithmic.
+    """
+
+    setting: str
+    ends: Array
+    value: float
+    rate: float
+
+
+def on_arrow(setting: str, settings: Settings, arrow: Array, size: float) -> Handle:
+    """Make a handle of an arrow (tail, head) in a picture of a size."""
+    value = float(getattr(settings, setting))
+    return Handle(setting, arrow, value, value / (DOUBLED * size))
+
+
+def on_bodies(data: Rods | Stack, settings: Settings, gap: Array | None) -> Iterator[Handle]:
+    """Make handles of the break of a wire, and of both ends of a gap as it is drawn, m."""
+    found, size = behind(settings), max(size_of(data))
+    reach = 0.5 * THICKNESS * size
+    if "break" in found and isinstance(data, Rods) and data.broken is not None:
+        wire, node = data.broken
+        x, y = data.nodes[node], (PITCH * (wire - 1) + 0.5 * THICKNESS) * data.length
+        ends = np.array([[x - reach, y], [x + reach, y]])
+        name = found["break"]
+        yield Handle(name, ends, float(getattr(settings, name)), 1.0 / data.length)
+    if "gap" in found and gap is not None:
+        name = found["gap"]
+        for x, depth in ((0.0, gap[0]), (data.length, gap[-1])):
+            ends = np.array([[x, -depth - reach], [x, -depth + reach]])
+            # The depth is in inverse proportion to the radius.
+            rate = 1.0 / (np.log(10.0) * max(float(depth), STEEPEST * size))
+            yield Handle(name, ends, float(getattr(settings, name)), rate)
+
+
+def choices(contacts: Mapping[str, Array]) -> dict[str, Array]:
+    """Thin out where interfaces lie, shape (n_points, 2) each; none where there is no choice."""
+    found = {name: one[thinned(len(one), ROUGH)] for name, one in contacts.items() if len(one)}
+    return found if len(found) > 1 else {}

@@ -1,0 +1,237 @@
+"""What a sweep runs: a scene, one or two settings over their values, and what is asked of it."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import param
+
+from solver.definitions import (
+    Parameter,
+    SettingError,
+    about,
+    allowed,
+    checked_value,
+    parse,
+    unknown,
+)
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+from solver.study.quantities import Reading, reading
+
+MOST_POINTS = 20_000
+"""Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
+FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A setting and the values that it takes, each once.
+
+    Attributes
+    ----------
+    name
+        Of the setting.
+    values
+        Plain, checked values, in the order of the chart.
+    logarithmic
+        Whether they are spread evenly over decades.
+    """
+
+    name: str
+    values: tuple[Any, ...]
+    logarithmic: bool = False
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether the values are numbers, which have a place on a scale."""
+        return not isinstance(self.values[0], bool | str)
+
+    def plain(self) -> dict[str, Any]:
+        """Give it as JSON can hold it."""
+        return {"name": self.name, "values": list(self.values), "logarithmic": self.logarithmic}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """One or two axes, everything else fixed; points are numbered, the last axis fastest.
+
+    Attributes
+    ----------
+    settings
+        What is fixed.
+    axes
+        One or two.
+    readings
+        What is taken of every run, at least one.
+    """
+
+    settings: Settings
+    axes: tuple[Axis, ...]
+    readings: tuple[Reading, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values of every axis."""
+        return tuple(len(axis.values) for axis in self.axes)
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return math.prod(self.shape)
+
+    @cached_property
+    def fixed(self) -> dict[str, Any]:
+        """What of the settings is not as it would be unsaid; a varied method brings the rest."""
+        return self.settings.changed()
+
+    def title(self, axis: Axis) -> str:
+        """Give what a setting that varies is called, in words."""
+        return about(self.settings.definitions()[axis.name]).title
+
+    def unit(self, axis: Axis) -> str:
+        """Give the SI unit of a setting that varies, empty for a pure number."""
+        return about(self.settings.definitions()[axis.name]).unit
+
+    def point(self, number: int) -> dict[str, Any]:
+        """Give what varies at a point, by the setting's name."""
+        places = np.unravel_index(number, self.shape)
+        return {
+            axis.name: axis.values[place] for axis, place in zip(self.axes, places, strict=True)
+        }
+
+    def settings_at(self, number: int) -> Settings:
+        """Give all settings of a point.
+
+        Raises
+        ------
+        SettingError
+            Where they do not fit together.
+        """
+        return self.settings.checked({**self.fixed, **self.point(number)})
+
+    def idle(self) -> list[str]:
+        """Name the settings that vary and do nothing at any point."""
+        found = {axis.name for axis in self.axes}
+        for number in range(self.size):
+            with contextlib.suppress(SettingError):
+                settings = self.settings_at(number)
+                found -= {name for name in found if settings.applies(name)}
+            if not found:
+                break
+        return sorted(found)
+
+    def plain(self) -> dict[str, Any]:
+        """Give it as JSON can hold it, for files, processes and other machines."""
+        return {
+            "scene": self.settings.scene,
+            "settings": self.fixed,
+            "axes": [axis.plain() for axis in self.axes],
+            "of": [one.name for one in self.readings],
+        }
+
+    @cached_property
+    def digest(self) -> str:
+        """A short text that differs from plan to plan."""
+        text = json.dumps(self.plain(), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
+    """Read a plan from texts as `--vary` and `--of` take them.
+
+    Parameters
+    ----------
+    settings
+        What is fixed.
+    vary
+        One or two of `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`.
+    of
+        Quantities of a run, as `solver.study.quantities.reading` takes them.
+
+    Raises
+    ------
+    SettingError
+        For whatever of it cannot be run.
+    """
+    if not 1 <= len(vary) <= 2:
+        raise SettingError("--vary", list(vary), f"one or two of {FORM}", "vary one or two")
+    if not of:
+        raise SettingError("--of", list(of), "names of quantities", "name at least one")
+    axes = tuple(axis_of(settings, text) for text in vary)
+    if len({axis.name for axis in axes}) < len(axes):
+        raise SettingError("--vary", list(vary), "two settings", "vary each of them once")
+    plan = Plan(settings, axes, tuple(dict.fromkeys(reading(name) for name in of)))
+    if plan.size > MOST_POINTS:
+        few = f"at most {MOST_POINTS} runs"
+        raise SettingError("--vary", list(vary), few, f"these are {plan.size}: take fewer values")
+    return plan
+
+
+def plan_from_plain(plain: Mapping[str, Any]) -> Plan:
+    """Make a plan again of what `Plan.plain` gave."""
+    settings = CATALOGUE[plain["scene"]].settings.checked(plain["settings"])
+    axes = tuple(
+        Axis(one["name"], tuple(one["values"]), one["logarithmic"]) for one in plain["axes"]
+    )
+    return Plan(settings, axes, tuple(reading(name) for name in plain["of"]))
+
+
+def axis_of(settings: Settings, text: str) -> Axis:
+    """Read one setting and its values.
+
+    Raises
+    ------
+    SettingError
+        For a setting that there is not, or values that it cannot take.
+    """
+    name, equals, values = text.partition("=")
+    definitions = settings.definitions()
+    if not equals or not values:
+        raise SettingError("--vary", text, FORM, "name a setting and its values")
+    if name not in definitions:
+        raise unknown(name, values, definitions)
+    if ":" in values:
+        found, logarithmic = _range(definitions[name], name, values)
+    else:
+        found, logarithmic = [parse(value.strip()) for value in values.split(",")], False
+    checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
+    return Axis(name, tuple(checked), logarithmic)
+
+
+def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:
+    """Spread values over a range."""
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError(name, text, f"LOW:HIGH:COUNT or LOW:HIGH:COUNT:log, {within}", remedy)
+
+    within = f"within {allowed(definition)}"
+    if not isinstance(definition, param.Number):
+        raise SettingError(name, text, allowed(definition), "list its values, commas between them")
+    *numbers, last = text.split(":")
+    logarithmic = last == "log"
+    try:
+        low, high, count = map(float, numbers if logarithmic else [*numbers, last])
+    except ValueError:
+        raise refuse("write three numbers, colons between them") from None
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise refuse("write finite numbers")
+    if not 2 <= count <= MOST_POINTS or count != int(count):
+        raise refuse(f"the count is a whole number from 2 to {MOST_POINTS}")
+    if low == high:
+        raise refuse("the two ends differ")
+    if logarithmic and min(low, high) <= 0.0:
+        raise refuse("decades need ends above zero")
+    spread = np.geomspace if logarithmic else np.linspace
+    # Through text, so that 0.1:0.6:6 holds 0.3 and not 0.30000000000000004.
+    values = [float(f"{value:.12g}") for value in spread(low, high, int(count))]
+    is_whole = isinstance(definition, param.Integer)
+    return [round(value) if is_whole else value for value in values], logarithmic

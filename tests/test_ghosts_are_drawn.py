@@ -1,0 +1,98 @@
+"""A run before, and a run A, are seen as outlines of bodies and of the map, and named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studios import ALL, SMALL, Shown, keys
+
+from app.views import deformed, picture, status_map
+from app.views.colors import FRONT, GHOST
+from app.views.drawing import Drawing
+from app.worker.orders import Watch
+from app.worker.portrait import rims
+from solver.scenes import CATALOGUE
+
+PLANE = ("block", "layers", "incline")
+SHORT = {"method": "paper", "max_iterations": 4}
+
+
+def outlines(drawing: Drawing | None) -> list[np.ndarray]:
+    assert drawing is not None
+    ghosts = [one for one in drawing.curves if one.color == GHOST]
+    return [np.stack([np.asarray(one.x), np.asarray(one.y)], axis=1) for one in ghosts]
+
+
+def run_twice(scene: str, *phases: float) -> Shown:
+    """Do the same run twice, and look at other instants afterwards."""
+    shown = Shown()
+    for ticket in (1, 2):
+        shown.run(ticket, scene, {**SMALL[scene], **SHORT})
+    for phase in phases:
+        shown.obey(Watch(replace(ALL, phase=phase)))
+    return shown
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_a_line_around_every_body_comes_back_to_where_it_began(scene: str) -> None:
+    portrait = run_twice(scene).recording.stand.portrait
+    found = rims(portrait)
+    settings = CATALOGUE[scene].settings.checked(SMALL[scene])
+    assert len(found) == (settings.values().get("wires") or settings.values().get("layers") or 1)
+    for rim in found:
+        line = portrait.mesh.nodes[rim]
+        length, height = np.ptp(line, axis=0)
+        assert line[0] == pytest.approx(line[-1])
+        assert np.abs(np.diff(line, axis=0)).sum() == pytest.approx(2 * (length + height), rel=1e-5)
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_the_ghost_of_the_same_run_lies_on_the_bodies_at_every_instant(scene: str) -> None:
+    shown = run_twice(scene, 0.5)
+    for view in (picture, deformed) if scene in PLANE else (picture,):
+        looked = shown.scene(shown.studio._look, shown.pictures[-1].facts.instant)
+        drawing = view.draw(looked, None)
+        assert drawing is not None
+        assert drawing.bodies is not None
+        own = [drawing.bodies.places[rim] for rim in rims(looked.run.stand.portrait)]
+        for ghost, line in zip(outlines(drawing), own, strict=True):
+            assert ghost == pytest.approx(line, abs=1e-6)
+        assert "run before, iteration 4" in keys(drawing)
+
+
+def test_a_ghost_that_would_make_the_bodies_small_is_left_out() -> None:
+    shown = Shown()
+    for ticket, peak in enumerate((900.0, 20.0), start=1):
+        shown.run(ticket, "bar", {**SMALL["bar"], **SHORT, "peak": peak})
+    drawing = picture.draw(shown.scene(), None)
+    assert outlines(drawing) == []
+    assert not [key for key in keys(drawing) if "before" in key]
+
+
+def test_run_a_is_outlined_where_it_is_shown_and_called_so() -> None:
+    shown = Shown()
+    values = {**SMALL["layers"], **SHORT}
+    shown.run(1, "layers", values, twin={**values, "friction": 0.1})
+    scene = shown.scene()
+    assert scene.shadow is not None
+    for view in (picture, deformed, status_map):
+        assert f"A, iteration {scene.shadow.iteration}" in keys(view.draw(scene, None))
+
+
+def test_lines_of_the_map_lie_between_points_and_instants_of_other_status() -> None:
+    shown = Shown()
+    for ticket, friction in enumerate((0.3, 0.1), start=1):
+        shown.run(ticket, "bar", {**SMALL["bar"], **SHORT, "friction": friction})
+    scene = shown.scene()
+    (front,) = [one for one in status_map.draw(scene, None).curves if one.color == FRONT]
+    assert scene.before is not None
+    assert scene.before.frame is not None
+    status = scene.before.frame.status
+    changes = np.count_nonzero(np.diff(status, axis=0)) + np.count_nonzero(np.diff(status, axis=1))
+    assert changes > 0
+    assert np.count_nonzero(np.isnan(front.x)) == changes
+    places = scene.before.stand.positions
+    half = 0.5001 * (places[1] - places[0])
+    assert places[0] - half <= np.nanmin(front.x) <= np.nanmax(front.x) <= places[-1] + half

@@ -1,0 +1,129 @@
+"""In a browser: the bathtub in few clicks, a point's run, an end, a link, and two pages at once."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from pages import ENDLESS, Visit, press, status
+from playwright.sync_api import Locator, Page, expect
+from test_page_for_everybody import EXCEPTIONS, SERIOUS
+
+TINY = "?elements=20&substructures=2&instants=11"
+CURVE = f"{TINY}&tab=What+if&vary=peak=300:1500:5&of=peak_displacement"
+MAP = f"{TINY}&tab=what+if&vary=friction=0.1:0.7:7&vary=peak=300:1500:7&of=peak_displacement"
+SLOW = f"{ENDLESS}&elements=400&instants=401"
+ENDED = re.compile(r"(\d+) of \1 runs: ")
+
+
+def chart(page: Page) -> Locator:
+    return page.get_by_role("application")
+
+
+def parts(page: Page, kind: str) -> Locator:
+    """Give what stands in the chart of a kind: answers, hollow points, ghosts, contours."""
+    return chart(page).locator(f'[data-part="{kind}"]')
+
+
+def place(page: Page, number: int) -> tuple[float, float]:
+    """Give where an answer stands on the page."""
+    box = parts(page, "answer").nth(number).bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_a_stranger_has_the_bathtub_in_two_clicks_and_a_third_opens_one_of_its_runs(
+    open_page: Visit,
+) -> None:
+    page = open_page(TINY)
+    expect(status(page)).to_contain_text("iteration")
+    press(page, "What if")
+    press(page, "The bathtub")
+    expect(page.get_by_text(ENDED).first).to_be_visible()
+    expect(parts(page, "answer")).to_have_count(26)
+    expect(page.get_by_text("Acceleration anderson")).to_be_visible()
+    page.mouse.click(*place(page, 0))
+    expect(status(page)).to_contain_text("iteration")
+    expect(page.get_by_role("textbox", name=re.compile("^Factor on k"))).to_have_value("0.01")
+    expect(page).to_have_url(re.compile("k_scale=0.01&"))
+
+
+def test_a_link_comes_back_to_a_map_whose_points_say_what_they_are_and_keys_open_them(
+    open_page: Visit,
+) -> None:
+    page = open_page(MAP)
+    expect(page.get_by_text(ENDED).first).to_be_visible()
+    expect(parts(page, "answer")).to_have_count(49)
+    assert parts(page, "contour").count() > 2
+    page.mouse.move(*place(page, 24))
+    expect(chart(page).get_by_text("Friction coefficient μ 0.4, Peak load 900 N: ")).to_be_visible()
+    chart(page).focus()
+    page.keyboard.press("ArrowRight")
+    expect(chart(page).get_by_text("Friction coefficient μ 0.5, Peak load 900 N: ")).to_be_visible()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("textbox", name=re.compile("^Friction coeff"))).to_have_value("0.5")
+    press(page, "What if")
+    with page.expect_download() as caught:
+        press(page, "Table (CSV)")
+    text = caught.value.path().read_text()
+    assert text.count(",converged,") == 49
+    with page.expect_download() as caught:
+        press(page, "Chart (SVG)")
+    assert caught.value.path().read_text().count('data-part="answer"') == 49
+
+
+def test_the_chart_before_is_left_as_a_ghost_and_a_foolish_range_is_refused(
+    open_page: Visit,
+) -> None:
+    page = open_page(CURVE)
+    expect(parts(page, "answer")).to_have_count(5)
+    expect(parts(page, "ghost")).to_have_count(0)
+    field = page.get_by_role("textbox", name=re.compile("^Pressure"))
+    field.fill("2500")
+    field.press("Enter")
+    expect(page.get_by_text("have changed since")).to_be_visible()
+    press(page, "Start")
+    expect(parts(page, "ghost")).to_have_count(1)
+    expect(parts(page, "answer")).to_have_count(5)
+    upper = page.get_by_role("textbox", name="Over: to")
+    upper.fill("1e99")
+    upper.press("Enter")
+    expect(page.get_by_text("is refused; allowed: a number from -1e+15")).to_be_visible()
+    expect(page.get_by_role("button", name="Start", exact=True)).to_be_disabled()
+    upper.fill("1200")
+    upper.press("Enter")
+    expect(page.get_by_text("is refused")).to_be_hidden()
+    expect(page).to_have_url(re.compile("vary=peak%3D300%3A1200%3A5"))
+
+
+def test_two_pages_fill_at_once_and_a_cancelled_one_keeps_what_it_has(open_page: Visit) -> None:
+    slow = open_page(
+        f"?{SLOW}&tab=What+if&vary=max_iterations=1,2,3,4,5,90000,91000,92000&of=peak_displacement"
+    )
+    expect(parts(slow, "hollow").first).to_be_attached()
+    other = open_page(CURVE)
+    expect(parts(other, "answer")).to_have_count(5)
+    press(slow, "Cancel")
+    expect(slow.get_by_text(re.compile(r"Cancelled\. \d of 8 runs: ")).first).to_be_visible()
+    expect(slow.get_by_role("button", name="Cancel", exact=True)).to_be_hidden()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_tab_is_accessible_and_needs_no_scrolling(open_page: Visit, scheme: str) -> None:
+    page = open_page("", width=1280, height=720)
+    page.emulate_media(color_scheme=scheme)
+    expect(status(page)).to_contain_text("iteration")
+    page.goto(page.url.partition("?")[0] + MAP)
+    expect(page.get_by_text(ENDED).first).to_be_visible()
+    expect(page.locator(f".mui-{scheme}").first).to_be_visible()
+    found = Axe().run(page).response["violations"]
+    assert [
+        (one["id"], [node["html"] for node in one["nodes"]])
+        for one in found
+        if one["impact"] in SERIOUS and one["id"] not in EXCEPTIONS
+    ] == []
+    assert page.evaluate("document.documentElement.scrollHeight <= innerHeight")
+    box = chart(page).bounding_box()
+    assert box is not None
+    assert box["y"] + box["height"] <= 720

@@ -1,0 +1,118 @@
+"""Reports on the page are those of the command line, as they grow, and are named by what differs."""
+
+from __future__ import annotations
+
+import csv
+import re
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+from errands import until_idle
+
+from app.errand import Errand, Found
+from app.glossary import explained
+from app.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
+from app.session import Session
+from app.worker.bench import Bench
+from app.worker.desk import Desk, files
+from app.worker.studies import stability_of, study_of
+from solver.scenes.bar import BarSettings
+from solver.scenes.layers import LayersSettings
+from solver.study.page import Plot
+from solver.study.stability import Row, Verdict, judge, run_case
+from solver.study.stability_cases import Case
+from solver.study.stability_report import stability_sections
+
+TINY = {"elements": 8, "substructures": 2, "instants": 5}
+
+
+def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
+    errand = Errand(bench)
+    errand.ask("tiny", partial(study_of, "bar", TINY, 1, False))
+    until_idle(errand)
+    assert errand.last is not None, errand.notice
+    found = errand.last.files
+    assert set(found) == {"curves.csv", "levels.csv", "study.html"}
+    rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
+    assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
+    assert sum(isinstance(section, Plot) for section in errand.last.sections) == 1
+    page = found["study.html"].decode()
+    for section in errand.last.sections:
+        assert isinstance(section, Plot) or section in page
+    assert "Scene: bar (" in page
+    assert all(f"{name} = {value}" in page for name, value in TINY.items())
+    assert page.count("BLAS threads: 1;") == 1
+
+
+def test_stability_is_shown_as_it_grows_and_then_whole(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    few = [Case("size", "tiny", TINY), Case("size", "small", {**TINY, "elements": 10})]
+    monkeypatch.setattr("app.worker.studies.cases_of", lambda quick: few)
+    monkeypatch.setattr("app.worker.studies.SHOWN_EVERY", 0.0)
+    rows: list[int] = []
+    shares: list[float] = []
+    tell = Desk.tell
+    monkeypatch.setattr(
+        Desk, "show", lambda desk, sections: rows.append("".join(sections).count('"verdict'))
+    )
+    monkeypatch.setattr(
+        Desk, "tell", lambda desk, doing, share: shares.append(share) or tell(desk, doing, share)
+    )
+    stability_of(False, tmp_path)
+    assert rows == [1, 2, 3, 4, 4]
+    assert list(files(tmp_path)) == ["stability.csv", "stability.html"]
+    assert shares == sorted(shares)
+    assert (
+        "In other units the bar has the same iterates" in (tmp_path / "stability.html").read_text()
+    )
+
+
+def row(**changes: Any) -> Row:
+    case = Case("size", "tiny", {**TINY, **changes})
+    outcome = run_case(case, "paper")
+    return Row(case, "paper", outcome, judge(outcome))
+
+
+def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand: Errand) -> None:
+    rows = [row(), row(k_scale=1e-6, max_iterations=20)]
+    assert [one.verdict for one in rows] == [Verdict.RIGHT, Verdict.UNSOLVED]
+    sections = stability_sections(rows, {})
+    page = "".join(sections)
+    assert re.findall(r'<td class="verdict (\w+)"[^>]*>(\w+)</td>', page) == [
+        ("right", "right"),
+        ("unsolved", "unsolved"),
+    ]
+    assert "1 of 2 runs pass" in page
+    assert rows[1].outcome.advice.split(".")[0] in page
+    report = StabilityReport(errand)
+    report._put(Found("any", sections))
+    assert [pane.object for pane in report._sheet] == list(map(explained, sections))
+    report._filter(WRONG)
+    assert all(pane.css_classes == ["report", "wrong"] for pane in report._sheet)
+    report._put(Found("another", sections))
+    assert all(pane.css_classes == ["report", "wrong"] for pane in report._sheet)
+    report._filter(EVERY)
+    assert all(pane.css_classes == ["report"] for pane in report._sheet)
+
+
+def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> None:
+    assert title_of(BarSettings.checked({})) == "defaults"
+    assert title_of(BarSettings.checked({"friction": 0.4})) == "friction 0.4"
+    assert title_of(BarSettings.checked({"method": "paper"})) == "method paper"
+    assert "no other page" in company(0)
+    assert "a run of another page was" in company(1)
+    assert "3 runs of other pages were" in company(3)
+
+
+def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
+    for layers, refused in ((3, False), (20, True)):
+        settings = LayersSettings.checked({"layers": layers, "instants": 11})
+        page = SimpleNamespace(study=errand, wanted=settings, crowd=0)
+        report = StudyReport(cast(Session, page))
+        report.open()
+        assert report._start.disabled == refused
+        assert ("would take too long here" in report._progress.object) == refused

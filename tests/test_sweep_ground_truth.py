@@ -1,0 +1,114 @@
+"""Charts of sweeps are what closed forms, single runs and other laws say they are."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from sweeps import rows_of, tiny
+
+from solver.cli import main
+from solver.study.exponent import exponent_of
+from solver.study.sweep import Plan
+from solver.study.sweep.growth import growth
+from solver.study.sweep.point import Row
+
+STIFFNESS, PRESSURE = 210e9 * 3.14e-6, 5000.0
+
+
+def end_of(plan: Plan, number: int) -> float:
+    """Displacement of the end of a bar under a monotone pull."""
+    at = plan.point(number)
+    return at["peak"] ** 2 / (2.0 * STIFFNESS * at["friction"] * PRESSURE)
+
+
+def test_the_design_chart_of_the_end_displacement_is_the_closed_form_to_second_order() -> None:
+    sizes, errors = (15, 30, 60), []
+    for elements in sizes:
+        vary = ["friction=0.23,0.31,0.4", "peak=370:1010:5"]
+        plan = tiny(vary, ["end_displacement"], load="ramp", elements=elements, instants=2)
+        rows = rows_of(plan)
+        assert all(row.holds for row in rows)
+        exact = [end_of(plan, row.number) for row in rows]
+        found = [row.values[0] for row in rows]
+        errors.append(np.abs(np.array(found) / exact - 1.0).mean())
+        assert errors[-1] < 2.0 / elements**2
+    law = exponent_of(sizes, errors)
+    assert law is not None
+    assert -2.6 < law.value < -1.6
+
+
+def test_the_energy_of_a_cycle_over_the_peak_is_the_closed_form() -> None:
+    plan = tiny(["peak=500:1100:4"], ["dissipation@1"], load="cycle", elements=100)
+    for row in rows_of(plan):
+        peak = plan.point(row.number)["peak"]
+        exact = 2.0 * peak**3 / (3.0 * STIFFNESS * 0.3 * PRESSURE)
+        assert row.values[0] == pytest.approx(exact, rel=2e-4)
+
+
+def test_iterations_over_k_are_those_of_single_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    plan = tiny(["k_scale=0.1:10:3:log", "finish=none,status"], ["iterations"])
+    for row in rows_of(plan):
+        own = [f"{name}={value}" for name, value in plan.settings_at(row.number).changed().items()]
+        main(["run", "bar", "--json", *(part for one in own for part in ("--set", one))])
+        assert json.loads(capsys.readouterr().out)["iterations"] == row.values[0]
+
+
+def test_slip_dies_out_below_a_limit_of_shear_and_goes_on_above_it() -> None:
+    """Shakedown: lesson 8 at ever more friction, so at an ever smaller share of it in shear."""
+    shear = [[1, 0], *([2 + 2 * i, 1.2e7 * (-1) ** i] for i in range(12)), [25, 0]]
+    plan = tiny(
+        ["friction=0.13,0.15,0.25,0.3,0.4"],
+        ["dissipation@1", "dissipation@2", "dissipation@5"],
+        scene="block",
+        gap="flat",
+        top="traction",
+        top_normal_load=[[0, -1e8]],
+        top_tangential_load=shear,
+        duration=25,
+        elements=16,
+        elements_up=8,
+        instants=51,
+        substructures=1,
+    )
+    rows = rows_of(plan)
+    assert all(row.holds for row in rows)
+    for first, second, fifth in (row.values for row in rows[:2]):
+        assert fifth == pytest.approx(second, rel=1e-6)
+        assert fifth > 0.1 * first
+    for first, _, fifth in (row.values for row in rows[2:]):
+        assert first > 0.0
+        assert abs(fifth) < 1e-6 * first
+
+
+@pytest.mark.parametrize("power", [-2.0, 0.5, 1.0])
+def test_an_exponent_is_found_with_a_margin_that_holds_it(power: float) -> None:
+    sizes = np.geomspace(50.0, 3200.0, 7)
+    noise = np.random.default_rng(1)
+    held = 0
+    for _ in range(400):
+        law = exponent_of(sizes, 3.0 * sizes**power * np.exp(0.1 * noise.standard_normal(7)))
+        assert law is not None
+        held += abs(law.value - power) <= law.margin
+    assert 0.92 < held / 400 < 0.98
+
+
+def test_an_exponent_needs_two_sizes_and_leaves_out_what_is_no_positive_number() -> None:
+    assert exponent_of([1.0, 1.0], [2.0, 3.0]) is None
+    assert str(exponent_of([1.0, 10.0], [2.0, 20.0])) == "1.00"
+    law = exponent_of([1.0, 2.0, 4.0, 8.0, 9.0], [1.0, 4.0, 16.0, np.nan, 0.0])
+    assert str(law) == "2.00 ± 0.00"
+
+
+def test_growth_is_told_of_a_setting_over_decades_for_every_name() -> None:
+    plan = tiny(["elements=10:40:3:log", "method=fast,paper"], ["iterations"])
+    rows = [
+        Row(n, "converged", "", (float(plan.point(n)["elements"] ** (1 + n % 2)),))
+        for n in range(6)
+    ]
+    assert growth(plan, rows) == [
+        "iterations, method=fast: elements^(1.00 ± 0.00), of 3 runs",
+        "iterations, method=paper: elements^(2.00 ± 0.00), of 3 runs",
+    ]
+    assert growth(tiny(["elements=10,20,40"], ["iterations"]), rows[:3]) == []

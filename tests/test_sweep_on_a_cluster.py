@@ -1,0 +1,170 @@
+"""On a Dask cluster a sweep is what it is here, whatever becomes of workers and clients."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from processes import started, wait_for
+from sweeps import rows_of, tiny
+
+from solver.cli import main
+from solver.definitions import SettingError
+from solver.study.executors import opened
+from solver.study.pool import Pool
+from solver.study.sweep import VersionsDifferError, sweep
+from solver.study.sweep import point as points
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+class Cluster:
+    """A scheduler and workers, as processes of this machine."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._processes: list[subprocess.Popen[bytes]] = []
+        file = folder / "scheduler.json"
+        self._start(
+            "scheduler", "--port", "0", "--host", "127.0.0.1", "--scheduler-file", str(file)
+        )
+        wait_for(lambda: file.exists() and file.read_text(encoding="utf-8").endswith("}"))
+        self.address = json.loads(file.read_text(encoding="utf-8"))["address"]
+
+    @property
+    def on(self) -> str:
+        return self.address.replace("tcp://", "dask://")
+
+    def worker(self) -> subprocess.Popen[bytes]:
+        return self._start("worker", self.address, "--nthreads", "1", "--no-nanny")
+
+    def _start(self, what: str, *arguments: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *arguments]
+        process = subprocess.Popen(
+            [*command, "--no-dashboard"],
+            cwd=self._folder,
+            env=os.environ | {"PYTHONPATH": str(ROOT)},
+            stderr=subprocess.DEVNULL,
+        )
+        self._processes.append(process)
+        return process
+
+    def end(self) -> None:
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A scheduler with two workers."""
+    found = Cluster(tmp_path_factory.mktemp("cluster"))
+    try:
+        for _ in range(2):
+            found.worker()
+        with opened(found.on) as pool:
+            wait_for(lambda: pool.width == 2)
+        yield found
+    finally:
+        found.end()
+
+
+@pytest.fixture
+def pool(cluster: Cluster) -> Iterator[Pool]:
+    with opened(cluster.on) as found:
+        yield found
+
+
+def test_workers_give_the_same_rows_as_this_process(pool: Pool) -> None:
+    plan = tiny(["peak=300:900:7", "friction=0.2,0.3"], ["peak_displacement", "dissipation"])
+    here, there = ([row.values for row in rows_of(plan, place)] for place in (None, pool))
+    assert np.array(there) == pytest.approx(np.array(here), rel=1e-9)
+
+
+def test_a_worker_that_is_killed_takes_no_row_with_it(cluster: Cluster, pool: Pool) -> None:
+    plan, rows = tiny(["peak=300:900:40"], ["peak_displacement"]), []
+    third = cluster.worker()
+    wait_for(lambda: pool.width == 3)
+    for row in sweep(plan, pool):
+        rows.append(row)
+        if len(rows) == 1:
+            os.kill(third.pid, signal.SIGKILL)
+    assert sorted(row.number for row in rows) == list(range(40))
+    assert all(row.holds for row in rows)
+
+
+def test_a_sweep_waits_for_workers_that_come_later(tmp_path: Path) -> None:
+    lonely = Cluster(tmp_path)
+    try:
+        with opened(lonely.on) as pool:
+            running = sweep(tiny(["peak=300,900"], ["iterations"]), pool)
+            assert pool.width == 1
+            lonely.worker()
+            assert len(list(running)) == 2
+    finally:
+        lonely.end()
+
+
+def test_a_client_that_is_killed_is_gone_on_with(cluster: Cluster, tmp_path: Path) -> None:
+    asked = ["sweep", "bar", "--vary", "peak=300:900:100", "--of", "iterations"]
+    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+    asked += ["--on", cluster.on, "--out", str(tmp_path)]
+    journal = tmp_path / "sweep.jsonl"
+    with started([sys.executable, "-m", "solver", *asked]):
+        wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
+    assert main(asked) == 0
+    numbers = [json.loads(line)["number"] for line in journal.read_bytes().splitlines()[1:]]
+    assert sorted(numbers) == list(range(100))
+
+
+def test_a_scheduler_that_is_gone_is_told_and_what_is_done_is_kept(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    doomed = Cluster(tmp_path)
+    journal = tmp_path / "out" / "sweep.jsonl"
+    asked = [sys.executable, "-m", "solver", "sweep", "bar", "--vary", "peak=300:900:2000"]
+    asked += ["--of", "iterations", "--on", doomed.on, "--out", str(journal.parent)]
+    try:
+        doomed.worker()
+        with started(asked) as running:
+            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
+            doomed.end()
+            assert running.wait() == 1
+    finally:
+        doomed.end()
+    said = capfd.readouterr()
+    assert "does not answer any more; the same command goes on from here" in said.err
+    assert "Traceback" not in said.err
+    assert "of 2000 runs" in said.out
+
+
+def test_workers_of_other_versions_are_refused(pool: Pool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("solver.study.sweep.drive.versions", lambda: "numpy 1.0")
+    with pytest.raises(VersionsDifferError, match=points.versions()):
+        rows_of(tiny(["peak=300,900"], ["iterations"]), pool)
+
+
+@pytest.mark.parametrize("on", ["dask://127.0.0.1:9", "dask://nowhere", "dask://:x"])
+def test_a_cluster_that_does_not_answer_is_refused_in_a_line(
+    on: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("solver.study.cluster.PATIENCE", 0.5)
+    with pytest.raises(SettingError, match="a Dask scheduler that answers") as refusal:
+        opened(on).__enter__()
+    assert len(str(refusal.value).splitlines()) == 1
+
+
+def test_without_distributed_a_cluster_is_refused_in_a_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    monkeypatch.delitem(sys.modules, "solver.study.cluster", raising=False)
+    with pytest.raises(SettingError, match=r"pip install 'slipfront\[cluster\]'"):
+        opened("dask://127.0.0.1:9").__enter__()

@@ -1,0 +1,107 @@
+"""Every term of the page has one line, and every line a term that the page uses."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pages import ENDLESS, Visit, iteration, status
+from playwright.sync_api import expect
+from studios import SMALL, Shown, keys
+
+from app.glossary import TERMS, explained, line_of
+from app.views.catalogue import fitting
+from app.worker.words import HEADS
+
+ROOT = Path(__file__).resolve().parents[1]
+TERM = re.compile(r'<abbr tabindex="0">(.*?)</abbr>')
+PLAIN = re.compile(
+    r"A|B|pressure p|friction|thickness not to scale|von Mises|chosen|now|\d.*|.*, [\d.]+ \S+|"
+    r"(xx|yy|xy)|\S+ (on|off|\d\S*).*"
+)
+"""Names in legends that say all: letters of runs, quantities with their value, numbers of wires."""
+
+
+def legends(scene: str, **changes: Any) -> set[str]:
+    """Give all names in the legends of a scene, of a run with one before it."""
+    shown = Shown()
+    values = {**SMALL[scene], **changes}
+    shown.run(1, scene, values)
+    shown.run(2, scene, {**values, "friction": 0.25})
+    seen = shown.scene()
+    return {name for view in fitting(seen.run.settings) for name in keys(view.draw(seen, None))}
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes"), [*((name, {}) for name in SMALL), ("bar", {"linear_stage": "pgd"})]
+)
+def test_every_name_in_a_legend_has_a_line(scene: str, changes: dict[str, Any]) -> None:
+    names = legends(scene, **changes)
+    assert names
+    assert [one for one in names if not (TERM.search(explained(one)) or PLAIN.match(one))] == []
+
+
+def strings(file: Path) -> str:
+    """Give all strings of a program that are no docstrings."""
+    tree = ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+    nodes = [node for node in tree if not isinstance(node, ast.Expr)]
+    found = (one for node in nodes for one in ast.iter_child_nodes(node))
+    return " ".join(
+        one.value for one in found if isinstance(one, ast.Constant) and isinstance(one.value, str)
+    )
+
+
+def test_every_key_figure_has_a_line() -> None:
+    assert all(line_of(head) for head in HEADS)
+
+
+def test_every_term_stands_on_the_page() -> None:
+    files = {file for folder in ("app", "solver") for file in (ROOT / folder).rglob("*.py")}
+    said = " ".join(map(strings, files - {ROOT / "app" / "glossary.py"})).lower()
+    assert [one for spellings in TERMS for one in spellings if one.lower() not in said] == []
+
+
+def test_no_two_terms_are_spelt_alike() -> None:
+    spelt = [one.lower() for spellings in TERMS for one in spellings]
+    assert len(spelt) == len(set(spelt))
+
+
+def test_a_term_is_marked_where_it_first_stands_and_nowhere_inside_another_or_a_tag() -> None:
+    text = '<i class="mode">two modes</i> of the k-free indicator, a mode, an indicator, a model'
+    assert TERM.findall(explained(text)) == ["modes", "k-free indicator", "indicator"]
+    assert TERM.sub(r"\1", explained(text)) == text
+
+
+def test_a_term_in_the_plural_has_its_line_too() -> None:
+    assert line_of("Modes") == line_of("mode")
+    assert line_of("model") == ""
+
+
+def test_a_term_says_its_line_to_a_pointer_to_the_focus_and_in_the_list(open_page: Visit) -> None:
+    page = open_page("?elements=20&substructures=2&instants=11")
+    expect(status(page)).to_contain_text("✓ converged")
+    note = page.get_by_role("tooltip")
+    page.locator(".figures abbr", has_text="k-free indicator").hover()
+    expect(note).to_have_text(line_of("k-free indicator"))
+    term = page.locator(".title abbr", has_text="closed form")
+    term.focus()
+    expect(note).to_have_text(line_of("closed form"))
+    expect(term).to_have_attribute("aria-description", line_of("closed form"))
+    page.keyboard.press("Escape")
+    expect(note).to_be_hidden()
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_contain_text(line_of("singular value"))
+
+
+def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
+    page = open_page(f"?elements=20&substructures=2&instants=11&{ENDLESS}")
+    expect(status(page)).to_contain_text("running")
+    page.locator(".figures abbr", has_text="Run time").focus()
+    before = iteration(page)
+    while iteration(page) < before + 5:
+        page.wait_for_timeout(100)
+    expect(page.get_by_role("tooltip")).to_have_text(line_of("run time"))
+    expect(page.locator(".figures abbr", has_text="Run time")).to_be_focused()
