@@ -20,7 +20,7 @@ from app.pulse import Pulse
 from app.question import Question
 from app.session import Session
 from app.sidebar import Sidebar
-from app.stage import EMBED, Stage
+from app.stage import EMBED, PRESENT, Stage
 from app.tabs import Tabs
 from app.takeaway import Saver
 from app.teaching import Teaching
@@ -260,6 +260,7 @@ class Dashboard:
         view = [self._stage.view] if self._stage.is_bare else []
         self._live.css_classes = ["live", *view, *lesson]
         self._stage.magnify(has_lesson=bool(lesson))
+        self._teaching.view.is_strip = self._stage.view == PRESENT
         self._phone.dress(is_bare=self._stage.is_bare)
 
     def _on_lesson(self) -> None:

@@ -1,4 +1,5 @@
-// Shows what a term means beside it, while a pointer or the focus is on it.
+// Shows what a term means beside it, while a pointer or the focus is on it; and what a control is
+// for, while it has the focus of a keyboard: a pointer sees its title.
 function glossary(terms) {
   const spelt = terms.flatMap(([all, line]) => all.map((one) => [one.toLowerCase(), line]))
   const lines = new Map(spelt), note = document.createElement("div")
@@ -12,10 +13,12 @@ function glossary(terms) {
   const written = (term) => term.textContent.toLowerCase()
   const line = (term) => lines.get(written(term)) ?? lines.get(written(term).replace(/s$/, ""))
   const met = (event) => event.composedPath().find((one) => one.tagName === "ABBR")
+  const helped = (event) => event.composedPath()[0].matches(":focus-visible") &&
+    event.composedPath().find((one) => one.title && /\bsetting-/.test(one.className))
   const hide = () => { note.style.display = "none" }
-  const show = (term) => {
-    note.textContent = line(term) ?? ""
-    note.style.display = note.textContent ? "block" : "none"
+  const show = (term, text = line(term) ?? "") => {
+    note.textContent = text
+    note.style.display = text ? "block" : "none"
     const {left, top, bottom} = term.getBoundingClientRect()
     const {offsetWidth: wide, offsetHeight: tall} = note
     note.style.left = `${Math.max(Math.min(left, window.innerWidth - wide - 8), 8)}px`
@@ -38,6 +41,11 @@ function glossary(terms) {
   const enter = (event) => {
     const term = met(event), was = focused
     focused = term ?? null
+    const control = term ? null : helped(event)
+    if (control) {
+      event.composedPath()[0].ariaDescription = control.title
+      return show(control, control.title)
+    }
     if (!term) { return hide() }
     home = term.getRootNode()
     term.ariaDescription = line(term)
@@ -55,7 +63,11 @@ function glossary(terms) {
     })
   }
   const escape = (event) => { if (event.key === "Escape") { hide() } }
-  const listeners = {pointerover: over, focusin: enter, focusout: leave, keydown: escape}
+  // From one to another in the same component, nobody outside hears of the focus.
+  const moved = (event) => { if (event.key === "Tab") { enter(event) } }
+  const listeners = {
+    pointerover: over, focusin: enter, focusout: leave, keydown: escape, keyup: moved,
+  }
   for (const [name, does] of Object.entries(listeners)) { document.addEventListener(name, does) }
   return () => {
     note.remove()

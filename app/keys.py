@@ -19,6 +19,7 @@ KEYS = (
     ("ArrowRight", "→", "the next instant"),
     ("Shift+ArrowLeft", "Shift ←", "the iteration before"),
     ("Shift+ArrowRight", "Shift →", "the next iteration"),
+    ("", "Page ↓ ↑", "the next and the last part of a lesson, in presenter view"),
     ("p", "p", "presenter view, for a projector, and back"),
     ("f", "f", "one plot on the whole page: that with the pointer or the focus; Escape: back"),
     ("+", "+ −", "zoom in and out of that plot; so does the wheel with Ctrl"),

@@ -2,7 +2,7 @@ export function render({model}) {
   const {make, tell, kinds} = controls(model)
   const LESSON = "the-lesson", CHOICE = "the-choice", COUNT = "the-count", SEEN = "slipfront-lessons-seen"
   const root = make("section", {ariaLabel: "Lesson"})
-  let rows = new Map(), places = []
+  let rows = new Map(), places = [], taught_last = "", step = 0, turn = () => {}
   // A browser may refuse to keep anything.
   const seen = () => { try { return localStorage.getItem(SEEN) } catch { return null } }
   const see = () => { try { localStorage.setItem(SEEN, "yes") } catch {} }
@@ -82,18 +82,41 @@ export function render({model}) {
     name ? [button(`Next: ${title}`, () => open(name), {className: "main"})] : []
   const leave = () => button("Explore freely", () => open(""),
     {title: "Leave the lesson: all controls, and the run as it is."})
+  // In front of a class one thing is said at a time, in a type for the back row.
+  const is_strip = () => model.is_strip && matchMedia("(min-width: 1001px)").matches
+  const folded = (text) => make("details", {}, make("summary", {}, "What it is about"), ...text)
   const taught = (lesson) => {
     const heads = [make("small", {}, lesson.place), make("h2", {}, lesson.title)]
     const text = paragraphs(lesson.text)
     const question = make("p", {className: "question"}, lesson.question)
     if (lesson.choice === undefined) {
       const ends = lesson.follows ? [] : [skip(), leave()]
-      return [...heads, ...text, question, choices(lesson), ...polled(lesson), ...ends]
+      const asked = [question, choices(lesson), ...polled(lesson), ...ends]
+      return is_strip() ? [...heads, ...asked, folded(text)] : [...heads, ...text, ...asked]
     }
-    const before = make("details", {}, make("summary", {}, "What it is about"), ...text)
     const ends = lesson.follows ? [] : [...go_on(lesson.next), leave()]
-    return [...heads, before, question, ...counts(lesson), verdict(lesson),
-      ...paragraphs(lesson.explanation), ...ends]
+    const told = paragraphs(lesson.explanation), votes = counts(lesson), answer = verdict(lesson)
+    if (!is_strip()) {
+      return [...heads, folded(text), question, ...votes, answer, ...told, ...ends]
+    }
+    const first = votes.length ? [[question, ...votes], [answer]] : [[question, answer]]
+    const last = ends.length ? [make("p", {}, ...ends)] : []
+    return strip([...first, ...told.map((one) => [one]), ...last.map((one) => [one])])
+  }
+  const strip = (parts) => {
+    const boxes = parts.map((part) => make("div", {}, ...part)), end = boxes.length - 1
+    const back = button("‹", () => turn(-1), {ariaLabel: "Back", title: "Back (Page ↑)."})
+    const on = button("›", () => turn(1), {ariaLabel: "Go on", title: "Go on (Page ↓)."})
+    const place = make("span")
+    turn = (by) => {
+      step = Math.min(Math.max(step + by, 0), end)
+      boxes.forEach((box, number) => { box.hidden = number !== step })
+      back.disabled = step === 0
+      on.disabled = step === end
+      place.textContent = `${step + 1} of ${boxes.length}`
+    }
+    turn(0)
+    return [...boxes, make("nav", {ariaLabel: "Parts of the lesson"}, back, place, on)]
   }
   const offer = () => {
     const list = model.offered.map(([name, title, question]) =>
@@ -111,7 +134,12 @@ export function render({model}) {
     const {lesson} = model, was_asked = root.querySelector(".choices") !== null
     rows = new Map()
     places = []
-    const now = lesson.title ? [make("article", {}, ...taught(lesson))] : seen() ? [] : [offer()]
+    turn = () => {}
+    if (lesson.title !== taught_last || lesson.choice === undefined) { step = 0 }
+    taught_last = lesson.title
+    const className = is_strip() ? "strip" : ""
+    const now = lesson.title
+      ? [make("article", {className}, ...taught(lesson))] : seen() ? [] : [offer()]
     root.replaceChildren(...now)
     show()
     fill()
@@ -128,7 +156,17 @@ export function render({model}) {
     const texts = new Map(model.values)
     for (const [name, place] of places) { place.innerHTML = texts.get(name) ?? "…" }
   }
+  // These are what a presenter's remote control sends.
+  const press = (event) => {
+    const by = {PageDown: 1, PageUp: -1}[event.key]
+    if (!by || !root.querySelector(".strip nav")) { return }
+    event.preventDefault()
+    turn(by)
+  }
+  document.addEventListener("keydown", press)
+  model.on("remove", () => document.removeEventListener("keydown", press))
   model.on("lesson", build)
+  model.on("is_strip", build)
   model.on("poll", build)
   model.on("shown", show)
   model.on("values", fill)

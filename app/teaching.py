@@ -22,7 +22,7 @@ CHOICE, COUNT = "the-choice", "the-count"
 """Messages that tell what was predicted, and that all may see how often; they name no setting."""
 OWN_STYLE = """
 :host { font-size: var(--prose, 15px); line-height: 1.45; }
-h2 { margin: 0 0 6px; font-size: 20px; line-height: 1.25; }
+h2 { margin: 0 0 6px; font-size: max(20px, 1.15em); line-height: 1.25; }
 p { margin: 8px 0; }
 article { padding: 2px 10px 10px; }
 summary { margin: 4px 0; }
@@ -49,6 +49,16 @@ sup { line-height: 0; }
 .control input[type=range] { width: 200px; max-width: 100%; margin: 0 0 4px; }
 .control select { display: inline-block; width: auto; margin: 2px 0; }
 .control label { display: inline-block; margin-right: 6px; white-space: nowrap; }
+.strip { padding: 4px 44px 4px 10px; }
+.strip:has(nav) { display: flex; align-items: start; gap: 20px; }
+.strip > div { flex: 1; }
+.strip > div[hidden] { display: none; }
+.strip p { margin: 0 0 6px; }
+.strip .control input[type=range] { width: 260px; }
+.strip .counts { display: flex; flex-wrap: wrap; gap: 4px 12px; margin: 0; }
+nav { white-space: nowrap; }
+nav span { margin: 0 8px 0 0; }
+nav button:disabled { opacity: 0.4; }
 .offer { display: flex; align-items: start; padding: 0 10px; font-size: 14px; line-height: 1.3; }
 .offer details { flex: 1; }
 .offer summary { margin: 2px 0; }
@@ -77,6 +87,8 @@ class LessonPane(JSComponent):
     poll
         What the class predicts: whether this page `leads` it, how many have `predicted` and `of`
         how many, and the `counts` of all choices once they are to be seen; empty without a class.
+    is_strip
+        Whether one thing is said at a time, for a projector.
     recalls
         Whether what was predicted before a page was loaded again holds on; the browser knows it.
     """
@@ -86,6 +98,7 @@ class LessonPane(JSComponent):
     shown = param.Dict(default={})
     values = param.List(default=[])
     poll = param.Dict(default={})
+    is_strip = param.Boolean(default=False)
     recalls = param.Boolean(default=False)
 
     _esm = script("values.js", "points.js", "controls.js", "lesson.js")

@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pages import ENDLESS, Visit, iteration, status
+from pages import ENDLESS, Visit, iteration, slider, status
 from playwright.sync_api import expect
 from studios import SMALL, Shown, keys
 
 from app.glossary import TERMS, explained, line_of
 from app.views.catalogue import fitting
 from app.worker.words import HEADS
+from solver.scenes.bar import BarSettings
 
 ROOT = Path(__file__).resolve().parents[1]
 TERM = re.compile(r'<abbr tabindex="0">(.*?)</abbr>')
@@ -105,3 +106,21 @@ def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
         page.wait_for_timeout(100)
     expect(page.get_by_role("tooltip")).to_have_text(line_of("run time"))
     expect(page.locator(".figures abbr", has_text="Run time")).to_be_focused()
+
+
+def test_what_a_control_is_for_is_said_to_the_keyboard(open_page: Visit) -> None:
+    page = open_page("?elements=20&substructures=2&instants=11")
+    expect(status(page)).to_contain_text("✓ converged")
+    help_of = {name: one.doc for name, one in BarSettings.definitions().items()}
+    note = page.get_by_role("tooltip")
+    slider(page, "Peak load").focus()
+    for _ in range(4):
+        page.keyboard.press("Tab")
+        place = page.locator(".sidebar [class*=setting-]").filter(has=page.locator(":focus"))
+        name = (place.get_attribute("class") or "").removeprefix("setting-")
+        expect(note).to_contain_text(help_of[name])
+        expect(place.locator("input:focus, select:focus")).to_have_attribute(
+            "aria-description", re.compile(re.escape(help_of[name]))
+        )
+    page.mouse.click(640, 300)
+    expect(note).to_be_hidden()

@@ -90,13 +90,13 @@ def _length(size: float) -> str:
 
 SPACE_MODES = View(
     "PGD space modes",
-    Plot(POSITION, "Share of the largest displacement"),
+    Plot(POSITION, "Displacement / largest"),
     draw_space,
     applies_in_space,
 )
 TIME_FUNCTIONS = View(
     "PGD time functions",
-    Plot("Time t (s)", "Share of the largest value"),
+    Plot("Time t (s)", "Value / largest"),
     draw_time,
     applies_in_time,
 )
