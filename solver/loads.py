@@ -14,7 +14,8 @@ NO_LOAD = 1e-14
 """What rounding makes of a whole number of half waves, where a load vanishes."""
 DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
 HELD = 0.25
-"""Share of the interval after which "hold" stays where it is and "delayed" begins its sine."""
+"""Share of the interval after which "hold" stays where it is, and "delayed" and "cycles" begin."""
+CYCLES = 6
 
 
 def interpolate(points: Pairs | Array, where: Array) -> Array:
@@ -43,14 +44,16 @@ def _sine(phase: Array) -> Array:
     return np.where(np.abs(found) < NO_LOAD, 0.0, found)
 
 
-def _delayed(phase: Array, _seed: int) -> Array:
-    return np.where(phase > HELD, _sine((phase - HELD) / (1.0 - HELD)), 0.0)
+def _after_hold(phase: Array) -> Array:
+    return np.maximum(phase - HELD, 0.0) / (1.0 - HELD)
 
 
 def _pulsating(phase: Array) -> Array:
     return _sine(phase) ** 2
 
 
+_cycles = _polyline(np.array([0.0, *[1.0, 0.0, -1.0, 0.0] * CYCLES]))
+_pulls = _polyline(np.array([0.0, *[1.0, 0.0] * CYCLES]))
 PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "ramp": _polyline(np.array([0.0, 1.0])),
     "triangle": _polyline(np.array([0.0, 1.0, 0.0])),
@@ -59,7 +62,8 @@ PRESETS: dict[str, Callable[[Array, int], Array]] = {
     "decaying": _polyline(np.concatenate([[0.0], DECAY, [0.0]])),
     "random": _random_walk,
     "hold": lambda phase, seed: np.minimum(phase / HELD, 1.0),
-    "delayed": _delayed,
+    "delayed": lambda phase, seed: _sine(_after_hold(phase)),
+    "cycles": lambda phase, seed: _cycles(_after_hold(phase), seed),
 }
 
 PULLS: dict[str, Callable[[Array, int], Array]] = {
@@ -70,7 +74,8 @@ PULLS: dict[str, Callable[[Array, int], Array]] = {
     "decaying": _polyline(np.concatenate([[0.0], 0.5 + 0.5 * DECAY, [0.0]])),
     "random": lambda phase, seed: np.abs(_random_walk(phase, seed)),
     "hold": PRESETS["hold"],
-    "delayed": lambda phase, seed: _pulsating(np.maximum(phase - HELD, 0.0) / (1.0 - HELD)),
+    "delayed": lambda phase, seed: _pulsating(_after_hold(phase)),
+    "cycles": lambda phase, seed: _pulls(_after_hold(phase), seed),
 }
 """Presets that never push, for what carries tension alone."""
 

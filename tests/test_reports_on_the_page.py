@@ -1,4 +1,4 @@
-"""Reports on the page are those of the command line, as they grow, and are named by what differs."""
+"""Reports on the page are those of the command line, and are named by what differs."""
 
 from __future__ import annotations
 
