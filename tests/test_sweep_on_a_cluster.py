@@ -17,6 +17,7 @@ from sweeps import rows_of, tiny
 
 from solver.cli import main
 from solver.definitions import SettingError
+from solver.study.cluster import Caller
 from solver.study.executors import opened
 from solver.study.pool import Pool
 from solver.study.sweep import VersionsDifferError, sweep
@@ -159,6 +160,14 @@ def test_a_cluster_that_does_not_answer_is_refused_in_a_line(
     with pytest.raises(SettingError, match="a Dask scheduler that answers") as refusal:
         opened(on).__enter__()
     assert len(str(refusal.value).splitlines()) == 1
+
+
+def test_a_client_that_finds_no_scheduler_is_left_closed() -> None:
+    for address in ("127.0.0.1:9", "nowhere", ":x"):
+        client = Caller.__new__(Caller)
+        with pytest.raises((OSError, ValueError)):
+            client.__init__(f"tcp://{address}", timeout=0.5, set_as_default=False)
+        assert client.status in ("closed", "newly-created")
 
 
 def test_without_distributed_a_cluster_is_refused_in_a_line(

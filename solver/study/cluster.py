@@ -22,6 +22,21 @@ FRESH = 1.0
 """Seconds for which the number of workers is taken for known."""
 
 
+class Caller(Client):
+    """A client that is closed where it finds no scheduler.
+
+    One that was left open is closed when its memory is collected. If that is while another client
+    is made, both wait for the same lock, for ever.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        try:
+            super().__init__(*args, **kwargs)  # type: ignore[no-untyped-call]
+        except (OSError, ValueError):
+            self.close()
+            raise
+
+
 class Cluster(Pool):
     """Workers of a scheduler, which come and go; those that are lost have their calls done again.
 
@@ -34,7 +49,7 @@ class Cluster(Pool):
     def __init__(self, address: str) -> None:
         self._address = address
         try:
-            self._client = Client(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
+            self._client = Caller(f"tcp://{address}", timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as problem:
             answers = "the HOST:PORT of a Dask scheduler that answers"
             reason = f"{type(problem).__name__}: {problem}".splitlines()[0]

@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 import statistics
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from solver.definitions import SettingError
-from solver.reference.choice import reference_of
-from solver.reference.distance import distance_to
-from solver.scenes import discretise, entry_of
+from solver.scenes import entry_of
 from solver.settings import Settings
-from solver.study.error_against_time import INCREMENTAL, by_increments, course_of, forms_of
+from solver.study.error_against_time import INCREMENTAL, by_increments, forms_of
 from solver.study.exponent import Exponent, exponent_of
 from solver.study.progress import Tell, silent
+from solver.study.quantities import reading
+from solver.study.survey import BROKEN, REFUSED
+from solver.study.sweep.plan import Axis, Plan
+from solver.study.sweep.point import run_point
 
 MEASURED = (
     "LATIN multiscale",
     "LATIN auto k, nested, Anderson",
     "LATIN auto k, Anderson",
 )
-LEVEL = 0.01
-"""Error of the friction force up to which iterations are counted."""
+READINGS = tuple(
+    map(reading, ("seconds_per_iteration", "seconds_to_force@0.01", "iterations_to_force@0.01"))
+)
+LONG: dict[str, Any] = {"accuracy": 1e-3, "max_iterations": 300}
+"""So that the friction force comes as near as that in all runs that can."""
 
 
 @dataclass(frozen=True)
@@ -57,35 +66,39 @@ class Growth:
 
 
 def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
-    """Measure all sizes; those that the scene cannot have are left out."""
-    found: dict[tuple[str, str], list[Size]] = {}
+    """Measure all sizes, those of LATIN by a sweep; sizes that a scene cannot have are left out."""
     sizes_of = entry_of(settings).sizes
-    every = [(setting, size) for setting, sizes in sizes_of.items() for size in sizes]
-    for number, (setting, size) in enumerate(every):
-        tell(f"Growth: {size} {setting}", number / len(every))
-        try:
-            changed = settings.replace(**{setting: size})
-        except SettingError:
-            continue
-        for method, measured in _one_size(changed, size).items():
-            found.setdefault((setting, method), []).append(measured)
-    return [Growth(setting, method, tuple(sizes)) for (setting, method), sizes in found.items()]
-
-
-def _one_size(settings: Settings, size: int) -> dict[str, Size]:
-    problem = discretise(settings)
-    distance = distance_to(reference_of(problem), problem)
-    seconds = statistics.median(by_increments(settings) for _ in range(3))
-    found = {INCREMENTAL: Size(size, seconds, None, seconds)}
-    for method, form in forms_of(settings).items():
-        if method not in MEASURED:
-            continue
-        course = course_of(method, form, distance, LEVEL)
-        reached = course.reached(LEVEL)
-        found[method] = Size(
-            size,
-            course.seconds_per_iteration or float(course.seconds[0]),
-            int(reached[1]) if reached else None,
-            reached[0] if reached else None,
-        )
+    forms = {name: form for name, form in forms_of(settings).items() if name in MEASURED}
+    every = [(setting, method) for setting in sizes_of for method in (INCREMENTAL, *forms)]
+    found = []
+    for number, (setting, method) in enumerate(every):
+        tell(f"Growth: {method} over {setting}", number / len(every))
+        if method in forms:
+            measured = _swept(forms[method], setting, sizes_of[setting])
+        else:
+            measured = _solved(settings, setting, sizes_of[setting])
+        if sizes := tuple(measured):
+            found.append(Growth(setting, method, sizes))
     return found
+
+
+def _swept(form: Settings, setting: str, sizes: tuple[int, ...]) -> Iterator[Size]:
+    """Measure a form of LATIN, one run after the other: others beside them would slow them down."""
+    plan = Plan(form.replace(**LONG), (Axis(setting, sizes, logarithmic=True),), READINGS)
+    for number, size in enumerate(sizes):
+        row = run_point(plan, number)
+        if row.ending not in (REFUSED, BROKEN):
+            seconds, total, iterations = row.values
+            reached = math.isfinite(iterations)
+            yield Size(
+                size, seconds, int(iterations) if reached else None, total if reached else None
+            )
+
+
+def _solved(settings: Settings, setting: str, sizes: tuple[int, ...]) -> Iterator[Size]:
+    """Measure the incremental solver, which has no iterations to count."""
+    for size in sizes:
+        with contextlib.suppress(SettingError):
+            changed = settings.replace(**{setting: size})
+            seconds = statistics.median(by_increments(changed) for _ in range(3))
+            yield Size(size, seconds, None, seconds)

@@ -41,6 +41,12 @@ def recorded(name: str) -> Callable[[FinishedRun, float | None], float]:
     return of
 
 
+def seconds_per_iteration(run: FinishedRun, at: float | None) -> float:
+    """Give the median time between two iterations, s; that of the only one with its set-up."""
+    seconds = [one.seconds for one in run.solution.records]
+    return float(np.median(np.diff(seconds) if len(seconds) > 1 else seconds or [math.nan]))
+
+
 def until(column: str, error: str) -> Callable[[FinishedRun, float | None], float]:
     """Make the reading of what a run spends until an error is as small as it is asked to be."""
 

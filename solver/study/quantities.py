@@ -149,6 +149,13 @@ def _until(name: str, title: str, column: str, error: str, unit: str = "") -> Qu
 _ALL = (
     Quantity("iterations", "Iterations", "", lambda run, at: run.iterate.number, is_of_course=True),
     Quantity("seconds", "Run time", "s", measures.recorded("seconds"), is_of_course=True),
+    Quantity(
+        "seconds_per_iteration",
+        "Run time of an iteration",
+        "s",
+        measures.seconds_per_iteration,
+        is_of_course=True,
+    ),
     Quantity("memory", "Memory at its peak", "B", measures.memory, is_of_course=True),
     _recorded("indicator", "LATIN indicator", "indicators"),
     _recorded("behaviour", "k-free indicator", "indicators"),
@@ -233,11 +240,7 @@ _ALL = (
     ),
     Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
     Quantity(
-        "slipped_share",
-        "Share of the points that slip",
-        "",
-        measures.slipped_share,
-        is_share=True,
+        "slipped_share", "Share of the points that slip", "", measures.slipped_share, is_share=True
     ),
     Quantity("first_slip_time", "Time of the first slip", "s", measures.first_slip_time, SHARE),
     Quantity(
