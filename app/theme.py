@@ -7,6 +7,9 @@ TEMPLATE = """
 {% block preamble %}
 {{ super() }}
 <script>
+  // Panel has modules read by a library; a browser that can do it by itself is quicker (0.25 s).
+  self.esmsInitOptions = {shimMode: false}
+  document.addEventListener("DOMContentLoaded", () => { importShim.addImportMap = () => {} });
   (() => {
     const root = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)")
     const kept = () => { try { return localStorage.getItem("theme") } catch { return null } }

@@ -1,4 +1,4 @@
-"""Every control of bar and strand moves to both ends and back, and the page lives with it."""
+"""Every control of bar and strand moves to an end and back, and the page lives with it."""
 
 from __future__ import annotations
 

@@ -69,20 +69,14 @@ def test_the_stability_table_fills_row_by_row_and_can_be_filtered(page: Page) ->
     expect(page.get_by_text(re.compile("runs pass"))).to_be_visible()
 
 
-def test_the_papers_figures_are_shown_and_the_live_run_comes_back(page: Page) -> None:
+def test_the_papers_figures_are_drawn_in_the_dark_theme_say_their_values_and_can_be_left(
+    page: Page,
+) -> None:
+    theme = page.get_by_role("button", name="Toggle theme")
+    theme.click()
     press(page, "Figures")
     expect(page.get_by_text("Fig. 8").first).to_be_visible()
     expect(page.locator(".plots").first).to_be_hidden()
-    press(page, "Live")
-    expect(page.locator(".plots").first).to_be_visible()
-    expect(page.get_by_text("Fig. 8").first).to_be_hidden()
-
-
-def test_what_is_drawn_later_follows_the_dark_theme_and_shows_its_values(open_page: Visit) -> None:
-    page = open_page(TINY)
-    expect(status(page)).to_contain_text("iteration")
-    page.get_by_role("button", name="Toggle theme").click()
-    press(page, "Figures")
     page.wait_for_function(
         """() => {
           const models = [...Bokeh.documents[0].all_models]
@@ -105,18 +99,15 @@ def test_what_is_drawn_later_follows_the_dark_theme_and_shows_its_values(open_pa
     )
     page.mouse.move(*place)
     expect(page.locator(".bk-Tooltip").first).to_contain_text("friction force, multiscale")
-
-
-def test_no_plot_of_the_run_covers_the_dark_page(open_page: Visit) -> None:
-    page = open_page(TINY)
-    expect(status(page)).to_contain_text("iteration")
-    page.get_by_role("button", name="Toggle theme").click()
-    expect(page.locator(".card canvas").first).to_be_visible()
+    press(page, "Live")
+    expect(page.locator(".plots").first).to_be_visible()
+    expect(page.get_by_text("Fig. 8").first).to_be_hidden()
     corners = page.locator(".card canvas").evaluate_all(
         """(all) => all.map(
           (one) => one.getContext("2d")?.getImageData(1, one.height - 2, 1, 1).data[3])"""
     )
     assert set(corners) == {0}
+    theme.click()
 
 
 def test_the_live_tab_says_that_its_run_waits_and_a_cancelled_study_lets_it_go_on(

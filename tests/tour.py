@@ -1,4 +1,4 @@
-"""A tour of all controls of a scene: each is moved to both ends and back, wherever it applies."""
+"""A tour of all controls of a scene: each is moved to its ends and back, wherever it applies."""
 
 from __future__ import annotations
 
@@ -104,6 +104,13 @@ def ends(settings: Settings, name: str) -> list[Any]:
     """Give the first and the last of all values."""
     values = all_values(settings, name)
     return [values[0], values[-1]]
+
+
+def one_end(settings: Settings, name: str) -> list[Any]:
+    """Give the first or the last of all values, now the one and now the other; where it moves."""
+    place = list(settings.definitions()).index(name) % 2
+    chosen, other = ends(settings, name)[:: (-1) ** place]
+    return [other if chosen == getattr(settings, name) else chosen]
 
 
 def farthest(settings: Settings, name: str, end: Any) -> Any:
