@@ -123,6 +123,15 @@ def test_the_more_pages_ask_the_fewer_processes_each_of_them_has(
     assert part_of(on, users) == part
 
 
+@pytest.mark.parametrize(("there", "taken"), [(1, 1), (2, 2), (3, 2), (8, 7)])
+def test_a_processor_is_left_to_the_pages_where_there_are_more_than_two(
+    there: int, taken: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.inquiry.processors", lambda: there)
+    assert part_of("processes", 1) == f"processes:{taken}"
+    assert part_of("processes", 8) == "processes:1"
+
+
 def test_a_closed_page_ends_its_sweep(session: Session) -> None:
     lender = Lender()
     session.inquiry._lent = lender.lent
