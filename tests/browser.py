@@ -37,8 +37,8 @@ FLAGS = [
 
 
 def chromium() -> str:
-    """Find the system's Chromium, best without the windows that nobody sees."""
-    for name in ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"):
+    """Find the system's Chromium."""
+    for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
             return path
     pytest.fail("the page tests need Chromium: apt-get install chromium", pytrace=False)

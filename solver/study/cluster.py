@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from asyncio import CancelledError
 from collections.abc import Callable, Iterator
@@ -20,6 +21,10 @@ PATIENCE = 10.0
 """Seconds that a scheduler has to answer."""
 FRESH = 1.0
 """Seconds for which the number of workers is taken for known."""
+
+
+# A scheduler that is gone is told in a line; the client logs it with its traceback besides.
+logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
 
 
 class Caller(Client):
