@@ -7,11 +7,10 @@ import time
 from asyncio import CancelledError
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from distributed import Client
-from distributed.comm.core import CommClosedError
 from distributed.scheduler import KilledWorker
 
 from solver.definitions import SettingError
@@ -88,8 +87,10 @@ class Cluster(Pool):
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; it forgets what is not done yet if futures are to be cancelled."""
-        self._executor.shutdown(wait=wait and not cancel_futures)
-        self._client.close()
+        # One that is gone takes no leave.
+        with suppress(OSError, RuntimeError, CancelledError):
+            self._executor.shutdown(wait=wait and not cancel_futures)
+            self._client.close()
 
 
 class Remote(Future[Any]):
@@ -112,7 +113,7 @@ class Remote(Future[Any]):
         trouble = call.exception()
         if trouble is None:
             self.set_result(call.result())
-        elif isinstance(trouble, KilledWorker | CommClosedError):
+        elif isinstance(trouble, KilledWorker | OSError):
             self.set_exception(EndedError("its workers were lost"))
         else:
             self.set_exception(trouble)
