@@ -14,10 +14,16 @@ from processes import is_alive, wait_for
 from sweeps import Here, rows_of, tiny
 
 from solver.definitions import SettingError
+from solver.latin.status_step import states_of
+from solver.laws import OPEN
+from solver.reference.choice import incremental_solver, reference_of
+from solver.scenes import CATALOGUE, discretise
 from solver.study.executors import Processes, opened
+from solver.study.finished import finished_run
 from solver.study.pool import EndedError, OverdueError
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
+from solver.study.sweep.nearest import KEPT, Nearest
 from solver.study.sweep.point import field_file
 
 
@@ -79,12 +85,12 @@ def test_a_run_ends_itself_when_its_time_is_up() -> None:
         assert "--limit" in row.reason
 
 
-@pytest.mark.parametrize("scene", ["bar", "block", "strand"])
+@pytest.mark.parametrize("scene", CATALOGUE)
 def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> None:
-    changes = {"elements_up": 8} if scene == "block" else {}
-    plan = tiny(["friction=0.4:0.42:6"], ["peak_displacement", "dissipation"], scene, **changes)
+    changes = {"elements_up": 8} if "elements_up" in CATALOGUE[scene].settings.param else {}
+    plan = tiny(["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes)
     warm, cold = rows_of(plan), rows_of(plan, warm=False)
-    assert any(row.was_warm for row in warm)
+    assert sum(row.was_warm for row in warm) == 5
     assert not any(row.was_warm for row in cold)
     apart = np.array([row.values for row in warm]) - np.array([row.values for row in cold])
     assert (np.abs(apart) <= 1e-9 * np.abs([row.values for row in cold]).max(axis=0)).all()
@@ -96,9 +102,38 @@ def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of
     assert not any(row.was_warm for row in rows_of(plan))
 
 
-def test_a_neighbour_too_far_away_is_no_start() -> None:
-    plan = tiny(["peak=-900,900"], ["peak_displacement"])
-    assert not any(row.was_warm for row in rows_of(plan))
+def test_a_run_that_fits_no_other_starts_alone() -> None:
+    for vary in ("elements=12,24", "instants=11,21"):
+        assert not any(row.was_warm for row in rows_of(tiny([vary], ["peak_displacement"])))
+
+
+def test_the_nearest_run_is_the_start_and_the_oldest_are_forgotten() -> None:
+    nearest = Nearest((3, 4000))
+    assert nearest.to(5) is None
+    states = {number: np.full((1, 1), number % 100, np.int8) for number in (0, 3999, 4001, 8100)}
+    for number, one in states.items():
+        nearest.keep(number, one)
+    # one of 3 lines away is farther than 100 of 4000 places
+    assert nearest.to(10) is states[0]
+    assert nearest.to(8001) is states[8100]
+    for number in range(KEPT):
+        nearest.keep(4002 + number, states[0])
+    assert nearest.to(8100) is states[0]
+
+
+@pytest.mark.parametrize("scene", ["bar", "block"])
+def test_a_foolish_start_costs_little_and_changes_nothing(scene: str) -> None:
+    settings = tiny(["friction=0.4,0.5"], ["dissipation"], scene).settings
+    problem = discretise(settings)
+    right = reference_of(problem)
+    states = states_of(finished_run(settings).iterate)
+    foolish = np.where(states == OPEN, OPEN, 1).astype(np.int8)
+    for guess in (states, -foolish, foolish):
+        found = incremental_solver(problem).march(guess=guess)
+        assert found.contact_force == pytest.approx(
+            right.contact_force, abs=1e-9 * np.abs(right.contact_force).max()
+        )
+        assert found.steps <= right.steps + 3 * problem.n_instants
 
 
 def test_fields_are_kept_where_they_are_asked_for(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import math
 
 from solver.latin.changes import ForceChanges
 from solver.latin.iterate import Iterate
-from solver.latin.status_step import Certificate, StatusStep
+from solver.latin.status_step import Certificate, StatusStep, states_of
 from solver.latin.step_cost import Costs, costs_of
 from solver.reference.condensation import NoReferenceError
 from solver.settings import Settings
@@ -122,7 +122,7 @@ class ErrorEstimate:
         self._step = self._step or StatusStep(iterate.problem)
         try:
             systems = self._costs_of(iterate).systems(patience * iterate.number)
-            found = self._step(iterate, systems)
+            found = self._step(states_of(iterate), systems)
         except NoReferenceError:
             self._has_solver = False
             return False

@@ -18,29 +18,33 @@ MOST_STEPS = 60
 """Steps of the conjugate gradients, at most; the rows of one point are few, so a dozen suffice."""
 
 
-def finished(iterate: Iterate, certificate: Certificate) -> Iterate:
-    """Give the iterate after another one that a certified solution takes the place of.
+def finished(
+    problem: Problem, k: Array, certificate: Certificate, number: int = 1, seconds: float = 0.0
+) -> Iterate:
+    """Give the iterate that a certified solution is.
 
     Its linear and its local stage are the same fields, a fixed point of the method for every k.
 
     Parameters
     ----------
-    iterate
-        The one before.
-    certificate
-        The solution.
+    problem, certificate
+        What is solved, and the solution.
+    k
+        Search direction of the rows, shape (n_rows,), scaled, read-only.
+    number, seconds
+        As in `Iterate`.
     """
-    problem, scales = iterate.problem, iterate.problem.scales
+    scales = problem.scales
     displacement = certificate.displacement / scales.displacement
     force = row_forces(problem, displacement, certificate.contact_force / scales.force)
     moved = displacement[problem.row_dofs]
-    stretched = force / iterate.k[:, None]
+    stretched = force / k[:, None]
     outgoing, incoming, local = map(_frozen, (moved + stretched, moved - stretched, moved))
     return Iterate(
-        number=iterate.number + 1,
-        seconds=iterate.seconds,
+        number=number,
+        seconds=seconds,
         problem=problem,
-        k=iterate.k,
+        k=k,
         outgoing=outgoing,
         incoming=incoming,
         local_displacement=local,
@@ -114,9 +118,8 @@ def _balance(problem: Problem, displacement: Array) -> tuple[sparse.csr_array, A
     """
     rows, places, needed, size = [], [], [], 0
     for part in problem.substructures:
-        elasticity = part.elasticity
-        own, place = np.unique(elasticity.trace, return_inverse=True)
-        force = np.asarray(elasticity.stiffness[own] @ displacement[part.dofs])
+        own, place, stiffness = part.elasticity.boundary
+        force = np.asarray(stiffness @ displacement[part.dofs])
         if part.body_force is not None:
             force = force - part.body_force[own]
         needed.append(force)

@@ -68,13 +68,13 @@ class StatusStep:
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
 
-    def __call__(self, iterate: Iterate, most: int) -> Certificate | None:
-        """Try to certify what an iterate shows; None where its statuses are too far from right.
+    def __call__(self, states: States, most: int) -> Certificate | None:
+        """Try to certify states, mended; None where they are too far from right.
 
         Parameters
         ----------
-        iterate
-            Whose statuses to begin with.
+        states
+            To begin with, as `states_of` gives those of an iterate.
         most
             Linear systems that it may solve.
 
@@ -83,7 +83,7 @@ class StatusStep:
         NoReferenceError
             If the problem has no incremental solver, or none that is worth its size.
         """
-        found = self._solver.march(guess=states_of(iterate), most=most)
+        found = self._solver.march(guess=states, most=most)
         if not found.converged.all():
             return None
         distance = distance_to(found, self._problem)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -106,6 +106,13 @@ def agreement(tolerance: float) -> float:
     return min(max(VIOLATION * math.sqrt(tolerance), SMALLEST_VIOLATION), LARGEST_VIOLATION)
 
 
+def proven(finish: Iterate, certificate: Certificate | None, seconds: float) -> Verdict:
+    """Say of an iterate that is a certified solution that the run ends with it."""
+    residual = finish.residual or 0.0
+    status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
+    return Verdict(seconds, math.nan, None, residual, status, certificate)
+
+
 class StopRules:
     """When a run ends; they remember what they have seen, and what they cost.
 
@@ -157,7 +164,8 @@ class StopRules:
             return Verdict(seconds, indicator, behaviour, estimated, status_now, certificate)
         began = time.perf_counter()
         estimated = certificate.distance.of_friction_force(iterate)
-        finish = finished(iterate, certificate)
+        number, spent = iterate.number + 1, iterate.seconds
+        finish = finished(iterate.problem, iterate.k, certificate, number, spent)
         self._billed(iterate, began)
         return Verdict(seconds, indicator, behaviour, estimated, None, certificate, finish)
 
@@ -186,12 +194,9 @@ class StopRules:
 
     def close(self, finish: Iterate) -> Verdict:
         """Judge the certified solution that ends a run."""
-        seconds = finish.seconds + self.seconds
-        residual = finish.residual or 0.0
+        verdict = proven(finish, self._estimate.certificate, finish.seconds + self.seconds)
         behaviour = behaviour_indicator(finish)
-        status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
-        indicator = latin_indicator(finish)
-        return Verdict(seconds, indicator, behaviour, residual, status, self._estimate.certificate)
+        return replace(verdict, indicator=latin_indicator(finish), behaviour=behaviour)
 
     def _heed_change_of_k(self, iterate: Iterate) -> None:
         """Begin anew to look for the smallest indicator, which is measured by k."""

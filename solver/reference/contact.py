@@ -29,6 +29,7 @@ from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.contact_states import all_forces, states_at, status_of
 from solver.reference.residual import unbalanced_of
 from solver.reference.solution import Interrupted, Reference
+from solver.reference.starts import Starts
 from solver.reference.states import HELD, Response, Sides, States, rules_of
 from solver.reference.unloading import unload
 
@@ -97,8 +98,8 @@ class IncrementalContact:
         Parameters
         ----------
         guess
-            States from which every instant starts, stacked as `Problem.sum_of_contact` says, shape
-            (n_forces, n_instants); without them it starts from those of the instant before.
+            States from which an instant starts, stacked as `Problem.sum_of_contact` says, shape
+            (n_forces, n_instants), unless those of the instant before turn out to be better.
         most
             Linear systems to solve; the instants that are not reached then do not move, and are
             not `converged`.
@@ -190,7 +191,7 @@ class _Newton:
         self._condensed, self._rules = condensed, rules
         self._position, self._self_stress = np.zeros((2, len(rules.gap)))
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
-        self._guesses = guesses
+        self._guesses, self._starts = guesses, Starts()
         if guesses is not None:
             guesses[rules.smooth] = OPEN
         self._at_rest: States | None = None
@@ -208,6 +209,7 @@ class _Newton:
         stresses, load = condensed.stresses, condensed.load[:, instant]
         if self._is_at_rest(instant):
             return self._position, np.zeros_like(self._position)
+        done, from_guess = self.response.solutions, self._starts.from_guess
         for _ in range(PASSES):
             solved = self._solved(load - self._self_stress, instant)
             if solved is None:
@@ -220,6 +222,7 @@ class _Newton:
             if np.abs(pull).max(initial=0.0) <= TOGETHER * self._largest:
                 break
             self._self_stress = self._self_stress + pull
+        self._starts.took(self.response.solutions - done, from_guess=from_guess)
         self._position = jump
         return jump, force
 
@@ -237,7 +240,7 @@ class _Newton:
         sides = self._sides(load)
         guesses = [self._states]
         if self._guesses is not None:
-            guesses.insert(0, self._guesses[:, instant])
+            guesses.insert(0 if self._starts.from_guess else 1, self._guesses[:, instant])
         if self._at_rest is not None:
             # A body that falls, rolls or slides a long way touches elsewhere than one instant
             # before, or slips as a whole.

@@ -25,6 +25,7 @@ from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.band import Band, pairs
 from solver.reference.solution import Interrupted, Reference, States
+from solver.reference.starts import Starts
 
 NEWTON_LIMIT = 8
 """Steps from one guess of the statuses before a better one is sought."""
@@ -75,8 +76,8 @@ class IncrementalRod:
         Parameters
         ----------
         guess
-            Statuses from which every instant starts, shape (n_points, n_instants); without them it
-            starts from those of the instant before.
+            Statuses from which an instant starts, shape (n_points, n_instants), unless those of the
+            instant before turn out to be better.
         most
             Linear systems to solve; the instants that are not reached then do not move, and are
             not `converged`.
@@ -91,19 +92,21 @@ class IncrementalRod:
         start = time.perf_counter()
         structure = self._structure
         guesses = None if guess is None else structure.at_dofs(guess)
-        before = structure.band.solutions
+        solved, starts = structure.band.solutions, Starts()
         found: list[_Minimum] = []
         balance, status = np.zeros((2, self._problem.n_dofs))
         for instant in range(self._problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
-            if most is not None and structure.band.solutions - before >= most:
+            if most is not None and structure.band.solutions - solved >= most:
                 break
-            status = status if guesses is None else guesses[instant]
+            done, from_guess = structure.band.solutions, starts.from_guess
+            begin = guesses[instant] if guesses is not None and from_guess else status
             load = structure.load_steps[instant] + balance
-            found.append(structure.minimise(load, structure.moves[instant], status))
+            found.append(structure.minimise(load, structure.moves[instant], begin))
+            starts.took(structure.band.solutions - done, from_guess=from_guess)
             balance, status = found[-1].pull, found[-1].status
-        steps = structure.band.solutions - before
+        steps = structure.band.solutions - solved
         return self._gathered(found, steps, time.perf_counter() - start)
 
     def _gathered(self, found: list[_Minimum], steps: int, seconds: float) -> Reference:
@@ -218,14 +221,17 @@ class _Search:
         return self._newton(force, self.rubs * np.repeat(coarse.status, 2)[: len(force)])
 
     def _newton(self, force: Array, status: Array) -> _Guess:
+        largest = np.abs(force).max()
         for _ in range(NEWTON_LIMIT):
             increment = self._slip(force, status)
             pull = force - self._band.product(increment)
-            excess = np.abs(pull) - self._limit - self._rounding(force, increment)
+            limit = self._limit + self._rounding(largest, increment)
             corrected = np.where(
-                status != 0.0, status * (status * increment > 0.0), np.sign(pull) * (excess > 0.0)
+                status != 0.0,
+                status * (status * increment > 0.0),
+                np.sign(pull) * (np.abs(pull) > limit),
             )
-            if np.array_equal(corrected, status):
+            if (corrected == status).all():
                 return _Guess(status, (increment, pull))
             status = corrected
         return _Guess(status, None)
@@ -242,9 +248,9 @@ class _Search:
         keep = self._free + np.abs(status)
         return self._band.solve_kept(keep, keep * (force - self._bound * status))
 
-    def _rounding(self, force: Array, increment: Array) -> float:
-        size = self._band.largest_row * np.abs(increment).max() + np.abs(force).max()
-        return ROUNDING * float(size)
+    def _rounding(self, largest: float, increment: Array) -> float:
+        """Give what rounding leaves of a pull, where the largest force is given."""
+        return ROUNDING * float(self._band.largest_row * np.abs(increment).max() + largest)
 
     def _descend(self, force: Array, status: Array) -> Array:
         """Minimise phi by an active-set method, every step of which lowers phi.
@@ -253,6 +259,7 @@ class _Search:
         points, the point pulled most beyond its bound is released, and moves the way it is
         pulled. So no set of statuses has its minimum reached twice.
         """
+        largest = np.abs(force).max()
         increment = self._slip(force, status)
         status = status * (status * increment > 0.0)
         increment *= self._free + np.abs(status)
@@ -274,6 +281,6 @@ class _Search:
             pull = force - self._band.product(increment)
             excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
             most = int(excess.argmax())
-            if excess[most] <= self._rounding(force, increment):
+            if excess[most] <= self._rounding(largest, increment):
                 return status
             status[most] = np.sign(pull[most])

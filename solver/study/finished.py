@@ -6,25 +6,27 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import count
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
-from solver.latin import Checkpoint, Iterate, Solution, solve
+from solver.latin import Iterate, Solution, record, solve
 from solver.latin.direction import search_direction
-from solver.latin.warm import carry, fits
+from solver.latin.finish import finished
+from solver.latin.status_step import StatusStep, states_of
+from solver.latin.stop import proven
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
+from solver.reference.solution import States
 from solver.scenes import discretise, loop_of
 from solver.settings import Settings
 
-AT_ONCE = 4
-"""Iterations from another run's solution after which the own start is taken. Where it holds at all,
-a status step holds after four; eight found no more (solver/study/README.md, 7)."""
+PATIENCE = 4
+"""Linear systems an instant that a status step from a neighbour may take. On charts of the scenes
+as they are it takes 1 to 3, and a run of its own the time of 12 (measured)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +68,11 @@ class FinishedRun:
         """Whether its loop goes over a displacement, not over an angle."""
         return self._loop.across[1] == "m"
 
+    @property
+    def states(self) -> States:
+        """What sticks, slips and is open, from which a run of like settings may start."""
+        return states_of(self.iterate)
+
     @cached_property
     def displacement(self) -> Array:
         """Displacement of the loop that the scene shows, shape (n_instants,), m."""
@@ -104,7 +111,7 @@ def finished_run(
     errors: bool = True,
     indicators: bool = True,
     cancelled: Callable[[], bool] = lambda: False,
-    before: Iterate | None = None,
+    before: States | None = None,
 ) -> FinishedRun:
     """Run a scene to its stop rule.
 
@@ -120,7 +127,7 @@ def finished_run(
     cancelled
         As for `solve`.
     before
-        Last iterate of a run of like settings, from which a start is tried where that may pay.
+        What stuck, slipped and opened in a run of like settings, to start from where that holds.
     """
     began = time.perf_counter()
     problem = discretise(settings)
@@ -141,28 +148,37 @@ def finished_run(
     return FinishedRun(settings, solution, distance is not None)
 
 
-def neighbour(problem: Problem, settings: Settings, before: Iterate) -> Solution | None:
-    """Try a few iterations from the solution of a run of like settings.
+def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
+    """Try a status step from what stuck, slipped and opened in a run of like settings.
 
-    They count only if a status step then finds the one solution of the discrete problem, which does
-    not depend on the start; a start from too far away would take more iterations than the own one.
+    It counts only if it finds the one solution of the discrete problem, which does not depend on
+    the start. Iterations of the method in between better no states that are as near as these
+    (solver/study/README.md, 7).
+
+    Parameters
+    ----------
+    problem, settings
+        What to solve, and the options of the method.
+    states
+        As `solver.latin.status_step.states_of` gives them.
 
     Returns
     -------
-    That solution; None where it is not found at once.
+    That solution; None where it is not found soon.
     """
-    if settings.finish != "status" or settings.is_reduced or problem.rest is not None:
+    began = time.perf_counter()
+    fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
+    if settings.finish != "status" or settings.is_reduced or not fits:
         return None
-    if not fits(before, problem):
+    try:
+        certificate = StatusStep(problem)(states, PATIENCE * problem.n_instants)
+    except NoReferenceError:
         return None
-    outgoing = carry(before, problem, search_direction(problem, settings))
-    outgoing.flags.writeable = False
-    number = count(1)
-    solution = solve(
-        problem,
-        settings,
-        start=Checkpoint(0, 0.0, outgoing),
-        watch=False,
-        cancelled=lambda: next(number) >= AT_ONCE,
-    )
-    return solution if solution.is_certified else None
+    if certificate is None or certificate.residual > settings.accuracy:
+        return None
+    k = search_direction(problem, settings)
+    k.flags.writeable = False
+    finish = finished(problem, k, certificate)
+    verdict = proven(finish, certificate, time.perf_counter() - began)
+    assert verdict.status is not None
+    return Solution(finish, [record(finish, verdict, None, watch=False)], verdict.status)

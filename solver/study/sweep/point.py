@@ -7,7 +7,7 @@ import math
 import platform
 import time
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -15,10 +15,11 @@ import numpy as np
 
 from solver.definitions import SettingError
 from solver.files import save_result
-from solver.latin import Ending, Iterate
+from solver.latin import Ending
 from solver.study.finished import FinishedRun, finished_run
 from solver.study.memory import settle
 from solver.study.survey import BROKEN, REFUSED
+from solver.study.sweep.nearest import Nearest
 from solver.study.sweep.plan import Plan, plan_from_plain
 
 STUCK, LOST = "stuck", "lost"
@@ -48,7 +49,7 @@ class Row:
     seconds
         That the whole of it took, with its problem, its reference and its readings.
     was_warm
-        Whether it started from the run before it.
+        Whether it started from the run nearest to it.
     """
 
     number: int
@@ -78,7 +79,7 @@ class Piece:
     fields
         Folder for the fields of every run, or None.
     warm
-        Whether a run may start from the one before it.
+        Whether a run may start from the nearest one that its process has done.
     versions
         Of those who ask, which have to be those of who answers.
     """
@@ -114,6 +115,12 @@ def _plan(text: str) -> Plan:
     return plan_from_plain(json.loads(text))
 
 
+@lru_cache(maxsize=1)
+def _nearest(text: str) -> Nearest:
+    """Give what this process has done of a plan; what it has done of others is forgotten."""
+    return Nearest(_plan(text).shape)
+
+
 def run_piece(piece: Piece) -> list[Row]:
     """Run points in turn until the time budget is spent, but at least one.
 
@@ -132,12 +139,10 @@ def run_piece(piece: Piece) -> list[Row]:
     is_of_course = any(one.quantity.is_of_course for one in plan.readings)
     if is_of_course:
         settle()
-    before: Iterate | None = None
+    nearest = _nearest(piece.plan) if piece.warm and not is_of_course else None
     end = time.perf_counter() + BUDGET
     for number in piece.numbers:
-        row, last = _run(plan, number, piece.limit, piece.fields, before)
-        rows.append(row)
-        before = last if piece.warm and not is_of_course else None
+        rows.append(_run(plan, number, piece.limit, piece.fields, nearest))
         if time.perf_counter() > end:
             break
     return rows
@@ -155,16 +160,13 @@ def run_point(plan: Plan, number: int, limit: float = math.inf, fields: str | No
     fields
         Folder, there already, for the run's fields.
     """
-    return _run(plan, number, limit, fields, None)[0]
+    return _run(plan, number, limit, fields, None)
 
 
-def _run(
-    plan: Plan, number: int, limit: float, fields: str | None, before: Iterate | None
-) -> tuple[Row, Iterate | None]:
-    """Give the row of a point, and the solution from which a neighbour may start."""
+def _run(plan: Plan, number: int, limit: float, fields: str | None, nearest: Nearest | None) -> Row:
+    """Give the row of a point, which starts from the nearest run and is kept for others."""
     began = time.perf_counter()
     reads = {one.quantity.reads for one in plan.readings}
-    last = None
     # A run that diverges is told by its status.
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         try:
@@ -173,15 +175,16 @@ def _run(
                 errors="errors" in reads,
                 indicators="indicators" in reads,
                 cancelled=lambda: time.perf_counter() > began + limit,
-                before=before,
+                before=nearest.to(number) if nearest else None,
             )
             row = _row(plan, number, run, fields)
-            last = run.iterate if row.holds else None
+            if nearest and row.holds:
+                nearest.keep(number, run.states)
         except SettingError as refusal:
             row = nothing(plan, number, REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             row = nothing(plan, number, BROKEN, f"{type(trouble).__name__}: {trouble}")
-    return replace(row, seconds=time.perf_counter() - began), last
+    return replace(row, seconds=time.perf_counter() - began)
 
 
 def nothing(plan: Plan, number: int, ending: str, reason: str) -> Row:
