@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import Protocol
 
+from app.inquiry import LENDER
 from app.keeper import Keeper
 
 VARIABLE = "SLIPFRONT_PAGES"
@@ -61,8 +62,8 @@ class Pages:
         self._open = [other for other in self._open if other is not page]
 
     def at_work_beside(self, page: Working) -> int:
-        """Count the other pages whose runs are at work."""
-        return sum(other.is_at_work for other in self._open if other is not page)
+        """Count the other pages whose runs are at work, and the charts that fill, of any page."""
+        return sum(other.is_at_work for other in self._open if other is not page) + LENDER.users
 
 
 def most_pages() -> int:

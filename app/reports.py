@@ -178,9 +178,9 @@ def title_of(settings: Settings) -> str:
 def company(crowd: int) -> str:
     """Say who else was at work on the same processors."""
     if not crowd:
-        return "The run of this page stood still, and no other page had one at work."
-    runs = "a run of another page was" if crowd == 1 else f"{crowd} runs of other pages were"
+        return "The run of this page stood still, and nothing else was at work for any page."
+    others = "a run or a chart was" if crowd == 1 else f"{crowd} runs or charts were"
     return (
-        f"The run of this page stood still, but {runs} at work on the same processors: times may "
+        f"The run of this page stood still, but {others} at work on the same processors: times may "
         "be too long."
     )

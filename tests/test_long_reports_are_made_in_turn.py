@@ -19,6 +19,7 @@ from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
 
 from app.errand import KEPT, STARTING, WAITING, Errand
+from app.inquiry import LENDER
 from app.pages import Pages
 from app.report import progress
 from app.session import Session
@@ -243,6 +244,8 @@ def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -
     session.study.ask("any", sleep)
     wait_for(lambda: session.attend() and session.is_held)
     assert pages.at_work_beside(other) == 0
+    with LENDER.lent():
+        assert pages.at_work_beside(other) == 1
     assert link.orders[-1] == Pace(1, 0.0, is_held=True)
     session.start(session.settings.with_change("friction", 0.31))
     assert (link.orders[-1].pause_after, link.orders[-1].is_held) == (1, True)

@@ -103,9 +103,9 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
     assert title_of(BarSettings.checked({})) == "defaults"
     assert title_of(BarSettings.checked({"friction": 0.4})) == "friction 0.4"
     assert title_of(BarSettings.checked({"method": "paper"})) == "method paper"
-    assert "no other page" in company(0)
-    assert "a run of another page was" in company(1)
-    assert "3 runs of other pages were" in company(3)
+    assert "nothing else was at work" in company(0)
+    assert "a run or a chart was" in company(1)
+    assert "3 runs or charts were" in company(3)
 
 
 def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
