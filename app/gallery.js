@@ -93,13 +93,17 @@ export function render({model}) {
     cards.set(slug, {element, place, made, plot, drawn: false})
   }
   const frame = () => new Promise((done) => requestAnimationFrame(done))
-  let drawing = frame()
+  // Empty axes would be laid out and painted for nothing.
+  let pictured
+  const picture = new Promise((done) => { pictured = done })
+  if (model.caption) { pictured() }
+  let drawing = picture
   const draw = async (slug) => {
     const one = cards.get(slug)
     if (one.drawn || !one.element.isConnected) { return }
     one.drawn = true
-    await embed.add_document_standalone(one.made, one.place)
     dress(one)
+    await embed.add_document_standalone(one.made, one.place)
     await frame()
   }
   const show = () => {
@@ -114,8 +118,11 @@ export function render({model}) {
   }
   // Colours and type of axes are in the style sheet, which Bokeh reads only when it paints.
   // They do not reach glyphs and the scale of colours.
-  const dress = ({plot}) => {
+  const dress = (card) => {
     const size = `${Math.round(13 * model.magnified)}px`, {color} = getComputedStyle(root)
+    const worn = `${size} ${color}`, {plot} = card
+    if (card.worn === worn) { return }
+    card.worn = worn
     for (const {glyph} of plot.renderers.filter(({glyph}) => glyph.type === "Text")) {
       glyph.setv({text_font_size: {value: size}, text_color: {value: color}})
     }
@@ -130,7 +137,10 @@ export function render({model}) {
   watcher.observe(document.documentElement, {attributes: true, attributeFilter: ["data-theme", "data-built"]})
   model.on("shown", show)
   model.on("magnified", restyle)
-  model.on("caption", () => cards.forEach(({element}) => describe(element)))
+  model.on("caption", () => {
+    pictured()
+    cards.forEach(({element}) => describe(element))
+  })
   model.on("remove", () => {
     watcher.disconnect()
     for (const {made} of cards.values()) { made.clear() }

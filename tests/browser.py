@@ -13,9 +13,10 @@ import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Page, Playwright, ViewportSize, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -52,6 +53,38 @@ def browser() -> Iterator[Browser]:
             yield opened
         finally:
             opened.close()
+
+
+class Chrome:
+    """A browser that keeps programs compiled from page to page, as those of users do.
+
+    Of what pages store themselves nothing is kept. A device of another kind has a browser of its
+    own, which keeps nothing at all.
+    """
+
+    def __init__(self, playwright: Playwright, folder: Path) -> None:
+        self._playwright = playwright
+        self._kept = playwright.chromium.launch_persistent_context(
+            folder, executable_path=chromium(), args=FLAGS
+        )
+        self._other: Browser | None = None
+
+    def new_page(self, width: int = 1280, height: int = 720, **device: Any) -> Page:
+        """Open an empty page of a size."""
+        size = ViewportSize(width=width, height=height)
+        if not device:
+            page = self._kept.new_page()
+            page.set_viewport_size(size)
+            return page
+        if self._other is None:
+            self._other = self._playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
+        return self._other.new_page(viewport=size, **device)
+
+    def close(self) -> None:
+        """End it, with all its pages."""
+        self._kept.close()
+        if self._other is not None:
+            self._other.close()
 
 
 class Server:

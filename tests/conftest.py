@@ -11,10 +11,10 @@ from contextlib import ExitStack, closing
 
 import hypothesis.internal.conjecture.providers as draws
 import pytest
-from browser import Server, browser
+from browser import Chrome, Server
 from hypothesis.internal.constants_ast import Constants
 from pages import Visit, visits
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect, sync_playwright
 from processes import PATIENCE
 from worker_line import Line
 
@@ -66,9 +66,10 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="session")
-def chrome() -> Iterator[Browser]:
+def chrome(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
     expect.set_options(timeout=1e3 * PATIENCE)
-    with browser() as opened:
+    folder = tmp_path_factory.mktemp("chrome")
+    with sync_playwright() as playwright, closing(Chrome(playwright, folder)) as opened:
         yield opened
 
 
@@ -79,7 +80,7 @@ def paper_runs() -> PaperRuns:
 
 
 @pytest.fixture
-def open_page(server: Server, chrome: Browser) -> Iterator[Visit]:
+def open_page(server: Server, chrome: Chrome) -> Iterator[Visit]:
     with visits(server, chrome) as visit:
         yield visit
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from browser import Server
-from playwright.sync_api import Browser, Locator, Page, expect
+from browser import Chrome, Server
+from playwright.sync_api import Locator, Page, expect
 from processes import PATIENCE
 
 ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
@@ -24,14 +24,14 @@ Visit = Callable[..., Page]
 
 
 @contextmanager
-def visits(server: Server, chrome: Browser) -> Iterator[Visit]:
+def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     """Open pages, and close them; neither they nor the server may complain meanwhile."""
     pages: list[Page] = []
     complaints: list[str] = []
     said_before = len(server.log)
 
     def visit(query: str = "", width: int = 1280, height: int = 720, **device: Any) -> Page:
-        page = chrome.new_page(viewport={"width": width, "height": height}, **device)
+        page = chrome.new_page(width, height, **device)
         page.set_default_timeout(1e3 * PATIENCE)
         page.on(
             "console",
@@ -48,6 +48,7 @@ def visits(server: Server, chrome: Browser) -> Iterator[Visit]:
 
     yield visit
     for page in pages:
+        page.evaluate("localStorage.clear()")
         page.close()
     assert not complaints, complaints
     assert not OURS.search(server.log[said_before:])

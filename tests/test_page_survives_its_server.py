@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
-from browser import Server
+from browser import Chrome, Server
 from pages import OURS, choose, press, slider, status
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 from processes import wait_for
 from proxy import Proxy
 
@@ -20,7 +20,7 @@ PAGES = """Bokeh.documents.filter((one) => one.roots().some(({type}) => type !==
 
 @contextmanager
 def behind_a_network(
-    log: Path, chrome: Browser, *options: str
+    log: Path, chrome: Chrome, *options: str
 ) -> Iterator[tuple[Proxy, Server, Page]]:
     """Give a page, its server, and the network between them."""
     with closing(Proxy()) as proxy:
@@ -57,7 +57,7 @@ def keys_heard(page: Page) -> int:
 
 
 def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
-    tmp_path: Path, chrome: Browser
+    tmp_path: Path, chrome: Chrome
 ) -> None:
     server = Server(tmp_path / "first")
     page = chrome.new_page()
@@ -92,7 +92,7 @@ def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
         again.stop()
 
 
-def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: Browser) -> None:
+def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: Chrome) -> None:
     with behind_a_network(tmp_path / "log", chrome) as (proxy, _, page):
         heard = keys_heard(page)
         proxy.cut()
@@ -111,7 +111,7 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: 
         assert keys_heard(page) == heard > 0
 
 
-def test_a_page_that_was_given_up_meanwhile_is_made_anew(tmp_path: Path, chrome: Browser) -> None:
+def test_a_page_that_was_given_up_meanwhile_is_made_anew(tmp_path: Path, chrome: Chrome) -> None:
     short = ("--unused-session-lifetime", "300", "--check-unused-sessions", "100")
     with behind_a_network(tmp_path / "log", chrome, *short) as (proxy, server, page):
         with_page = len(server.processes())

@@ -6,15 +6,15 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from browser import Server
+from browser import Chrome, Server
 from pages import ENDLESS, Visit, open_report, press, status, visits
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 TINY = "?elements=8&substructures=2&instants=5"
 
 
 @pytest.fixture(scope="module")
-def page(server: Server, chrome: Browser) -> Iterator[Page]:
+def page(server: Server, chrome: Chrome) -> Iterator[Page]:
     """Give one page: every test below has a tab of its own on it."""
     with visits(server, chrome) as visit:
         opened = visit(TINY)

@@ -6,15 +6,15 @@ import asyncio
 import re
 from pathlib import Path
 
-from browser import Server
+from browser import Chrome, Server
 from pages import open_report, press, status
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import expect
 from processes import wait_for
 from web_pages import WebPage, run_apart, until
 
 
 def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
-    tmp_path: Path, chrome: Browser
+    tmp_path: Path, chrome: Chrome
 ) -> None:
     server = Server(tmp_path / "log")
     try:
