@@ -26,7 +26,7 @@ FRESH = 1.0
 logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
 
 
-class Caller(Client):
+class Caller(Client):  # type: ignore[misc]  # its types are not read
     """A client that is closed where it finds no scheduler.
 
     One that was left open is closed when its memory is collected. If that is while another client
@@ -35,7 +35,7 @@ class Caller(Client):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         try:
-            super().__init__(*args, **kwargs)  # type: ignore[no-untyped-call]
+            super().__init__(*args, **kwargs)
         except (OSError, ValueError):
             self.close()
             raise
