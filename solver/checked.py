@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
@@ -86,6 +86,11 @@ class Checked(param.Parameterized):
 
     def values(self) -> dict[str, Any]:
         """Give every setting's plain value by name."""
+        return dict(self._values)
+
+    @cached_property
+    def _values(self) -> Mapping[str, Any]:
+        # To ask param for all of them takes longer than an iteration, and they never change.
         return {name: getattr(self, name) for name in self.definitions()}
 
     def changed(self, base: Self | None = None) -> dict[str, Any]:
@@ -96,7 +101,7 @@ class Checked(param.Parameterized):
         usual = base.values() if base else self.usual(self.method)
         if base and base.method != self.method:
             usual.update(self.of_method(self.method))
-        return {name: value for name, value in self.values().items() if value != usual[name]}
+        return {name: value for name, value in self._values.items() if value != usual[name]}
 
     def replace(self, /, **changes: object) -> Self:
         """Give new settings with some values changed, checked as a whole.

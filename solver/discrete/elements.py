@@ -6,6 +6,8 @@ left; degrees of freedom are x and y of every node in turn.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
@@ -43,14 +45,18 @@ def shares(order: int) -> Array:
     return np.asarray(edge_mass(order).sum(axis=0))
 
 
+@cache
 def edge_mass(order: int) -> Array:
     """Give the matrix from a traction at an edge's nodes to their forces, for an edge of length 1.
 
-    Shape (order + 1, order + 1); exact where the traction varies like the shape functions.
+    Shape (order + 1, order + 1), read-only; exact where the traction varies like the shape
+    functions.
     """
     places, weights = leggauss(order + 1)
     values = np.array([_shape(order, xi)[0] for xi in places])
-    return np.asarray(0.5 * values.T @ (weights[:, None] * values))
+    found = np.asarray(0.5 * values.T @ (weights[:, None] * values))
+    found.flags.writeable = False
+    return found
 
 
 def strain_matrix(order: int, xi: float, eta: float, width: float, height: float) -> Array:
