@@ -37,8 +37,8 @@ const [left, right, low, high] = box.data.edge
 if (figure.properties.inner_width.is_unset) { return }
 const wide = figure.inner_width, tall = figure.inner_height
 if (!(wide > 1 && tall > 1 && right > left)) { return }
-const scale = Math.max((right - left) / wide, (high - low) / tall)
-const x = 0.5 * (left + right), y = 0.5 * (low + high)
+const scale = Math.max((right - left) / wide, (high - low) / (tall - above))
+const x = 0.5 * (left + right), y = 0.5 * (low + high + scale * above)
 const put = (range, middle, size) => {
   const values = {start: middle - 0.5 * scale * size, end: middle + 0.5 * scale * size}
   if (range.held) { range.held = values } else { range.setv(values, {sync: false}) }
@@ -47,6 +47,8 @@ put(figure.x_range, x, wide)
 put(figure.y_range, y, tall)
 """
 """Makes both axes of one scale, however large the plot is; not while one has zoomed in."""
+LINE = 10
+"""Pixels left above, as words do not shrink with a picture and are larger for a projector."""
 SHADES = 180
 FONT = "Roboto, sans-serif"
 """The colours of words follow the theme: the style sheet has them."""
@@ -60,7 +62,8 @@ def make_figure(view: View) -> Plot:
         _add_colors(made, view)
     if plot.equal:
         box = ColumnDataSource({"edge": []}, name=f"{slug}.box")
-        fit = CustomJS(args={"figure": made, "box": box}, code=FIT)
+        above = LINE if plot.words else 0
+        fit = CustomJS(args={"figure": made, "box": box, "above": above}, code=FIT)
         box.js_on_change("data", fit)
         made.js_on_change("inner_width", fit)
         made.js_on_change("inner_height", fit)

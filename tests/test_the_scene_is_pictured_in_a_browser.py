@@ -119,3 +119,20 @@ def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away
     page.wait_for_timeout(400)
     page.mouse.click(*page.evaluate(MIDDLE))
     page.wait_for_function(f"() => !({shown})()")
+
+
+def test_no_word_of_a_picture_is_cut_in_front_of_a_class(open_page: Visit) -> None:
+    page = open_page("?scene=block&view=present")
+    expect(status(page)).to_contain_text("converged")
+    page.wait_for_function(
+        f"() => {{{MODEL}"
+        """
+          const words = model("scene.words"), [figure] = words.document.roots()
+          const view = Bokeh.index.find_one_by_id(figure.id), {y, up} = words.data
+          const {glyph} = figure.renderers.find(({glyph}) => glyph.type === "Text")
+          const size = parseInt(glyph.text_font_size.value), {y_scale} = view.frame
+          const above = {bottom: 1, middle: 0.5, top: 0}
+          return size >= 20 && y.length
+            && [...y].every((at, i) => y_scale.compute(at) >= above[up[i]] * 1.4 * size)
+        }"""
+    )
