@@ -58,8 +58,9 @@ def browser() -> Iterator[Browser]:
 class Chrome:
     """A browser that keeps programs compiled from page to page, as those of users do.
 
-    Of what pages store themselves nothing is kept. A device of another kind has a browser of its
-    own, which keeps nothing at all.
+    Of what pages store themselves nothing is kept. Pages that are open at once are not tabs of one
+    window, of which but one is seen: the others have a browser that keeps nothing at all, and so
+    has a device of another kind.
     """
 
     def __init__(self, playwright: Playwright, folder: Path) -> None:
@@ -72,7 +73,8 @@ class Chrome:
     def new_page(self, width: int = 1280, height: int = 720, **device: Any) -> Page:
         """Open an empty page of a size."""
         size = ViewportSize(width=width, height=height)
-        if not device:
+        is_alone = all(page.url == "about:blank" for page in self._kept.pages)
+        if is_alone and not device:
             page = self._kept.new_page()
             page.set_viewport_size(size)
             return page
