@@ -13,12 +13,12 @@ text that tells plans apart. Points are numbered through the grid, the last axis
 `sweep` yields a `Row` for every point that is not in `done`, as they come, in any order.
 `Row.holds` tells whether its run has converged; if not, `ending` and `reason` say why, and `values`
 are what the run had come to, or NaN. Closing the generator ends the sweep; the executor is
-another's to close, and may do several sweeps at once. `sweep_adaptively` takes points where the
-answer bends, from the rows that are known.
+another's to close, and may do several sweeps at once. `adaptive.sweep_adaptively` takes points
+where the answer bends, from the rows that are known; a process of a sweep does not need it, and
+would take twice as long to start.
 """
 
 from solver.study.executors import opened
-from solver.study.sweep.adaptive import sweep_adaptively
 from solver.study.sweep.drive import sweep
 from solver.study.sweep.plan import Axis, Plan, plan_from_plain, plan_of
 from solver.study.sweep.point import Row, VersionsDifferError, patience, run_point
@@ -34,5 +34,4 @@ __all__ = [
     "plan_of",
     "run_point",
     "sweep",
-    "sweep_adaptively",
 ]
