@@ -30,7 +30,7 @@ class Nearest:
         """Take in a run, and forget the oldest one if there are too many."""
         self._found[number] = states
         while len(self._found) > KEPT:
-            del self._found[next(iter(self._found))]
+            self._found.pop(next(iter(self._found)), None)
 
     def to(self, number: int) -> States | None:
         """Give the states of the run nearest to a point; distances are shares of the axes."""
