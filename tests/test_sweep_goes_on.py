@@ -15,6 +15,7 @@ from sweeps import Here, rows_of, tiny
 
 from solver.definitions import SettingError
 from solver.latin.status_step import states_of
+from solver.latin.step_cost import Costs
 from solver.laws import OPEN
 from solver.reference.choice import incremental_solver, reference_of
 from solver.scenes import CATALOGUE, discretise
@@ -90,7 +91,7 @@ def test_runs_start_from_their_neighbours_and_come_to_the_same(scene: str) -> No
     changes = {"elements_up": 8} if "elements_up" in CATALOGUE[scene].settings.param else {}
     plan = tiny(["friction=0.4:0.5:6"], ["peak_displacement", "dissipation"], scene, **changes)
     warm, cold = rows_of(plan), rows_of(plan, warm=False)
-    assert sum(row.was_warm for row in warm) == 5
+    assert all(row.was_warm for row in warm[1:])
     assert not any(row.was_warm for row in cold)
     apart = np.array([row.values for row in warm]) - np.array([row.values for row in cold])
     assert (np.abs(apart) <= 1e-9 * np.abs([row.values for row in cold]).max(axis=0)).all()
@@ -105,6 +106,13 @@ def test_what_tells_how_a_run_went_is_taken_of_runs_with_a_start_of_their_own(of
 def test_a_run_that_fits_no_other_starts_alone() -> None:
     for vary in ("elements=12,24", "instants=11,21"):
         assert not any(row.was_warm for row in rows_of(tiny([vary], ["peak_displacement"])))
+
+
+def test_a_step_that_costs_more_than_a_run_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = tiny(["friction=0.45:0.47:3"], ["peak_displacement"])
+    dear = Costs(condensing=1e3, system=1e-3, iteration=1e-3, n_instants=21)
+    monkeypatch.setattr("solver.study.finished.costs_of", lambda problem: dear)
+    assert not any(row.was_warm for row in rows_of(plan))
 
 
 def test_the_nearest_run_is_the_start_and_the_oldest_are_forgotten() -> None:
