@@ -10,8 +10,8 @@ import math
 from typing import Any, ClassVar
 
 import param
-from panel.custom import JSComponent
 
+from app.innards import Plain
 from app.panes import script
 from solver.definitions import Curve, Parameter, about
 
@@ -47,7 +47,7 @@ svg.path circle { cursor: grab; }
 """
 
 
-class Form(JSComponent):
+class Form(Plain):
     """Controls below each other under the headings of their groups.
 
     Messages from the browser are `{name, value, hand, count}`: `hand` tells that more of the same

@@ -17,7 +17,18 @@ from panel.io.server import DocHandler
 from panel.util.parameters import edit_readonly
 
 
-class Prompt(JSComponent):
+class Plain(JSComponent):
+    """A component whose program is JavaScript as browsers know it.
+
+    Panel takes a program for TypeScript, and has every page translate it in the browser: 0.2 s for
+    all of ours. What has a bundle is taken as it is.
+    """
+
+    def _get_properties(self, doc: Document | None) -> dict[str, Any]:
+        return {**super()._get_properties(doc), "bundle": type(self).__name__}
+
+
+class Prompt(Plain):
     """A component whose changes are heard at once.
 
     Panel gathers what a browser changes for 50 ms, which every painted picture would wait for.

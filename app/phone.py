@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import param
-from panel.custom import JSComponent
 
+from app.innards import Plain
 from app.panes import column
 from app.tabs import Tabs
 
@@ -23,7 +23,7 @@ button[aria-expanded=true]::after { content: " ▾" / ""; }
 """
 
 
-class Fold(JSComponent):
+class Fold(Plain):
     """A button that shows all of what stands behind it, or folds it again.
 
     Attributes

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import param
-from panel.custom import JSComponent
 
 from app.form import STYLE
+from app.innards import Plain
 from app.panes import script
 from app.session import Session
 from app.snippet import snippet
@@ -24,7 +24,7 @@ MOST_PICTURES = 60
 """Of an animation."""
 
 
-class TakeAway(JSComponent):
+class TakeAway(Plain):
     """Buttons that save what is seen; pictures are made in the browser, tables by the worker.
 
     Messages from the browser are `{kind, value}`: a "table" by its name, the "program", to

@@ -6,10 +6,10 @@ from collections.abc import Callable, Collection
 from typing import Any, ClassVar
 
 import param
-from panel.custom import JSComponent
 
 from app.classroom import Room
 from app.form import STYLE
+from app.innards import Plain
 from app.lesson import LESSONS, NO_CHOICE, OFFERED, content, readings
 from app.panes import script
 from app.session import Session
@@ -68,7 +68,7 @@ nav button:disabled { opacity: 0.4; }
 """
 
 
-class LessonPane(JSComponent):
+class LessonPane(Plain):
     """A lesson, or where there is none, the offer of one.
 
     Messages from the browser are those of a `Form`; also `CHOICE` with the index of what was

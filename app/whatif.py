@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 import param
-from panel.custom import JSComponent
 
 from app.charted import described, drawn, is_comparable, is_of, stands
+from app.innards import Plain
 from app.labels import label_of
 from app.panes import STATIC, column, script
 from app.question import (
@@ -35,7 +35,7 @@ NO_SECOND = Span()
 FILE = "what-if.csv"
 
 
-class Asker(JSComponent):
+class Asker(Plain):
     """Fields of the question, and the chart; what the user does comes as `{kind, value}`.
 
     Attributes

@@ -56,37 +56,36 @@ def browser() -> Iterator[Browser]:
 
 
 class Chrome:
-    """A browser that keeps programs compiled from page to page, as those of users do.
+    """A browser whose windows are used again, each by one page at a time.
 
-    Of what pages store themselves nothing is kept. Pages that are open at once are not tabs of one
-    window, of which but one is seen: the others have a browser that keeps nothing at all, and so
-    has a device of another kind.
+    A window that has shown a page opens the next in half of the processor's time: the programs of
+    the page are compiled there. What pages store themselves goes with them.
     """
 
-    def __init__(self, playwright: Playwright, folder: Path) -> None:
-        self._playwright = playwright
-        self._kept = playwright.chromium.launch_persistent_context(
-            folder, executable_path=chromium(), args=FLAGS
-        )
-        self._other: Browser | None = None
+    def __init__(self, playwright: Playwright) -> None:
+        self._browser = playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
+        self._free: dict[tuple[tuple[str, Any], ...], list[Page]] = {}
+        self._used: dict[Page, list[Page]] = {}
 
     def new_page(self, width: int = 1280, height: int = 720, **device: Any) -> Page:
-        """Open an empty page of a size."""
-        size = ViewportSize(width=width, height=height)
-        is_alone = all(page.url == "about:blank" for page in self._kept.pages)
-        if is_alone and not device:
-            page = self._kept.new_page()
-            page.set_viewport_size(size)
-            return page
-        if self._other is None:
-            self._other = self._playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
-        return self._other.new_page(viewport=size, **device)
+        """Open an empty page of a size, on a device of a kind."""
+        free = self._free.setdefault(tuple(sorted(device.items())), [])
+        page = free.pop() if free else self._browser.new_page(**device)
+        self._used[page] = free
+        page.set_viewport_size(ViewportSize(width=width, height=height))
+        return page
+
+    def leave(self, page: Page) -> None:
+        """Close a page: what it has stored is forgotten, and its window is free for another."""
+        page.evaluate("localStorage.clear(), sessionStorage.clear()")
+        page.emulate_media(color_scheme="light")
+        page.mouse.move(0.0, 0.0)
+        page.goto("about:blank")
+        self._used.pop(page).append(page)
 
     def close(self) -> None:
-        """End it, with all its pages."""
-        self._kept.close()
-        if self._other is not None:
-            self._other.close()
+        """End it, with all its windows."""
+        self._browser.close()
 
 
 class Server:

@@ -77,10 +77,9 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="session")
-def chrome(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Chrome]:
+def chrome() -> Iterator[Chrome]:
     expect.set_options(timeout=1e3 * PATIENCE)
-    folder = tmp_path_factory.mktemp("chrome")
-    with sync_playwright() as playwright, closing(Chrome(playwright, folder)) as opened:
+    with sync_playwright() as playwright, closing(Chrome(playwright)) as opened:
         yield opened
 
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from browser import Chrome, Server
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import ConsoleMessage, Error, Locator, Page, expect
 from processes import PATIENCE
 
 ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
@@ -30,26 +30,27 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     complaints: list[str] = []
     said_before = len(server.log)
 
+    def hear(message: ConsoleMessage) -> None:
+        if message.type == "error" and not message.text.startswith(IGNORED):
+            complaints.append(message.text)
+
+    def stumble(error: Error) -> None:
+        complaints.append(str(error))
+
     def visit(query: str = "", width: int = 1280, height: int = 720, **device: Any) -> Page:
         page = chrome.new_page(width, height, **device)
         page.set_default_timeout(1e3 * PATIENCE)
-        page.on(
-            "console",
-            lambda message: (
-                complaints.append(message.text)
-                if message.type == "error" and not message.text.startswith(IGNORED)
-                else None
-            ),
-        )
-        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("console", hear)
+        page.on("pageerror", stumble)
         pages.append(page)
         page.goto(server.address + query)
         return page
 
     yield visit
     for page in pages:
-        page.evaluate("localStorage.clear()")
-        page.close()
+        page.remove_listener("console", hear)
+        page.remove_listener("pageerror", stumble)
+        chrome.leave(page)
     assert not complaints, complaints
     assert not OURS.search(server.log[said_before:])
 

@@ -23,7 +23,7 @@ GRIPPED = {"grip": "displacement"}
 def solved(**changes):
     """Give the scene of some settings, and its converged iterate."""
     settings = StrandSettings.checked({**FAST, **changes})
-    solution = solve(discretise(settings), settings)
+    solution = solve(discretise(settings), settings, watch=False)
     assert solution.status.ending is Ending.CONVERGED
     return strand(settings), solution.iterate
 

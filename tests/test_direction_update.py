@@ -24,7 +24,9 @@ def options(**changes: object) -> BarSettings:
 
 def run(settings: BarSettings):
     problem = discretise(settings)
-    return solve(problem, settings, distance=distance_to(incremental(problem), problem))
+    return solve(
+        problem, settings, distance=distance_to(incremental(problem), problem), watch=False
+    )
 
 
 def sample(settings: BarSettings, number: int):

@@ -48,7 +48,7 @@ def test_the_default_reaches_the_reference_in_fields_and_statuses():
     chosen = options()
     problem = discretise(chosen)
     reference = incremental(problem)
-    solution = solve(problem, chosen, distance=distance_to(reference, problem))
+    solution = solve(problem, chosen, distance=distance_to(reference, problem), watch=False)
     assert solution.status.ending is Ending.CONVERGED
     last = solution.records[-1]
     assert last.indicator <= 1e-26

@@ -213,6 +213,12 @@ def test_what_is_open_is_not_told_before_the_end_nor_of_an_iterate_that_one_goes
     assert shown.page["lesson"]["values"] == [["iterations", "4"], ["error_force@5", "…"]]
 
 
+def test_nothing_is_told_of_the_first_iterate_before_there_is_a_record_of_it() -> None:
+    shown = told(["error_force", "seconds", "iterations"])
+    assert shown.pictures[0].facts.iteration == 1
+    assert {text for _, text in shown.models[0]["lesson"]["values"]} == {"…"}
+
+
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
     [

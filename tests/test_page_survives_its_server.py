@@ -42,7 +42,7 @@ def behind_a_network(
             # What listens on the document goes with the page that is taken from it.
             page.evaluate("Bokeh.documents[0].clear()")
             assert keys_heard(page) == 0
-            page.close()
+            chrome.leave(page)
             assert not OURS.search(server.log)
         finally:
             server.stop()
@@ -87,8 +87,8 @@ def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
         )
         expect(slider(page, "Wires")).to_have_value("6")
         assert "Traceback" not in again.log
+        chrome.leave(page)
     finally:
-        page.close()
         again.stop()
 
 

@@ -22,6 +22,15 @@ def page(server: Server, chrome: Chrome) -> Iterator[Page]:
         yield opened
 
 
+def test_browsers_translate_no_program_of_the_page(page: Page) -> None:
+    programs = page.evaluate(
+        """[...Bokeh.documents[0]._all_models.values()].filter(({esm}) => esm)
+          .map(({class_name, compiled, esm}) => [class_name, compiled === esm])"""
+    )
+    assert ["Pulse", True] in programs
+    assert [name for name, as_it_is in programs if not as_it_is] == []
+
+
 def test_the_page_makes_a_study_of_its_settings_when_asked(page: Page) -> None:
     open_report(page, "Study")
     measured = page.get_by_text("How it was measured")

@@ -52,7 +52,7 @@ def test_fig_5_depends_on_the_lost_load_path():
     chosen = BarSettings.checked(
         {"method": "paper", "substructures": 5, "peak": 1200.0, "tolerance": 1e-13}
     )
-    found = solve(discretise(chosen), chosen).iterate
+    found = solve(discretise(chosen), chosen, watch=False).iterate
     second = decompositions(found, InterfaceField.FRICTION_FORCE)[1]
     assert second.modes_for(0.01) >= 10
 

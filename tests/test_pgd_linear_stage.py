@@ -28,7 +28,8 @@ def options(**changes: object) -> BarSettings:
 
 def run(settings: BarSettings, **rest: object):
     problem = discretise(settings)
-    return solve(problem, settings, distance=distance_to(incremental(problem), problem), **rest)
+    distance = distance_to(incremental(problem), problem)
+    return solve(problem, settings, distance=distance, **{"watch": False, **rest})
 
 
 def sample(settings: BarSettings, number: int):
@@ -92,7 +93,9 @@ def test_the_bases_hold_the_iterate():
 
 def test_a_basis_given_the_exact_solution_needs_no_enrichment():
     chosen = options(substructures=5, tolerance=1e-22, max_iterations=20_000)
-    exact = solve(discretise(chosen), chosen.replace(linear_stage="full")).iterate.checkpoint
+    exact = solve(
+        discretise(chosen), chosen.replace(linear_stage="full"), watch=False
+    ).iterate.checkpoint
     tight = chosen.replace(**GENEROUS, tolerance=1e-30).replace(pgd_tolerance=1e-9)
     for iterate in islice(iterations(discretise(chosen), tight, exact), 5):
         assert iterate.reduction is not None

@@ -31,7 +31,7 @@ def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
         expect(page.get_by_text(re.compile("Errors of LATIN")).first).to_be_visible()
     finally:
         server.stop()
-    page.close()
+    chrome.leave(page)
     wait_for(lambda: server.processes() == [])
 
 

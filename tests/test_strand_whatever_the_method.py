@@ -32,7 +32,7 @@ def options(**changes: object) -> StrandSettings:
 
 
 def solution_of(settings):
-    found = solve(discretise(settings), settings)
+    found = solve(discretise(settings), settings, watch=False)
     assert found.status.ending is Ending.CONVERGED
     return found.iterate
 
@@ -91,7 +91,7 @@ def test_separated_bases_and_laws_at_reference_points_come_close(change):
     settings = options(
         linear_stage="pgd", local_stage="reduced", local_instants=1.0, max_iterations=60, **change
     )
-    found = solve(discretise(settings), settings).iterate
+    found = solve(discretise(settings), settings, watch=False).iterate
     exact = solution_of(settings.replace(linear_stage="full", max_iterations=4000, **FAST))
     assert found.references is not None
     gap = np.linalg.norm(found.displacement - exact.displacement)
@@ -240,7 +240,7 @@ def test_the_largest_strand_is_refused_by_size_and_not_by_memory():
 )
 def test_the_smallest_and_oddest_strands_end_well(change, method):
     settings = StrandSettings.checked({**SMALL, "wires": 3, **method, **change})
-    found = solve(discretise(settings), settings)
+    found = solve(discretise(settings), settings, watch=False)
     allowed = {Ending.CONVERGED, Ending.STALLED, Ending.EXHAUSTED}
     assert found.status.ending in (allowed if "linear_stage" in method else {Ending.CONVERGED})
     assert np.isfinite(found.iterate.displacement).all()

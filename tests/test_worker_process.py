@@ -44,7 +44,10 @@ def shown_run(values: dict[str, Any], **options: Any) -> Shown:
     return shown
 
 
-@pytest.mark.parametrize("values", [{}, STALLING, {"method": "paper", "substructures": 1}])
+WHOLE = {"method": "paper", "substructures": 1, "max_iterations": 200}
+
+
+@pytest.mark.parametrize("values", [{}, STALLING, WHOLE])
 def test_worker_gives_the_numbers_of_a_direct_solution(values: dict[str, Any]) -> None:
     shown, expected = shown_run(values), direct(values)
     assert shown.recording.status == expected.status

@@ -30,7 +30,7 @@ def serve_pages() -> Server:
         port=0,
         show=False,
         start=True,
-        unused_session_lifetime_milliseconds=5000,
+        unused_session_lifetime_milliseconds=2500,
         check_unused_sessions_milliseconds=500,
     )
     return served

@@ -21,9 +21,12 @@ PREFIXES = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}
 def values(scene: Scene) -> list[tuple[str, str]]:
     """Give name and text (HTML) of every quantity that is looked at.
 
-    The run is taken as far as the iterate that is shown, and no further.
+    The run is taken as far as the iterate that is shown, and no further. The first iterate is shown
+    before there is a record of it.
     """
     run, iterate = scene.run, scene.frame.iterate
+    if iterate.number > len(run.history):
+        return [(name, OPEN) for name in scene.look.readings]
     is_final = run.status is not None and iterate.number == run.iteration
     solution = Solution(iterate, run.history.records(iterate.number), run.status or CANCELLED)
     loop, has_errors = scene.frame.sampler.loop, run.reference is not None

@@ -60,7 +60,7 @@ class History:
 
     def records(self, count: int) -> list[Record]:
         """Give the first records, with what is kept of them."""
-        rows = self._table[:, :count].T.tolist()
+        rows = self._table[:, : min(count, self._count)].T.tolist()
         return [
             Record(int(number), seconds, indicator, behaviour, math.nan, *errors)
             for number, seconds, indicator, behaviour, *errors in rows

@@ -12,8 +12,10 @@ import numpy as np
 
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
-from solver.latin import Ending, Solution, solve
+from solver.latin import Ending, solve
 from solver.latin.direction import search_direction
+from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.latin.iterate import Iterate
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
@@ -172,19 +174,20 @@ def run_case(case: Case, method: str) -> Outcome:
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as leaked:
         warnings.simplefilter("always")
-        solution = solve(problem, settings, distance=distance)
+        solution = solve(problem, settings, watch=False)
     seconds = time.perf_counter() - start
-    iterate, last = solution.iterate, solution.records[-1] if solution.records else None
+    iterate = solution.iterate
+    finite = _is_finite(iterate)
     return Outcome(
         ending=solution.status.ending,
         advice=solution.status.advice,
         iterations=iterate.number,
         seconds=seconds,
-        indicator=last.indicator if last else float("nan"),
-        behaviour=last.behaviour if last else float("nan"),
+        indicator=latin_indicator(iterate) if finite else float("nan"),
+        behaviour=behaviour_indicator(iterate).total if finite else float("nan"),
         error_displacement=distance.of_displacement(iterate) if distance else float("nan"),
         error_force=distance.of_friction_force(iterate) if distance else float("nan"),
-        finite=_is_finite(solution),
+        finite=finite,
         warned=str(leaked[0].message) if leaked else "",
         doubt=doubt,
         condition_structure=condition_of_structure(problem),
@@ -209,8 +212,7 @@ def _reference(problem: Problem) -> tuple[Distance | None, str]:
     return (None if doubt else distance_to(found, problem)), "; ".join(doubt)
 
 
-def _is_finite(solution: Solution) -> bool:
-    iterate = solution.iterate
+def _is_finite(iterate: Iterate) -> bool:
     return bool(
         np.isfinite(iterate.displacement).all() and np.isfinite(iterate.contact_force).all()
     )
