@@ -106,7 +106,11 @@ class Sidebar:
         if self.report is not None:
             kept = {SCENE, SHARE, ""} if acting else {SHARE, ""}
             own = {NOTE: self.report.note, **{name: own[name] for name in kept}}
-        self.view.param.update(items=items(type(settings)), shown={**values, **own})
+        changes: dict[str, Any] = {"shown": {**values, **own}}
+        # Param takes longer to compare the controls with themselves than to pass on the values.
+        if (controls := items(type(settings))) is not self.view.items:
+            changes["items"] = controls
+        self.view.param.update(**changes)
 
     def hear(self, name: str, value: Any, hand: bool, count: float) -> None:
         """Follow what the user does with a control."""

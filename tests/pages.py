@@ -11,7 +11,8 @@ from browser import Chrome, Server
 from playwright.sync_api import ConsoleMessage, Error, Locator, Page, expect
 from processes import PATIENCE
 
-ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
+ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=5"
+"""In an address: a run that goes on, no faster than it takes to see that it does."""
 IGNORED = ("Failed to load resource", "favicon")
 OURS = re.compile(r'File ".*/(app|solver)/')
 """In a traceback; a page that is closed leaves those of the web server."""

@@ -16,7 +16,7 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
     settings = CATALOGUE[scene].settings.checked(values)
     problem = discretise(settings)
     for iterate in islice(iterations(problem, settings), LOOK - 1, most, LOOK):
-        found = behaviour_indicator(iterate).total
+        found = behaviour_indicator(iterate)
         if found <= violation:
             return iterate
     raise AssertionError(f"the laws are violated by {found} after {iterate.number} iterations")

@@ -10,7 +10,7 @@ from tour import Move, ends, has_errors, never_apply, small, tour
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-FEW = 3
+FEW = 2
 SMALL_ERROR = 0.02
 
 

@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_reset(
     open_page: Visit,
 ) -> None:
-    page = open_page(f"?{ENDLESS}")
+    page = open_page(f"?{ENDLESS}&pace=20")
     expect(status(page)).to_contain_text("running")
     expect(status(page)).to_contain_text("10 substructures, multiscale")
     expect(page.locator(".card")).to_have_count(8)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
-from pages import Visit, card, slider, status
+import pytest
+from browser import Chrome, Server
+from pages import Visit, card, slider, status, visits
 from PIL import Image
 from playwright.sync_api import Page, expect
 
@@ -20,6 +23,15 @@ CLIPBOARD = """(answer) => {
     window.copied = text
   }
 }"""
+
+
+@pytest.fixture(scope="module")
+def page(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give a page that is taken away from, and stays as it is."""
+    with visits(server, chrome) as visit:
+        opened = visit(f"?{SMALL}")
+        expect(status(opened)).to_contain_text("after 12 iterations")
+        yield opened
 
 
 def saved(page: Page, button: str) -> Path:
@@ -45,9 +57,7 @@ def test_a_plot_is_saved_with_name_legend_and_units(open_page: Visit) -> None:
     assert pixels[:60].max() > 200
 
 
-def test_an_animation_has_a_picture_of_every_instant(open_page: Visit) -> None:
-    page = open_page(f"?{SMALL}")
-    expect(status(page)).to_contain_text("after 12 iterations")
+def test_an_animation_has_a_picture_of_every_instant(page: Page) -> None:
     page.get_by_role("combobox", name="Plot").select_option("Load path")
     with Image.open(saved(page, "GIF over time")) as film:
         assert film.n_frames == 13
@@ -60,9 +70,7 @@ def test_an_animation_has_a_picture_of_every_instant(open_page: Visit) -> None:
     expect(page.get_by_text("t = 0.75 s").first).to_be_visible()
 
 
-def test_a_table_and_a_program_are_saved(open_page: Visit) -> None:
-    page = open_page(f"?{SMALL}")
-    expect(status(page)).to_contain_text("after 12 iterations")
+def test_a_table_and_a_program_are_saved(page: Page) -> None:
     page.get_by_role("combobox", name="Table").select_option("iterations")
     for _ in range(2):
         lines = saved(page, "CSV").read_text().splitlines()
@@ -90,9 +98,7 @@ def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -
     expect(page.locator(".figures")).not_to_contain_text("A (")
 
 
-def test_that_a_link_is_copied_is_said_and_that_it_could_not_be(open_page: Visit) -> None:
-    page = open_page(f"?{SMALL}")
-    expect(status(page)).to_contain_text("after 12 iterations")
+def test_that_a_link_is_copied_is_said_and_that_it_could_not_be(page: Page) -> None:
     page.evaluate(CLIPBOARD, "taken")
     page.get_by_role("button", name="Link", exact=True).click()
     expect(page.get_by_text("Copied: the link").first).to_be_visible()

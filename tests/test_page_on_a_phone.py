@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 import pytest
-from pages import Visit, slider, status
+from browser import Chrome, Server
+from pages import Visit, slider, status, visits
 from playwright.sync_api import Page, expect
 from test_page_for_everybody import violations
 
 BELOW_THE_HEADER = 50.0
 
 
-@pytest.fixture
-def phone(open_page: Visit) -> Page:
+@pytest.fixture(scope="module")
+def phone(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give a page on a phone, whose sheet every test leaves as it found it."""
     query = "?elements=20&substructures=2&instants=11"
-    page = open_page(query, 390, 844, has_touch=True, is_mobile=True)
-    expect(status(page)).to_contain_text("converged")
-    expect(page.get_by_role("button", name="Controls")).to_be_visible()
-    return page
+    with visits(server, chrome) as visit:
+        page = visit(query, 390, 844, has_touch=True, is_mobile=True)
+        expect(status(page)).to_contain_text("converged")
+        expect(page.get_by_role("button", name="Controls")).to_be_visible()
+        yield page
 
 
 def test_a_slider_is_dragged_in_a_sheet_below_the_scene(phone: Page) -> None:

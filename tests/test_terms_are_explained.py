@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from pages import ENDLESS, Visit, iteration, slider, status
-from playwright.sync_api import expect
+from browser import Chrome, Server
+from pages import ENDLESS, Visit, iteration, slider, status, visits
+from playwright.sync_api import Page, expect
 from studios import SMALL, Shown, keys
 
 from app.glossary import TERMS, explained, line_of
@@ -81,9 +83,16 @@ def test_a_term_in_the_plural_has_its_line_too() -> None:
     assert line_of("model") == ""
 
 
-def test_a_term_says_its_line_to_a_pointer_to_the_focus_and_in_the_list(open_page: Visit) -> None:
-    page = open_page("?elements=20&substructures=2&instants=11")
-    expect(status(page)).to_contain_text("✓ converged")
+@pytest.fixture(scope="module")
+def page(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give a page whose run has ended."""
+    with visits(server, chrome) as visit:
+        opened = visit("?elements=20&substructures=2&instants=11")
+        expect(status(opened)).to_contain_text("✓ converged")
+        yield opened
+
+
+def test_a_term_says_its_line_to_a_pointer_to_the_focus_and_in_the_list(page: Page) -> None:
     note = page.get_by_role("tooltip")
     page.locator(".figures abbr", has_text="k-free indicator").hover()
     expect(note).to_have_text(line_of("k-free indicator"))
@@ -95,6 +104,8 @@ def test_a_term_says_its_line_to_a_pointer_to_the_focus_and_in_the_list(open_pag
     expect(note).to_be_hidden()
     page.keyboard.press("?")
     expect(page.get_by_role("dialog")).to_contain_text(line_of("singular value"))
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_be_hidden()
 
 
 def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
@@ -108,9 +119,7 @@ def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
     expect(page.locator(".figures abbr", has_text="Run time")).to_be_focused()
 
 
-def test_what_a_control_is_for_is_said_to_the_keyboard(open_page: Visit) -> None:
-    page = open_page("?elements=20&substructures=2&instants=11")
-    expect(status(page)).to_contain_text("✓ converged")
+def test_what_a_control_is_for_is_said_to_the_keyboard(page: Page) -> None:
     help_of = {name: one.doc for name, one in BarSettings.definitions().items()}
     note = page.get_by_role("tooltip")
     slider(page, "Peak load").focus()

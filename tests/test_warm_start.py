@@ -69,9 +69,9 @@ def test_a_small_change_starts_from_the_solution_before(before: Iterate, changes
     first = next(run)
     assert start.choice.is_previous
     assert first.number == 1
-    assert start.choice.previous == behaviour_indicator(first).total
+    assert start.choice.previous == behaviour_indicator(first)
     zero = next(iterations(problem, settings))
-    assert start.choice.own == behaviour_indicator(zero).total
+    assert start.choice.own == behaviour_indicator(zero)
 
 
 @pytest.mark.parametrize(

@@ -133,7 +133,7 @@ def test_a_closed_form_is_shown_where_there_is_one() -> None:
 
 
 def test_history_grows_and_is_thinned_from_end_to_end() -> None:
-    nothing = [math.nan] * 5
+    nothing = [math.nan] * 4
     history = History([Record(number, 0.1 * number, *nothing, 0.0) for number in range(1, 1001)])
     assert len(history) == 1000
     few = history.thinned(50)["iteration"]

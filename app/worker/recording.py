@@ -61,10 +61,7 @@ class History:
     def records(self, count: int) -> list[Record]:
         """Give the first records, with what is kept of them."""
         rows = self._table[:, : min(count, self._count)].T.tolist()
-        return [
-            Record(int(number), seconds, indicator, behaviour, math.nan, *errors)
-            for number, seconds, indicator, behaviour, *errors in rows
-        ]
+        return [Record(int(number), *scalars) for number, *scalars in rows]
 
     def thinned(self, most: int) -> dict[str, NDArray[np.float64]]:
         """Give all columns, of so many iterations at most; the first and the last among them."""

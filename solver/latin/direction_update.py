@@ -119,7 +119,7 @@ class DirectionUpdate:
         W and F to go on from where k changes, or None.
         """
         course = self.course
-        violation = behaviour_of(self._problem, displacement, force).total
+        violation = behaviour_of(self._problem, displacement, force)
         kept = (displacement, force)
         if course.status is not None:
             self.course = Course("updated", self._updated(course), kept=kept, violation=violation)

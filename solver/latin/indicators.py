@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
@@ -37,33 +35,7 @@ STILL = 1e-6
 """Share of what the largest force does to one element, below which a structure does not move."""
 
 
-@dataclass(frozen=True)
-class BehaviourIndicator:
-    """How far the linear stage is from the behaviour of the interfaces, without k.
-
-    Attributes
-    ----------
-    total
-        Violation of friction at the interface where it is worst, as a share of the energy in play
-        per interface with friction, plus the relative gap of displacements and of forces at all
-        other interfaces; over the share of the largest force that friction can carry, if below
-        one, so that a small friction force is held to the same standard. Zero if and only if all
-        laws hold, up to the rounding of the fields.
-    map
-        Local violation of friction, shape (n_points, n_instants), a share of the energy in play
-        for each point and instant, times their number: 1 means as much as the mean energy.
-    """
-
-    total: float
-    map: Array
-
-    @property
-    def largest(self) -> float:
-        """Largest entry of the map."""
-        return float(self.map.max(initial=0.0))
-
-
-def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
+def behaviour_indicator(iterate: Iterate) -> float:
     """Check the linear stage's fields against the interface laws alone (solver/README.md, 4).
 
     Friction with bound q and slip increment v: q|v| + F v with F cut to |F| <= q, which is
@@ -72,27 +44,31 @@ def behaviour_indicator(iterate: Iterate) -> BehaviourIndicator:
     opening g also N g where both are positive, tension times the mean slip, and overlap times the
     mean force. Divided by the dissipation plus the largest elastic energy, so that it is defined
     where nothing slides.
+
+    Returns
+    -------
+    Violation of friction at the interface where it is worst, as a share of the energy in play per
+    interface with friction, plus the relative gap of displacements and of forces at all other
+    interfaces; over the share of the largest force that friction can carry, if below one, so that
+    a small friction force is held to the same standard. Zero if and only if all laws hold, up to
+    the rounding of the fields.
     """
     return behaviour_of(iterate.problem, iterate.boundary_displacement, iterate.boundary_force)
 
 
-def behaviour_of(problem: Problem, displacement: Array, force: Array) -> BehaviourIndicator:
+def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
     """Check W and F of the boundary, shape (n_rows, n_instants), as `behaviour_indicator` does."""
     noise = _rounding(displacement, force)
-    laws = list(problem.rubbing.values())
-    found = [law.behaviour(displacement, force, noise) for law in laws]
+    found = [law.behaviour(displacement, force, noise) for law in problem.rubbing.values()]
     energy = _elastic_energy(problem, displacement, beyond(force, noise)) + sum(
         float(one.dissipated.sum()) for one in found
     )
     allowance = sum(float(one.bound.sum()) for one in found) or float(np.abs(force).sum())
     mean_slip = ratio(energy, allowance)
-    maps = [law.by_point(one.violation(mean_slip)) for law, one in zip(laws, found, strict=True)]
-    map_ = np.concatenate(maps)
+    worst = max(float(one.violation(mean_slip).sum()) for one in found)
     # Against the mean energy per interface, so that many that hold do not hide one that does not.
-    total = ratio(len(maps) * max(float(one.sum()) for one in maps), energy)
-    map_ *= ratio(map_.size, energy) if energy else 0.0
-    total += _gap_of_bonds(problem, displacement, force, noise)
-    return BehaviourIndicator(total / _share_of_friction(problem, force), map_)
+    total = ratio(len(found) * worst, energy) + _gap_of_bonds(problem, displacement, force, noise)
+    return total / _share_of_friction(problem, force)
 
 
 def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:

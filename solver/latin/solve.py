@@ -26,8 +26,8 @@ class Record:
         Time that the run took so far, s: set-up, iterations, and all that its stop rules compute.
     indicator
         LATIN indicator eta (paper, eq. 2).
-    behaviour, behaviour_largest
-        The k-free indicator, and the largest entry of its map.
+    behaviour
+        The k-free indicator.
     estimated_error
         Of the contact force, relative, without a reference; NaN where it is not estimated.
     error_displacement, error_force
@@ -42,7 +42,6 @@ class Record:
     seconds: float
     indicator: float
     behaviour: float
-    behaviour_largest: float
     estimated_error: float
     error_displacement: float
     error_force: float
@@ -81,7 +80,8 @@ def record(
     indicator, behaviour = verdict.indicator, verdict.behaviour
     estimated = verdict.estimated_error
     if watch:
-        behaviour = behaviour or behaviour_indicator(iterate)
+        if math.isnan(behaviour):
+            behaviour = behaviour_indicator(iterate)
         if math.isnan(indicator):
             indicator = latin_indicator(iterate)
         if math.isnan(estimated) and verdict.certificate is not None:
@@ -90,8 +90,7 @@ def record(
         iteration=iterate.number,
         seconds=verdict.seconds,
         indicator=indicator,
-        behaviour=behaviour.total if behaviour else math.nan,
-        behaviour_largest=behaviour.largest if behaviour else math.nan,
+        behaviour=behaviour,
         estimated_error=estimated,
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,

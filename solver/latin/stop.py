@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.latin.estimate import LAST, WAIT, ErrorEstimate
 from solver.latin.finish import finished
-from solver.latin.indicators import BehaviourIndicator, behaviour_indicator, latin_indicator
+from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
 from solver.latin.lookout import Lookout
 from solver.latin.status_step import Certificate
@@ -79,7 +79,7 @@ class Verdict:
     seconds
         Time that the run took so far, the stop rules' own included, s.
     indicator, behaviour, estimated_error
-        As in `Record`; NaN, or None, where the rules did not need them.
+        As in `Record`; NaN where the rules did not need them.
     status
         How the run ends, or None if it goes on.
     certificate
@@ -90,7 +90,7 @@ class Verdict:
 
     seconds: float
     indicator: float
-    behaviour: BehaviourIndicator | None
+    behaviour: float
     estimated_error: float
     status: Status | None
     certificate: Certificate | None = None
@@ -110,7 +110,7 @@ def proven(finish: Iterate, certificate: Certificate | None, seconds: float) -> 
     """Say of an iterate that is a certified solution that the run ends with it."""
     residual = finish.residual or 0.0
     status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
-    return Verdict(seconds, math.nan, None, residual, status, certificate)
+    return Verdict(seconds, math.nan, math.nan, residual, status, certificate)
 
 
 class StopRules:
@@ -152,7 +152,7 @@ class StopRules:
         began = time.perf_counter()
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             status = _diverged(iterate.number)
-            return Verdict(self._billed(iterate, began), math.nan, None, math.nan, status)
+            return Verdict(self._billed(iterate, began), math.nan, math.nan, math.nan, status)
         self._heed_change_of_k(iterate)
         indicator, estimated = self._figures(iterate)
         behaviour = self._agreement_asked(iterate, indicator, estimated)
@@ -210,26 +210,24 @@ class StopRules:
         if self._may_finish and self._estimate.certificate is None and gives_up:
             self._estimate.try_step(iterate, LAST)
 
-    def _agreement_asked(
-        self, iterate: Iterate, indicator: float, estimated: float
-    ) -> BehaviourIndicator | None:
+    def _agreement_asked(self, iterate: Iterate, indicator: float, estimated: float) -> float:
         """Compute the k-free indicator, which is dear, where all else says converged or stalled."""
         is_low = indicator <= self._tolerance
         is_stalled = math.isfinite(indicator) and iterate.number >= self._best_at + STALL_WINDOW
         is_last = is_stalled or iterate.number >= self._most
         if (is_low and estimated <= self._accuracy) or is_last:
             return behaviour_indicator(iterate)
-        return None
+        return math.nan
 
     def _ending(
         self,
         iterate: Iterate,
         indicator: float,
         estimated: float,
-        behaviour: BehaviourIndicator | None,
+        behaviour: float,
     ) -> Status | None:
         iteration = iterate.number
-        agreed = behaviour is not None and self._agrees(iterate, behaviour)
+        agreed = not math.isnan(behaviour) and self._agrees(iterate, behaviour)
         if indicator <= self._tolerance and agreed and estimated <= self._accuracy:
             if self._estimate.is_proven:
                 return Status(Ending.CONVERGED, _PROVEN)
@@ -244,13 +242,13 @@ class StopRules:
             return Status(Ending.EXHAUSTED, self._exhausted_advice(indicator))
         return None
 
-    def _agrees(self, iterate: Iterate, behaviour: BehaviourIndicator) -> bool:
+    def _agrees(self, iterate: Iterate, behaviour: float) -> bool:
         """Tell whether the k-free indicator says converged, or the solution itself does.
 
         The indicator is a share of what contact carries, which is nothing where all contacts open.
         """
         enough = agreement(self._tolerance)
-        return behaviour.total <= enough or self._estimate.is_proven_within(enough, iterate)
+        return behaviour <= enough or self._estimate.is_proven_within(enough, iterate)
 
     def _exhausted_advice(self, indicator: float) -> str:
         is_low = indicator <= self._tolerance

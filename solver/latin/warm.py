@@ -92,7 +92,7 @@ def choose_start(
     warm = iterations(problem, settings, checkpoint)
     second = next(warm)
     began = time.perf_counter()
-    choice = StartChoice(behaviour_indicator(second).total, behaviour_indicator(first).total)
+    choice = StartChoice(behaviour_indicator(second), behaviour_indicator(first))
     choosing = carrying + time.perf_counter() - began
     if choice.is_previous:
         start = Start(choice, checkpoint, choosing + first.seconds)

@@ -71,7 +71,6 @@ class _Scan:
     def __init__(self, n_points: int, n_times: int) -> None:
         size = max(2, round(0.5 * np.sqrt(n_times)))
         blocks = -(-n_times // size)
-        self._n_times = n_times
         self._limits = np.zeros((2, blocks, size, n_points))
         low, high = self._limits
         self._low, self._high = (limit.reshape(-1, n_points)[:n_times] for limit in self._limits)

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -44,13 +43,6 @@ PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
 TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
-
-
-def incremental_contact(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
-    """Solve instant by instant, as `IncrementalContact` does."""
-    start = time.perf_counter()
-    found = IncrementalContact(problem).march(stop=stop)
-    return replace(found, seconds=time.perf_counter() - start)
 
 
 class IncrementalContact:

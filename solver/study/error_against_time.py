@@ -288,9 +288,3 @@ def _course(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
         error_displacement=displacement,
         error_force=force,
     )
-
-
-def course_of(method: str, settings: Settings, distance: Distance, goal: float) -> ErrorCurve:
-    """Measure one form of LATIN alone, in one timed pass up to a goal."""
-    entry = _latin_entry(method, settings, distance, goal, most=300, least=12)
-    return _course(entry, [entry.timed()])

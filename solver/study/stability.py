@@ -184,7 +184,7 @@ def run_case(case: Case, method: str) -> Outcome:
         iterations=iterate.number,
         seconds=seconds,
         indicator=latin_indicator(iterate) if finite else float("nan"),
-        behaviour=behaviour_indicator(iterate).total if finite else float("nan"),
+        behaviour=behaviour_indicator(iterate) if finite else float("nan"),
         error_displacement=distance.of_displacement(iterate) if distance else float("nan"),
         error_force=distance.of_friction_force(iterate) if distance else float("nan"),
         finite=finite,
