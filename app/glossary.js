@@ -62,11 +62,14 @@ function glossary(terms) {
       }
     })
   }
+  // Nor of a pointer that moves, or takes the focus away, inside of one component.
+  const press = (event) => { if (!met(event)) { hide() } }
   const escape = (event) => { if (event.key === "Escape") { hide() } }
   // From one to another in the same component, nobody outside hears of the focus.
   const moved = (event) => { if (event.key === "Tab") { enter(event) } }
   const listeners = {
-    pointerover: over, focusin: enter, focusout: leave, keydown: escape, keyup: moved,
+    pointerover: over, pointerdown: press, focusin: enter, focusout: leave, keydown: escape,
+    keyup: moved,
   }
   for (const [name, does] of Object.entries(listeners)) { document.addEventListener(name, does) }
   return () => {

@@ -53,7 +53,8 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
         page.remove_listener("pageerror", stumble)
         chrome.leave(page)
     assert not complaints, complaints
-    assert not OURS.search(server.log[said_before:])
+    said = server.log[said_before:]
+    assert not OURS.search(said), said
 
 
 def status(page: Page) -> Locator:
