@@ -21,7 +21,7 @@ CASES = [
     ("bar", {"load": "decaying"}),
     ("strand", {}),
     ("strand", {"wires": 10, **FEW}),
-    ("strand", {"wires": 20, **FEW}),
+    ("strand", {"wires": 15, **FEW}),
     ("block", {}),
     ("block", {"top_normal_displacement": 4e-5}),
     ("block", {"interpolation": "biquadratic", "elements": 24, "elements_up": 12, **FEW}),
