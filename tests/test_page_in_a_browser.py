@@ -111,7 +111,7 @@ def test_a_narrow_window_sees_the_run_first_and_has_all_tabs_in_reach(open_page:
 
 
 def test_pages_run_side_by_side(open_page: Visit) -> None:
-    pages = [open_page("?method=paper&max_iterations=40") for _ in range(3)]
+    pages = [open_page("?method=paper&max_iterations=40") for _ in range(2)]
     for page in pages:
         expect(status(page)).to_contain_text("after 40 iterations")
 
