@@ -51,11 +51,7 @@ function controls(model) {
       // What is no number is refused as any other value, in the same words.
       tell(row, text && Number.isFinite(value) ? value : text)
     }
-    // What is written again, though it is the same, has the browser lay out the page anew.
-    const shows = (value) => value === last && read() === value &&
-      (field.typed || field.value === written(value, item))
     row.show = (value) => {
-      if (shows(value)) { return }
       start = Math.min(start, value)
       end = Math.max(end, value)
       range.min = place(start)
@@ -69,7 +65,7 @@ function controls(model) {
   const choice = (row, item) => {
     const select = named(item, make("select", {onchange: () => tell(row, select.value)}))
     filled(select, item.options)
-    row.show = (value) => { if (select.value !== value) { select.value = value } }
+    row.show = (value) => { select.value = value }
     return [make("label", {}, item.label), select]
   }
   const flip = (row, item) => {
