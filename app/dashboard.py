@@ -75,6 +75,7 @@ class Dashboard:
         self._asked_for = session.wanted
         self._loaded = False
         self._logged = (0, "")
+        self._sent = self._painted = 0
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
@@ -157,7 +158,7 @@ class Dashboard:
         self.transport.tick()
         self._pass_on(self.session.collect())
         self._log()
-        is_lost = self._pulse.painted < self._pulse.frame
+        is_lost = self._painted < self._sent
         if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
@@ -169,7 +170,7 @@ class Dashboard:
             pn.state.notifications.error(text, duration=8000)
 
     def _listen(self) -> None:
-        self._pulse.param.watch(self._on_painted, "painted")
+        self._pulse.on_msg(lambda message: self._on_painted(message.data))
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         does = {**self.transport.keys(), "p": self._present}
         self._keys.param.watch(lambda event: does[Keys.name_of(event)](), "key")
@@ -211,7 +212,7 @@ class Dashboard:
 
     def _show(self) -> None:
         """Tell plots that do not show the run's scene from those that do; show where the run is."""
-        is_dimmed = self.session.facts is None and not self._pulse.frame
+        is_dimmed = self.session.facts is None and not self._sent
         is_dimmed = is_dimmed or self.session.settings.scene != self._painted_scene
         if is_dimmed != self._is_dimmed:
             self._is_dimmed = is_dimmed
@@ -226,7 +227,8 @@ class Dashboard:
         for block in blocks:
             with pn.io.hold():
                 self._sent_at = time.monotonic()
-                self._pulse.param.update(picture=block, frame=self._pulse.frame + 1)
+                self._sent += 1
+                self._pulse.paint(self._sent, block)
                 if self.session.facts is not None:
                     self._painted_scene = self.session.settings.scene
                 self._show()
@@ -241,10 +243,9 @@ class Dashboard:
             self._logged = session.ticket, came_to
             pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
 
-    def _on_painted(self, event: Any) -> None:
-        if event.new != self._pulse.frame:
-            return
-        if self._tabs.shows_the_run:
+    def _on_painted(self, number: int) -> None:
+        self._painted = number
+        if number == self._sent and self._tabs.shows_the_run:
             self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
 
     def _drag(self, told: dict[str, Any]) -> None:

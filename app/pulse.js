@@ -46,9 +46,7 @@ export function render({model, view}) {
     }
     return values
   }
-  const paint = () => {
-    const buffer = model.picture
-    if (!buffer || !buffer.byteLength) { return }
+  const paint = (buffer) => {
     const length = new DataView(buffer).getUint32(0, true)
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)))
     for (const [name, part] of Object.entries(header)) {
@@ -124,13 +122,12 @@ export function render({model, view}) {
     lost = false
     model.beat = -++beats
   })
-  model.on("frame", () => {
+  model.on("msg:custom", ([number, picture]) => {
     closed = null
-    const frame = model.frame
-    paint()
+    paint(picture)
     speak()
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
-      model.painted = frame
+      model.send_msg(number)
     })))
   })
   if (window.innerWidth < 640) { model.phone = true }

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import param
 
-from app.innards import Prompt
+from app.innards import Plain
 
 
-class Pulse(Prompt):
-    """An invisible component that paints pictures, and says when they are painted."""
+class Pulse(Plain):
+    """An invisible component that paints pictures, and says when they are painted.
 
-    picture = param.Bytes(default=b"", doc="The newest picture, as `app.worker.block` packs it.")
-    frame = param.Integer(default=0, doc="Number of the newest picture sent.")
-    painted = param.Integer(default=0, doc="Number of the newest picture painted.")
+    Both are messages: as parameters, which Panel keeps on both sides, they took the server twice
+    as long.
+    """
+
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
@@ -23,3 +24,7 @@ class Pulse(Prompt):
     heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 
     _esm = "pulse.js"
+
+    def paint(self, number: int, block: bytes) -> None:
+        """Send a picture, as `app.worker.block` packs it; once painted, its number comes back."""
+        self._send_msg([number, block])

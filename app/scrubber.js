@@ -4,7 +4,7 @@ export function render({model}) {
   const range = document.createElement("input")
   range.type = "range"
   const button = document.createElement("button")
-  button.onclick = () => { model.pressed += 1 }
+  button.onclick = () => model.send_msg(null)
   label.append(document.createElement("span"), text, range)
   const root = document.createElement("div")
   root.append(button, label)
@@ -25,7 +25,7 @@ export function render({model}) {
     held = true
     window.addEventListener("pointerup", () => { held = false }, {once: true})
   })
-  range.addEventListener("input", () => { model.wanted = Number(range.value) })
+  range.addEventListener("input", () => model.send_msg(Number(range.value)))
   for (const name of ["label", "text", "start", "end", "shown", "playing"]) { model.on(name, show) }
   show()
   return root

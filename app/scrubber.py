@@ -1,8 +1,8 @@
-"""A slider that the server and the user both move.
+"""A slider that pictures and the user both move.
 
-What the server shows and what the user wants are two parameters, one for each direction, so that
-no late echo of a shown value is taken for a wish (Material sliders send such echoes when they are
-updated many times a second).
+Where it stands is a parameter, and what the user wants a message, so that no late echo of a shown
+value is taken for a wish (Material sliders send such echoes when they are updated many times a
+second).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import param
 
-from app.innards import Prompt
+from app.innards import Plain
 
 STYLE = """
 label { display: block; font-size: 15px; line-height: 1.4; white-space: nowrap; }
@@ -24,21 +24,17 @@ button { float: right; padding: 0 6px; font: inherit; line-height: 1.3; color: i
 """
 
 
-class Scrubber(Prompt):
-    """A range from `start` to `end`.
+class Scrubber(Plain):
+    """A range from `start` to `end`; messages say where the user moves it, or None for its button.
 
     Attributes
     ----------
     shown
         Where it stands.
-    wanted
-        Where the user moved it last.
     plays
         What its button says that plays through it; without words there is none.
     playing
         Whether it does.
-    pressed
-        Counts how often that button was pressed.
     """
 
     label = param.String(default="")
@@ -47,17 +43,27 @@ class Scrubber(Prompt):
     start = param.Integer(default=0)
     end = param.Integer(default=1)
     shown = param.Integer(default=0)
-    wanted = param.Integer(default=-1)
     plays = param.String(default="")
     playing = param.Boolean(default=False)
-    pressed = param.Integer(default=0)
 
     _esm = "scrubber.js"
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 
-def scrubber(width: int, wish: Callable[[int], None], **options: Any) -> Scrubber:
-    """Make one for a row, where its label needs this width, px; `wish` is told what is wanted."""
+def scrubber(
+    width: int, wish: Callable[[int], None], play: Callable[[], None] | None = None, **options: Any
+) -> Scrubber:
+    """Make one for a row, where its label needs this width, px.
+
+    `wish` is told what is wanted, `play` when the button is pressed.
+    """
+
+    def hear(place: int | None) -> None:
+        if place is not None:
+            wish(place)
+        elif play is not None:
+            play()
+
     made = Scrubber(
         margin=(0, 8),
         min_width=width,
@@ -65,5 +71,5 @@ def scrubber(width: int, wish: Callable[[int], None], **options: Any) -> Scrubbe
         styles={"flex": f"1 1 {width}px"},
         **options,
     )
-    made.param.watch(lambda event: wish(event.new), "wanted")
+    made.on_msg(lambda message: hear(message.data))
     return made

@@ -9,7 +9,12 @@ TEMPLATE = """
 <script>
   // Panel has modules read by a library; a browser that can do it by itself is quicker (0.25 s).
   self.esmsInitOptions = {shimMode: false}
-  document.addEventListener("DOMContentLoaded", () => { importShim.addImportMap = () => {} });
+  document.addEventListener("DOMContentLoaded", () => {
+    importShim.addImportMap = () => {}
+    // It says again what fonts there are, but not of which letters each has the shapes: browsers
+    // would load all of them, one after the other, and lay out the page anew for each.
+    document.querySelector("link[href*='material-icons.css']")?.remove()
+  });
   (() => {
     const root = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)")
     const kept = () => { try { return localStorage.getItem("theme") } catch { return null } }

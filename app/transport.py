@@ -13,6 +13,7 @@ from app.address import PACES
 from app.panes import button, select
 from app.scrubber import scrubber
 from app.session import Session
+from app.worker.easel import INSTANT, ITERATION
 from solver.settings import Settings
 
 LABELS = {
@@ -109,7 +110,7 @@ class Transport:
     def move_instant(self, by: int) -> None:
         """Look at an instant so many later."""
         if (facts := self._session.facts) is not None:
-            self._choose_phase((facts.instant + by) / max(facts.instants - 1, 1))
+            self._choose_instant(facts.instant + by)
 
     def move_iteration(self, by: int) -> None:
         """Look at an iteration so many later."""
@@ -158,18 +159,10 @@ class Transport:
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
-        active, facts = self._session.goes_on, self._session.facts
+        active = self._session.goes_on
         self._run.param.update(
             label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
         )
-        if facts is not None:
-            at, done = facts.iteration, max(facts.done, 1)
-            self._iteration.param.update(
-                start=1, end=max(done, 2), shown=at, text=f"{at} of {done}"
-            )
-            self._instant.param.update(
-                end=max(facts.instants - 1, 1), shown=facts.instant, text=f"t = {facts.time:.3g} s"
-            )
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)
 
@@ -197,17 +190,21 @@ class Transport:
         self._iteration = scrubber(
             155,
             self._session.seek,
+            name=ITERATION,
             label="Iteration",
+            start=1,
+            end=2,
             help="Go back to any iteration done; at the right end it follows the run.",
         )
         self._instant = scrubber(
             125,
-            lambda place: self._choose_phase(place / max(self._instant.end, 1)),
+            self._choose_instant,
+            self.play,
+            name=INSTANT,
             label="Instant",
             help="The instant that is drawn; a tap on the map or the load path chooses it too.",
             plays="Play through time, or stop (t).",
         )
-        self._instant.param.watch(lambda event: self.play(), "pressed")
         self._substructure = scrubber(
             118,
             self.choose_substructure,
@@ -215,6 +212,10 @@ class Transport:
             help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
             start=1,
         )
+
+    def _choose_instant(self, number: int) -> None:
+        if (facts := self._session.facts) is not None:
+            self._choose_phase(number / max(facts.instants - 1, 1))
 
     def _choose_phase(self, phase: float) -> None:
         """Look at a share of the interval; who chooses one plays no more."""

@@ -30,10 +30,14 @@ const model = (name) => {
     }
   }
 }
-const frame = () => {
-  window.pulse ??= [...Bokeh.documents[0]._all_models.values()]
-    .find((one) => one.class_name === "Pulse")
-  return window.pulse.data.frame
+// Pictures that have come since this was first asked.
+const pictures = () => {
+  if (window.pictured === undefined) {
+    window.pictured = 0
+    const all = [...Bokeh.documents[0]._all_models.values()]
+    all.find((one) => one.class_name === "Pulse").on_event("esm_event", () => { pictured += 1 })
+  }
+  return window.pictured
 }
 const text = (name) => model(name).text.replaceAll("&lt;", "<").replaceAll("&gt;", ">")
 const FAILED = /broke|gave|given|stopped/
@@ -78,9 +82,9 @@ class Tour:
                     self._move(move)
                     self._await_value(move.name, move.before)
                 elif move.starts_a_run:
-                    shown = self._evaluate("frame()")
+                    shown = self._evaluate("pictures()")
                     self._move(move)
-                    self._await(f"frame() > {shown}")
+                    self._await(f"pictures() > {shown}")
             except TimeoutError as late:
                 words = self._evaluate('[text("status"), window.broken]')
                 raise AssertionError(f"{described(move)}: {words}") from late

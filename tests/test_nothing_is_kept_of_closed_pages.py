@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import logging
 
 import pytest
 from bokeh.document import Document
@@ -42,7 +43,10 @@ async def visit(server: Server, address: str) -> None:
 
 # Panel hands its download button both names of one parameter.
 @pytest.mark.filterwarnings("ignore")
-def test_waves_of_pages_leave_nothing() -> None:
+def test_waves_of_pages_leave_nothing(caplog: pytest.LogCaptureFixture) -> None:
+    # What pytest keeps of a log has the messages of pages, and with them their models.
+    caplog.set_level(logging.INFO, "panel")
+
     async def waves() -> list[dict[str, int]]:
         server = serve_pages()
         counts = []

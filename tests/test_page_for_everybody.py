@@ -20,6 +20,14 @@ SEEN = """(name) => {
   return [range.start, range.end]
 }"""
 
+AT_REST = """() => {
+  const roots = [document]
+  for (const root of roots) {
+    roots.push(...[...root.querySelectorAll("*")].flatMap((one) => one.shadowRoot ?? []))
+  }
+  return roots.every((root) => root.getAnimations().every((one) => one.playState !== "running"))
+}"""
+
 
 def field(page: Page, name: str) -> Locator:
     return page.get_by_role("textbox", name=re.compile(rf"^{name}\b"))
@@ -27,6 +35,8 @@ def field(page: Page, name: str) -> Locator:
 
 def violations(page: Page) -> list[Any]:
     """Give what of a page is not accessible, and where."""
+    # Colours that fade into those of another theme have less contrast on their way.
+    page.wait_for_function(AT_REST)
     return [
         (one["id"], [node["html"] for node in one["nodes"]])
         for one in Axe().run(page).response["violations"]

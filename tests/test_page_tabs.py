@@ -31,6 +31,16 @@ def test_browsers_translate_no_program_of_the_page(page: Page) -> None:
     assert [name for name, as_it_is in programs if not as_it_is] == []
 
 
+def test_browsers_load_no_letters_that_the_page_does_not_have(page: Page) -> None:
+    has_loaded = "(range) => [...document.fonts].some((font) => font.status === 'loaded' &&" + (
+        " font.family === 'Roboto' && font.unicodeRange.startsWith(range))"
+    )
+    page.wait_for_function(has_loaded, arg="U+0-FF")
+    assert not page.evaluate(has_loaded, "U+0-10FFFF")
+    cyrillic, vietnamese = "U+301", "U+102-103"
+    assert not any(page.evaluate(has_loaded, range) for range in (cyrillic, vietnamese))
+
+
 def test_the_page_makes_a_study_of_its_settings_when_asked(page: Page) -> None:
     open_report(page, "Study")
     measured = page.get_by_text("How it was measured")

@@ -33,6 +33,8 @@ def test_every_view_that_applies_is_painted_of_the_iterate_that_the_words_name(
     for picture, page in zip(shown.pictures, shown.models, strict=True):
         words = page["status"]["text"]
         assert re.search(rf"(iteration|after) {picture.facts.done}\b", words)
+        assert page["iteration"]["text"] == f"{picture.facts.iteration} of {picture.facts.done}"
+        assert page["instant"]["shown"] == picture.facts.instant
         curves = page["convergence.curves"]
         if picture.facts.done == len(curves["xs"][-2]):
             assert curves["xs"][-1][0] == picture.facts.iteration

@@ -11,6 +11,7 @@ import pytest
 from bokeh.server.session import ServerSession
 from panel.custom import JSComponent
 from panel.io.server import DocHandler
+from panel.models.esm import DataEvent, ESMEvent
 from panel.reactive import Syncable
 from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
@@ -65,9 +66,16 @@ def test_tags_of_a_pane_are_those_of_its_model() -> None:
     assert pn.pane.HTML("", tags=["status"]).get_root().tags == ["status"]
 
 
-def test_pictures_are_bytes_in_the_browser_too() -> None:
-    root = Pulse(picture=b"1234").get_root()
-    assert root.data.picture == b"1234"
+def test_pictures_are_messages_and_so_is_that_they_are_painted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    pulse, sent, told = Pulse(), [], []
+    pulse.on_msg(lambda message: told.append(message.data))
+    monkeypatch.setattr(pulse, "_send_event", lambda kind, data: sent.append((kind, data)))
+    pulse.paint(7, b"1234")
+    assert sent == [(ESMEvent, [7, b"1234"])]
+    pulse._process_event(DataEvent(pulse.get_root(), 7))
+    assert told == [7]
 
 
 def test_what_a_picture_sets_has_its_name_in_the_figure() -> None:

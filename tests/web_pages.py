@@ -56,7 +56,7 @@ class WebPage:
     def __init__(self, address: str) -> None:
         self._address = address
         self._socket: WebSocketClientConnection | None = None
-        self._pulse = self._token = ""
+        self._pulse = self._pulse_data = self._token = ""
         self._form = self._form_data = ""
         self._count = self._told = 0
         self._writes = asyncio.Lock()
@@ -82,7 +82,7 @@ class WebPage:
         while not self._pulse:
             kind, content = await self._message()
             if kind == "PULL-DOC-REPLY":
-                _, self._pulse, _ = _component(content, "Pulse")
+                self._pulse, self._pulse_data, _ = _component(content, "Pulse")
                 self._form, self._form_data, data = _component(content, "Form")
                 self._show(data)
         await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": READY})
@@ -106,26 +106,35 @@ class WebPage:
                         self.code = led[1]
                     if model == self._form_data:
                         self._show({event["attr"]: event["new"]})
-                    if model == self._pulse and event["attr"] == "frame":
+                    if event["kind"] == "MessageSent" and (number := self._number(event)):
                         self.times.append(time.monotonic())
-                        await self.set("painted", event["new"])
+                        await self._tell(self._pulse, number)
 
     async def set(self, name: str, value: Any) -> None:
         """Set a parameter of its pulse."""
-        model = {"id": self._pulse}
+        model = {"id": self._pulse_data}
         await self._patch({"kind": "ModelChanged", "model": model, "attr": name, "new": value})
 
     async def move(self, name: str, value: Any, *, hand: bool = False) -> None:
         """Have the control of a setting say that it was moved."""
         self._told += 1
         data = {"name": name, "value": value, "hand": hand, "count": self._told}
-        values = _mapped({"model": {"id": self._form}, "data": _mapped(data)})
-        event = {"type": "event", "name": "data_event", "values": values}
-        await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": event})
+        await self._tell(self._form, _mapped(data))
 
     def close(self) -> None:
         if self._socket is not None:
             self._socket.close()
+
+    async def _tell(self, model: str, data: Any) -> None:
+        """Send a message of a component."""
+        values = _mapped({"model": {"id": model}, "data": data})
+        event = {"type": "event", "name": "data_event", "values": values}
+        await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": event})
+
+    def _number(self, event: Any) -> int:
+        """Give the number of the picture that a message brings, or 0."""
+        sent = dict(event["msg_data"]["values"]["entries"])
+        return int(sent["data"][0]) if sent["model"]["id"] == self._pulse else 0
 
     def _show(self, data: dict[str, Any]) -> None:
         if "items" in data:

@@ -16,11 +16,14 @@ from app.views.legend import card_title
 from app.views.scales import upright
 from app.worker.block import Attributes, Packer, Quads
 from app.worker.readings import values
+from app.worker.reports import Facts
 from app.worker.shown import Look
 from solver.settings import Settings
 
 TAKE_AWAY, PLOTS = "take-away", "plots"
 """Names of the components that save what is seen, and that show it."""
+ITERATION, INSTANT = "iteration", "instant"
+"""Names of the sliders over these."""
 
 
 class Easel:
@@ -30,10 +33,10 @@ class Easel:
         self.packer = Packer()
         self._kept: dict[str, Any] = {}
 
-    def paint(self, scene: Scene, words: Mapping[str, str]) -> bytes:
+    def paint(self, scene: Scene, words: Mapping[str, str], facts: Facts) -> bytes:
         """Draw every view that is seen; give what has changed of the page."""
         seen_now = {"caption": caption(scene)}
-        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, PLOTS: seen_now}
+        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, PLOTS: seen_now, **sliders(facts)}
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
         for view in seen(scene.run.settings, scene.look):
@@ -55,6 +58,16 @@ def caption(scene: Scene) -> str:
     """Say of which moment of which run a picture is."""
     time, settings = scene.run.stand.instants[scene.instant], scene.run.settings
     return f"{settings.scene}, t = {time:.3g} s, iteration {scene.frame.iteration}"
+
+
+def sliders(facts: Facts) -> dict[str, Attributes]:
+    """Give where the sliders over iterations and instants stand, and what they say."""
+    at, done = facts.iteration, max(facts.done, 1)
+    last, time = max(facts.instants - 1, 1), f"t = {facts.time:.3g} s"
+    return {
+        ITERATION: {"end": max(done, 2), "shown": at, "text": f"{at} of {done}"},
+        INSTANT: {"end": last, "shown": facts.instant, "text": time},
+    }
 
 
 def seen(settings: Settings, look: Look) -> list[View]:

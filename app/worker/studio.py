@@ -165,7 +165,6 @@ class Studio:
         stand = recording.stand
         instant = instant_of(look.phase, len(stand.instants))
         scene = self._scene(run, frame, instant)
-        block = self._easel.paint(scene, self._words(run, scene))
         facts = Facts(
             iteration=max(frame.iteration, twin.shown if twin else 0),
             done=max(recording.iteration or frame.iteration, twin.iteration if twin else 0),
@@ -178,6 +177,7 @@ class Studio:
             is_over=recording.status is not None and (twin is None or twin.status is not None),
             was_warm=recording.choice is not None and recording.choice.is_previous,
         )
+        block = self._easel.paint(scene, self._words(run, scene), facts)
         self._send(Picture(run.ticket, facts, block))
         if (asked := self._table) is not None:
             self._table = None
