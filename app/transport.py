@@ -159,10 +159,9 @@ class Transport:
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
-        active = self._session.goes_on
-        self._run.param.update(
-            label="Pause" if active else "Run", icon="pause" if active else "play_arrow"
-        )
+        label, icon = ("Pause", "pause") if self._session.goes_on else ("Run", "play_arrow")
+        if self._run.icon != icon:
+            self._run.param.update(label=label, icon=icon)
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)
 
