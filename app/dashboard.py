@@ -16,7 +16,7 @@ from app.page_link import PageLink
 from app.panes import column, page, text
 from app.phone import Phone
 from app.presence import Presence
-from app.pulse import Pulse
+from app.pulse import pulse
 from app.question import Question
 from app.session import Session
 from app.sidebar import Sidebar
@@ -79,7 +79,7 @@ class Dashboard:
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
-        self._pulse, self._keys = Pulse(), Keys(css_classes=["keys"])
+        self._pulse, self._keys = pulse(), Keys(css_classes=["keys"])
         self._presence = Presence(session, self._pulse)
         session.watch(complaint=complaint)
         self.transport = Transport(session)
@@ -170,10 +170,10 @@ class Dashboard:
             pn.state.notifications.error(text, duration=8000)
 
     def _listen(self) -> None:
-        self._pulse.on_msg(lambda message: self._on_painted(message.data))
+        self._pulse.on("painted", self._on_painted)
         self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         does = {**self.transport.keys(), "p": self._present}
-        self._keys.param.watch(lambda event: does[Keys.name_of(event)](), "key")
+        self._keys.on_msg(lambda message: does[message.data]())
 
     def _make_live(self) -> pn.Column:
         words, self._figures = (text(role=role, tags=[role]) for role in ("status", "figures"))

@@ -16,7 +16,7 @@ from bokeh.document import Document
 
 from app.figures import make_figure
 from app.form import item_of
-from app.innards import Prompt
+from app.innards import Plain
 from app.panes import looks, script
 from app.views.catalogue import VIEWS
 from app.views.drawing import View
@@ -28,7 +28,7 @@ NEEDED = "label", "start", "end", "step", "log", "whole"
 """Of a slider, for whoever drags its setting elsewhere."""
 
 
-class Gallery(Prompt):
+class Gallery(Plain):
     """The cards; messages from the browser are `{kind, value}`, what was chosen and where.
 
     Attributes

@@ -28,15 +28,6 @@ class Plain(JSComponent):
         return {**super()._get_properties(doc), "bundle": type(self).__name__}
 
 
-class Prompt(Plain):
-    """A component whose changes are heard at once.
-
-    Panel gathers what a browser changes for 50 ms, which every painted picture would wait for.
-    """
-
-    _debounce = 0
-
-
 def connections() -> set[Any]:
     """Give the present session's sockets: one that broke and was opened again is another one."""
     context: Any = pn.state.curdoc.session_context if pn.state.curdoc else None

@@ -26,7 +26,6 @@ export function render({model}) {
   Object.assign(button, {textContent: "?", title: "Keys and words (?).", ariaLabel: "Keys and words"})
   button.onclick = open
   const names = new Set([...model.keys.map(([name]) => name), ...model.own])
-  let count = 0
   const press = (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !model.hears) { return }
     const {key} = event, name = event.shiftKey && key.startsWith("Arrow") ? "Shift+" + key : key
@@ -40,7 +39,7 @@ export function render({model}) {
     if (name === "?") { open() }
     else if (model.own.includes(name)) {
       document.dispatchEvent(new CustomEvent("plot-key", {detail: name}))
-    } else { model.key = name + "#" + (count += 1) }
+    } else { model.send_msg(name) }
   }
   document.addEventListener("keydown", press)
   model.on("remove", () => {

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import param
 
 from app.glossary import TERMS
-from app.innards import Prompt
+from app.innards import Plain
 from app.panes import script
 
 KEYS = (
@@ -45,8 +45,10 @@ th { padding-right: 20px; text-align: left; vertical-align: top; white-space: no
 """
 
 
-class Keys(Prompt):
+class Keys(Plain):
     """A small button that lists keys and words; it hears keys wherever they are free.
+
+    Messages are the names of keys that the server follows.
 
     Attributes
     ----------
@@ -58,21 +60,12 @@ class Keys(Prompt):
         Those that the browser follows by itself; plots hear them as the event "plot-key".
     hears
         Whether keys move the run: while it is looked at, once the page is built.
-    key
-        The last one pressed that the server follows, with a count to tell repeats apart.
     """
 
     keys = param.List(default=[list(key) for key in KEYS])
     terms = param.List(default=[[list(spellings), line] for spellings, line in TERMS.items()])
     own = param.List(default=list(IN_THE_BROWSER))
     hears = param.Boolean(default=False)
-    key = param.String(default="")
 
     _esm = script("glossary.js", "keys.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
-
-    @staticmethod
-    def name_of(event: Any) -> str:
-        """Give the name of the key that a change of `key` tells of."""
-        name: str = event.new.partition("#")[0]
-        return name

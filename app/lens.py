@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from app.innards import Prompt
+from app.innards import Plain
 
 STYLE = """
 div { position: fixed; z-index: 1310; display: flex; align-items: center; gap: 6px; }
@@ -18,7 +18,7 @@ button { width: 26px; height: 24px; padding: 0; cursor: pointer;
 """
 
 
-class Lens(Prompt):
+class Lens(Plain):
     """Shows the values under the pointer, and a button on the card that one looks at."""
 
     _esm = "lens.js"

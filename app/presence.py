@@ -32,7 +32,7 @@ class Presence:
         self._is_alone = True
         self._heard_at = math.inf
         self._sockets: set[Any] = set()
-        pulse.param.watch(self._on_beat, "beat")
+        pulse.on("beat", self._on_beat)
 
     def begin(self) -> None:
         """Take it that a browser has built the page."""
@@ -53,9 +53,9 @@ class Presence:
             self._session.rest(is_alone)
             self._session.ask(afresh=True)
 
-    def _on_beat(self, event: Any) -> None:
+    def _on_beat(self, beat: int) -> None:
         """Answer a sign of life; a page that missed some is given all that it has to show."""
         self._heard_at = time.monotonic()
-        self._pulse.heard = event.new
-        if event.new < 0:
+        self._pulse.heard = beat
+        if beat < 0:
             self._session.ask(afresh=True)

@@ -1,6 +1,7 @@
 const WAIT = 8000, PATIENCE = 10000, BEAT = 2000, UNHEARD = 3
 export function render({model, view}) {
-  const found = new Map()
+  const found = new Map(), {page} = model
+  const tell = (kind, number) => model.send_msg([kind, page, number])
   const named = (name) => {
     const kept = found.get(name)
     if (kept && kept.document) { return kept }
@@ -107,27 +108,28 @@ export function render({model, view}) {
     }
   }
   const timer = setInterval(() => {
-    // Bokeh, connected again, asks for a whole page and fails to read it: half of one stays.
-    const kept = Bokeh.documents.filter((one) => one.roots().length)
-    if (kept.length < Bokeh.documents.length) { Bokeh.documents.splice(0, Infinity, ...kept) }
     if (beats - Math.abs(model.heard) >= UNHEARD) { lose() }
-    if (!closed) { model.beat = ++beats }
+    if (!closed) { tell("beat", ++beats) }
   }, BEAT)
-  view.model.document.on_event("connection_lost", (_, event) => {
+  const {document: own} = view.model
+  // Bokeh, connected again, puts a whole page in place of this one, as it was first asked for.
+  own.replace_with_json = () => {}
+  own.on_event("connection_lost", (_, event) => {
     closed = event
     lose()
   })
   model.on("heard", () => {
     if (!lost) { return }
     lost = false
-    model.beat = -++beats
+    tell("beat", -++beats)
   })
   model.on("msg:custom", ([number, picture]) => {
+    if (!number) { return location.replace(address()) }
     closed = null
     paint(picture)
     speak()
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
-      model.send_msg(number)
+      tell("painted", number)
     })))
   })
   if (window.innerWidth < 640) { model.phone = true }

@@ -2,29 +2,57 @@
 
 from __future__ import annotations
 
+import secrets
+from collections.abc import Callable
+from typing import Any
+
 import param
 
 from app.innards import Plain
 
 
 class Pulse(Plain):
-    """An invisible component that paints pictures, and says when they are painted.
+    """An invisible component that paints pictures, says when they are painted, and that it lives.
 
-    Both are messages: as parameters, which Panel keeps on both sides, they took the server twice
-    as long.
+    All of these are messages: as parameters, which Panel keeps on both sides, pictures took the
+    server twice as long.
     """
 
+    page = param.String(default="", doc="Tells this page from that of a server's heir.")
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
     query = param.String(default="", doc="What an address has to say to come back to this.")
     copy = param.Integer(default=0, doc="Counts how often the address was to be copied.")
     copied = param.Integer(default=0, doc="The last of them that was; negative if it could not be.")
-    beat = param.Integer(default=0, doc="Counts signs of life; negative asks for all of a picture.")
     heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 
     _esm = "pulse.js"
 
     def paint(self, number: int, block: bytes) -> None:
-        """Send a picture, as `app.worker.block` packs it; once painted, its number comes back."""
+        """Send a picture, as `app.worker.block` packs it; once painted, its number comes back.
+
+        Number 0 has the page made anew.
+        """
         self._send_msg([number, block])
+
+    def on(self, kind: str, does: Callable[[int], None]) -> None:
+        """Have something done with the number of a message: of a picture "painted", or of a "beat".
+
+        A beat counts signs of life; a negative one asks for all of a picture.
+        """
+
+        def hear(message: Any) -> None:
+            told, page, number = message.data
+            if told == kind and page == self.page:
+                does(number)
+            elif told == kind:
+                # A server that is started again has models of the same names as the one before.
+                self.paint(0, b"")
+
+        self.on_msg(hear)
+
+
+def pulse() -> Pulse:
+    """Give that of a page."""
+    return Pulse(page=secrets.token_hex(8))

@@ -9,23 +9,16 @@ import panel as pn
 import panel_material_ui as pmui
 import pytest
 from bokeh.server.session import ServerSession
-from panel.custom import JSComponent
 from panel.io.server import DocHandler
 from panel.models.esm import DataEvent, ESMEvent
-from panel.reactive import Syncable
 from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
 from web_pages import run_apart
 
 from app.figures import make_figure
-from app.innards import Prompt, ignore_business, open_in_turn
-from app.pulse import Pulse
+from app.innards import ignore_business, open_in_turn
+from app.pulse import pulse
 from app.views.catalogue import VIEWS
-
-
-def test_components_would_gather_changes_if_they_were_not_told() -> None:
-    assert JSComponent._debounce > Prompt._debounce == 0
-    assert "self._debounce" in inspect.getsource(Syncable)
 
 
 def test_sockets_can_be_told_to_send_at_once() -> None:
@@ -69,13 +62,17 @@ def test_tags_of_a_pane_are_those_of_its_model() -> None:
 def test_pictures_are_messages_and_so_is_that_they_are_painted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    pulse, sent, told = Pulse(), [], []
-    pulse.on_msg(lambda message: told.append(message.data))
-    monkeypatch.setattr(pulse, "_send_event", lambda kind, data: sent.append((kind, data)))
-    pulse.paint(7, b"1234")
+    made, sent, told = pulse(), [], []
+    made.on("painted", told.append)
+    monkeypatch.setattr(made, "_send_event", lambda kind, data: sent.append((kind, data)))
+    made.paint(7, b"1234")
     assert sent == [(ESMEvent, [7, b"1234"])]
-    pulse._process_event(DataEvent(pulse.get_root(), 7))
+    for page in (pulse().page, made.page):
+        for kind in ("beat", "painted"):
+            made._process_event(DataEvent(made.get_root(), [kind, page, 7]))
     assert told == [7]
+    # Of another page, which is to be made anew.
+    assert sent[1:] == [(ESMEvent, [0, b""])]
 
 
 def test_what_a_picture_sets_has_its_name_in_the_figure() -> None:

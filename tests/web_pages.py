@@ -56,7 +56,7 @@ class WebPage:
     def __init__(self, address: str) -> None:
         self._address = address
         self._socket: WebSocketClientConnection | None = None
-        self._pulse = self._pulse_data = self._token = ""
+        self._pulse = self._pulse_data = self._page = self._token = ""
         self._form = self._form_data = ""
         self._count = self._told = 0
         self._writes = asyncio.Lock()
@@ -82,7 +82,8 @@ class WebPage:
         while not self._pulse:
             kind, content = await self._message()
             if kind == "PULL-DOC-REPLY":
-                self._pulse, self._pulse_data, _ = _component(content, "Pulse")
+                self._pulse, self._pulse_data, data = _component(content, "Pulse")
+                self._page = data["page"]
                 self._form, self._form_data, data = _component(content, "Form")
                 self._show(data)
         await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": READY})
@@ -108,7 +109,7 @@ class WebPage:
                         self._show({event["attr"]: event["new"]})
                     if event["kind"] == "MessageSent" and (number := self._number(event)):
                         self.times.append(time.monotonic())
-                        await self._tell(self._pulse, number)
+                        await self._tell(self._pulse, ["painted", self._page, number])
 
     async def set(self, name: str, value: Any) -> None:
         """Set a parameter of its pulse."""
