@@ -11,6 +11,7 @@ from studios import ALL, SMALL, Shown, keys
 
 from app.views import convergence, error_time, friction, loop
 from app.views.catalogue import VIEWS, fitting
+from app.views.colors import ORANGE
 from app.views.drawing import Scene
 from app.views.scales import decades
 from app.worker.recording import COLUMNS
@@ -63,6 +64,16 @@ def test_curves_that_begin_above_ten_are_not_cut_off() -> None:
     y = convergence.draw(scene, None).y
     assert y is not None
     assert y.high == 100.0
+
+
+def test_an_estimate_that_is_made_now_and_then_is_a_curve_through_all_of_them() -> None:
+    scene = looked_at("bar", {"method": "paper", "max_iterations": 7, "tolerance": 1e-30})
+    made = np.array([np.nan, 0.5, np.nan, np.nan, 0.2, np.nan, 0.1])
+    scene.run.history._table[COLUMNS.index("estimated_error"), :7] = made
+    curves = convergence.draw(scene, None).curves
+    estimate = next(curve for curve in curves if curve.color == ORANGE)
+    assert list(estimate.x) == [2, 5, 7]
+    assert list(estimate.y) == [0.5, 0.2, 0.1]
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
@@ -53,9 +55,10 @@ def draw(scene: Scene, _kept: None) -> Drawing:
             Curve(ghost["iteration"], ghost[name], color, 1.2)
             for name, color, _, _ in CURVES[ERRORS:]
         ]
-    curves += [
-        Curve(now["iteration"], now[name], color, dash=dash) for name, color, _, dash in CURVES
-    ]
+    for name, color, _, dash in CURVES:
+        # An estimate is not made in every iteration, and the reference may come later.
+        known = np.isfinite(now[name])
+        curves.append(Curve(now["iteration"][known], now[name][known], color, dash=dash))
     curves.append(upright([scene.frame.iteration], y, color=VERMILION, width=2))
     return Drawing(x, y, curves, keys=keys)
 
