@@ -98,6 +98,15 @@ def open_report(page: Page, name: str) -> None:
         expect(page.get_by_text(words).first).to_be_visible(visible=tab == name)
 
 
+def at_rest(page: Page, place: str) -> Any:
+    """Give what an expression says of a place once that moves no more: the page is laid out."""
+    before, now = None, page.evaluate(place)
+    while now != before:
+        page.wait_for_timeout(300)
+        before, now = now, page.evaluate(place)
+    return now
+
+
 def bodies_drawn(page: Page, number: str) -> None:
     """Wait until the number of quadrilaterals that the browser draws is as an expression says."""
     page.wait_for_function(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Chrome, Server
-from pages import ENDLESS, Visit, open_report, press, status, visits
+from pages import ENDLESS, Visit, at_rest, open_report, press, status, visits
 from playwright.sync_api import Page, expect
 
 TINY = "?elements=8&substructures=2&instants=5"
@@ -105,7 +105,8 @@ def test_the_papers_figures_are_drawn_in_the_dark_theme_say_their_values_and_can
             (one) => Math.max(...rgb(one.background_fill_color)) < 80)
         }"""
     )
-    place = page.evaluate(
+    place = at_rest(
+        page,
         """() => {
           const figure = [...Bokeh.documents[0].all_models].find(
             (one) => one.type === "Figure" && one.title?.text === "What is true")
@@ -114,7 +115,7 @@ def test_the_papers_figures_are_drawn_in_the_dark_theme_say_their_values_and_can
           const {Iteration, Relative_error} = figure.renderers[0].data_source.data
           const {x_scale, y_scale} = view.frame
           return [x + x_scale.compute(Iteration[100]), y + y_scale.compute(Relative_error[100])]
-        }"""
+        }""",
     )
     page.mouse.move(*place)
     expect(page.locator(".bk-Tooltip").first).to_contain_text("friction force, multiscale")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pages import Visit, card, status
+from pages import Visit, at_rest, card, status
 from playwright.sync_api import Page, expect
 
 MODEL = """const model = (name) =>
@@ -97,11 +97,9 @@ MIDDLE = (
 
 def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None:
     page = open_page("?linear_stage=pgd&elements=20&substructures=4&pressure=0")
-    expect(status(page)).to_contain_text("iteration")
-    page.wait_for_function(
-        f"() => {{{MODEL}; return (model('scene.bodies')?.data.xs || []).length}}"
-    )
-    page.mouse.click(*page.evaluate(MIDDLE))
+    expect(status(page)).to_contain_text("✓ converged")
+    expect(card(page, "Scene").locator("canvas").first).to_be_visible()
+    page.mouse.click(*at_rest(page, MIDDLE))
     expect(page.get_by_role("slider", name="Substructure", exact=True)).to_have_value("2")
 
 
@@ -114,10 +112,10 @@ def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away
     shown = f"() => {{{lines}.some((x) => Math.abs(x - 0.275) < 1e-6)}}"
     assert not page.evaluate(shown)
     # Arrows of the pressure end there: who does not drag them taps on the bar.
-    page.mouse.click(*page.evaluate(MIDDLE))
+    page.mouse.click(*at_rest(page, MIDDLE))
     page.wait_for_function(shown)
     page.wait_for_timeout(400)
-    page.mouse.click(*page.evaluate(MIDDLE))
+    page.mouse.click(*at_rest(page, MIDDLE))
     page.wait_for_function(f"() => !({shown})()")
 
 
