@@ -49,9 +49,8 @@ def hatched(edge: Array, depth: float, behind: float = -1.0) -> Array:
     feet = np.stack([np.interp(at, places, edge[:, axis]) for axis in (0, 1)], axis=1)
     along = (edge[-1] - edge[0]) / max(float(np.hypot(*(edge[-1] - edge[0]))), 1e-300)
     normal = behind * np.array([-along[1], along[0]])
-    ends = feet + depth * (normal - 0.6 * along)
-    strokes = [np.stack([foot, end]) for foot, end in zip(feet, ends, strict=True)]
-    return joined([edge, *strokes])
+    strokes = [feet, feet + depth * (normal - 0.6 * along), np.full_like(feet, np.nan)]
+    return np.concatenate([edge, BREAK, np.stack(strokes, axis=1).reshape(-1, 2)])
 
 
 def rollers(first: Array, last: Array, radius: float, count: int = 4) -> Array:

@@ -56,7 +56,8 @@ class Packer:
         header, numbers = {}, bytearray()
         for name, attributes in models.items():
             found = _Part()
-            described = {key: found.describe(value) for key, value in attributes.items()}
+            with np.errstate(all="ignore"):
+                described = {key: found.describe(value) for key, value in attributes.items()}
             known = (json.dumps(described), bytes(found.numbers))
             if self._sent.get(name) == known:
                 continue
@@ -80,12 +81,12 @@ class _Part:
             return {"quads": [corners, value.corners.size, places, value.places.size]}
         if isinstance(value, np.ndarray) and value.ndim == 2:
             kind = "uint8" if value.dtype == np.uint8 else "float32"
-            at = self._put(np.ascontiguousarray(value, dtype=kind))
+            at = self._put(np.asarray(value, kind))
             return {"image": [at, *value.shape, kind]}
         if isinstance(value, np.ndarray):
-            return {"floats": [self._put(_floats(value)), value.size]}
+            return {"floats": [self._put(np.asarray(value, np.float32)), value.size]}
         if isinstance(value, Sequence) and value and isinstance(value[0], np.ndarray):
-            return {"lines": [[self._put(_floats(one)), one.size] for one in value]}
+            return {"lines": [[self._put(np.asarray(one, np.float32)), one.size] for one in value]}
         return value
 
     def _put(self, values: np.ndarray) -> int:
@@ -93,11 +94,6 @@ class _Part:
         self.numbers += values.tobytes()
         self.numbers += b"\0" * (-len(self.numbers) % ALIGNED)
         return at
-
-
-def _floats(values: np.ndarray) -> np.ndarray:
-    with np.errstate(all="ignore"):
-        return np.ascontiguousarray(values, dtype=np.float32)
 
 
 def said(words: str) -> bytes:
