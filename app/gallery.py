@@ -92,8 +92,11 @@ def figures() -> str:
 def _described(view: View) -> dict[str, Any]:
     document = Document()
     document.add_root(make_figure(view))
+    made = document.to_json(deferred=False)
+    # Bokeh adds what every component of Panel's is made of, ten times as much as all figures.
+    del made["defs"]
     return {
-        "json": document.to_json(deferred=False),
+        "json": made,
         "name": view.name,
         "chooses": view.plot.chooses,
     }

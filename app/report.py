@@ -57,23 +57,12 @@ class Report:
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
-        self._progress = _words(role="progress")
-        self._heading, self._sheet = _words(), column(role="paper")
-        self._past = select("Shown", [], self._put, width=260, visible=False)
-        self._files = _row(margin=(0, 6, 8, 6))
-        self._older = _words(role="progress")
-        again = button("Do it again", "replay", self._on_start, variant="outlined")
-        self._again = _row(self._older, again, align_items="center", visible=False)
-        parts = self._again, self._heading, self._sheet, self._files
-        self._card = column(*parts, role="card paper", visible=False)
         self.view = column(role="paper", margin=(4, 10), visible=False)
 
     def open(self) -> None:
         """Show the report; nothing is computed before somebody asks."""
         if not self.view.objects:
-            words = _words(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
-            top = column(words, *self._bar(), role="card paper", margin=(0, 0, 12, 0))
-            self.view[:] = [top, self._card]
+            self.view[:] = self._made()
         self._refresh()
 
     def refresh(self) -> None:
@@ -107,11 +96,22 @@ class Report:
         """Say what stands above a report that is whole (HTML)."""
         return ""
 
-    def _bar(self) -> list[Any]:
+    def _made(self) -> list[Any]:
+        """Make what stands on the tab: what asks for a report, and the card that it is read on."""
+        self._progress, self._older = _words(role="progress"), _words(role="progress")
+        self._heading, self._sheet = _words(), column(role="paper")
+        self._past = select("Shown", [], self._put, width=260, visible=False)
+        self._files = _row(margin=(0, 6, 8, 6))
         self._start = button("Start", "play_arrow", self._on_start, color="primary")
         self._cancel = button("Cancel", "stop", self._on_cancel, variant="outlined")
-        parts = self._start, self._cancel, *self._choices(), self._past
-        return [_row(*parts, align_items="center"), self._progress]
+        again = button("Do it again", "replay", self._on_start, variant="outlined")
+        self._again = _row(self._older, again, align_items="center", visible=False)
+        words = _words(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
+        bar = self._start, self._cancel, *self._choices(), self._past
+        asked = words, _row(*bar, align_items="center"), self._progress
+        parts = self._again, self._heading, self._sheet, self._files
+        self._card = column(*parts, role="card paper", visible=False)
+        return [column(*asked, role="card paper", margin=(0, 0, 12, 0)), self._card]
 
     def _on_start(self) -> None:
         self._ask()

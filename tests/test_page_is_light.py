@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import subprocess
 import sys
 import weakref
@@ -72,7 +73,7 @@ def test_a_page_that_nobody_has_built_starts_no_process(
     assert link.hired == 1
 
 
-def test_the_server_makes_no_figure_for_a_page() -> None:
+def test_the_server_makes_no_figure_for_a_page_and_sends_little_of_any() -> None:
     document = Document()
     with set_curdoc(document):
         pn.extension(notifications=True)
@@ -83,6 +84,7 @@ def test_the_server_makes_no_figure_for_a_page() -> None:
             dashboard.page.server_doc(document)
             assert len(dashboard._gallery.shown) == 8
             assert not list(document.select({"type": Plot}))
+            assert len(json.dumps(document.to_json(deferred=False))) < 700_000
             forget(document)
 
 
