@@ -36,7 +36,7 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
             complaints.append(message.text)
 
     def stumble(error: Error) -> None:
-        complaints.append(str(error))
+        complaints.append(error.stack or str(error))
 
     def visit(query: str = "", width: int = 1280, height: int = 720, **device: Any) -> Page:
         page = chrome.new_page(width, height, **device)

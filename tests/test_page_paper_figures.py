@@ -177,6 +177,7 @@ def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
 def test_what_is_drawn_stays_while_a_report_grows(view: PaperFigures, found: Found) -> None:
     grows = Found("any", found.sections[:3])
     with set_curdoc(Page()):
+        view._made()
         view._put(grows)
         first = list(view._sheet)
         grows.sections = ["<p>other words</p>", *found.sections[1:6]]

@@ -23,6 +23,8 @@ def value(page: Page, title: str) -> Locator:
 def agreed(page: Page) -> str:
     """Wait until the run has ended and the sentence says its error; give it."""
     expect(status(page)).to_contain_text("not converged")
+    # There is none before the reference is there.
+    expect(status(page)).to_contain_text(ERROR)
     found = ERROR.search(status(page).locator("div").first.inner_text())
     assert found
     expect(value(page, "Error of the contact force")).to_have_text(found[1])

@@ -89,6 +89,7 @@ def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand:
     assert "1 of 2 runs pass" in page
     assert rows[1].outcome.advice.split(".")[0] in page
     report = StabilityReport(errand)
+    report.open()
     report._put(Found("any", sections))
     assert [pane.object for pane in report._sheet] == list(map(explained, sections))
     report._filter(WRONG)
