@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from textwrap import shorten
 from typing import Any
 from urllib.parse import parse_qsl, quote
@@ -91,7 +91,12 @@ def sight_from_query(query: str) -> tuple[Sight, str]:
                 found[name] = checked_value(SIGHT[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
-    return Sight(**found), complaint_of(refused)
+    return replace(_first_sight(found.get("lesson", "")), **found), complaint_of(refused)
+
+
+def _first_sight(lesson: str) -> Sight:
+    """Say what is looked at where an address names nothing: a lesson has an instant of its own."""
+    return Sight(lesson=lesson, instant=LESSONS[lesson].instant) if lesson else Sight()
 
 
 def _plots(text: str) -> str:
@@ -228,7 +233,8 @@ def query_of(
         pairs += [(name, json.dumps(value)) for name, value in changed.items()]
         apart = changes_of(twin, settings) if twin else {}
         pairs += [(COMPARED, json.dumps(apart, separators=(",", ":")))] if twin else []
+    usual = {**asdict(_first_sight(sight.lesson)), "lesson": ""}
     looked_at = asdict(sight).items()
-    pairs += [(name, str(value)) for name, value in looked_at if value != getattr(Sight, name)]
+    pairs += [(name, str(value)) for name, value in looked_at if value != usual[name]]
     pairs += question.pairs() if question else []
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)

@@ -258,8 +258,10 @@ class Dashboard:
         """Have the style sheet know the view, and whether there is a lesson or its question."""
         classes = ["taught", "asks"] if self._teaching.asks else ["taught"]
         lesson = classes if self._teaching.lesson else []
+        # What has a layout of its own does not go away when it is not to be visible.
+        laid_out = lesson if self._tabs.shows_the_run else []
         view = [self._stage.view] if self._stage.is_bare else []
-        self._live.css_classes = ["live", *view, *lesson]
+        self._live.css_classes = ["live", *view, *laid_out]
         self._stage.magnify(has_lesson=bool(lesson))
         self._teaching.view.is_strip = self._stage.view == PRESENT
         self._phone.dress(is_bare=self._stage.is_bare)
@@ -281,6 +283,7 @@ class Dashboard:
     def _on_tab(self) -> None:
         self._keys.hears = self._tabs.shows_the_run
         self._sidebar.report = self._tabs.report
+        self._dress()
         self._follow()
         if self._tabs.shows_the_run:
             self.session.ask(afresh=True)

@@ -34,6 +34,9 @@ const nearest = ({xs, ys, name}, x, y) => {
 export function render({model}) {
   const figures = JSON.parse(model.figures), root = document.createElement("div")
   root.className = "grid"
+  // The document hears nothing of a focus that moves within the page's own tree.
+  root.addEventListener("focusin", ({target}) =>
+    target.dispatchEvent(new CustomEvent("plot-focus", {bubbles: true, composed: true})))
   const cards = new Map(), {index, embed} = Bokeh, {Document} = Bokeh.require("document")
   // A drag tells where it is now, not everywhere it has been.
   let told = null

@@ -18,7 +18,7 @@ export function render({model}) {
     return [on ?? null, found.get(plot) ?? null]
   }
   const put = () => {
-    root.hidden = !card?.isConnected
+    root.hidden = !card?.checkVisibility()
     if (root.hidden) { return }
     const {right, top} = card.getBoundingClientRect()
     root.style.right = `${document.documentElement.clientWidth - right + 5}px`
@@ -49,14 +49,22 @@ export function render({model}) {
     due = requestAnimationFrame(() => {
       due = 0;
       [card, figure] = met(path)
+      watch()
       put()
       say()
     })
+  }
+  // Another tab takes it away without a move of the pointer.
+  const sizes = new ResizeObserver(put)
+  const watch = () => {
+    sizes.disconnect()
+    if (card) { sizes.observe(card) }
   }
   const focus = (event) => {
     if (event.composedPath().includes(root)) { return }
     pointer = null;
     [card, figure] = met(event.composedPath())
+    watch()
     put()
     say()
   }
@@ -130,12 +138,13 @@ export function render({model}) {
       if (laid && laid.height !== seen.bbox.height) { seen.invalidate_layout() }
     }
   }, 500)
-  const listeners = {pointermove: follow, focusin: focus, dblclick: back, keydown: leave,
-    "plot-key": press}
+  const listeners = {pointermove: follow, focusin: focus, "plot-focus": focus, dblclick: back,
+    keydown: leave, "plot-key": press}
   for (const [name, does] of Object.entries(listeners)) { document.addEventListener(name, does) }
   document.addEventListener("wheel", wheel, {passive: false})
   model.on("remove", () => {
     clearInterval(timer)
+    sizes.disconnect()
     document.removeEventListener("wheel", wheel)
     for (const [name, does] of Object.entries(listeners)) {
       document.removeEventListener(name, does)

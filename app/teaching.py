@@ -167,12 +167,15 @@ class Teaching:
         """Begin a lesson, with its scene and settings; without a name, leave all as it is."""
         if name in LESSONS:
             self._session.start(LESSONS[name].settings, is_alone=True)
+            self._session.watch(phase=LESSONS[name].instant)
             self._session.go()
         self.take(name)
 
     def take(self, name: str) -> None:
         """Be in a lesson whose settings are there already, or in none."""
         self.lesson, self._choice = LESSONS.get(name), None
+        if self.lesson is not None:
+            self._session.watch(interface=self.lesson.interface)
         self._tell()
 
     def follow(self, settings: Settings) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.lessons.lesson import Control, Value, pieces
+from solver.lessons.lesson import Checkpoint, Control, Value, pieces
 from solver.lessons.reading import lesson_from_file
 
 PARTS: dict[str, str] = {
@@ -24,6 +24,7 @@ PARTS: dict[str, str] = {
     "settings": "{ elements = 10, instants = 11, substructures = 2 }",
     "controls": '["peak"]',
     "views": '["Friction force"]',
+    "instant": "0.75",
     "text": '"One {value:error_force@3} and\\n\\ntwo."',
     "explanation": '"Move {control:peak}."',
 }
@@ -61,6 +62,7 @@ def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
     assert (found.name, found.order, found.right) == ("small", 1, 1)
     assert found.settings.values()["elements"] == 10
     assert found.text == ("One {value:error_force@3} and", "two.")
+    assert (found.instant, found.interface) == (0.75, "")
     (one,) = found.checkpoints
     assert one.settings.values() == {**found.settings.values(), "peak": 600.0}
 
@@ -90,6 +92,9 @@ def test_a_paragraph_falls_into_words_controls_and_values() -> None:
         ("controls", '["seed"]', ['controls = "seed"', "does something"]),
         ("controls", '["peak", "friction", "pressure"]', ["at most 2 settings"]),
         ("views", "[]", ["views = []", "at least one"]),
+        ("instant", "1.5", ["instant = 1.5", "from 0 to 1"]),
+        ("instant", None, ["instant = null", "needed"]),
+        ("interface", "2", ["interface = 2", "text"]),
         ("text", '"{control:friction}"', ["text: placeholder", "{control:peak}, {value:"]),
         ("text", '"{peak}"', ['placeholder = "peak"', "{control:peak}, {value:"]),
         ("text", '"{value:luck}"', ['quantity = "luck"', "iterations, seconds"]),
@@ -120,6 +125,7 @@ def test_what_is_wrong_with_a_lesson_is_said_with_file_key_value_and_what_is_all
         ({"expected": "inf", "tolerance": "0.1"}, ["expected = Infinity"]),
         ({"expected": '"ever"'}, ['expected = "ever"', '"never"']),
         ({"expected": '"never"', "tolerance": "0.1"}, ["beside a number, and only there"]),
+        ({"says": '"Converged"'}, ["checkpoint 1: quantity", "claim, settings, says"]),
         ({"expected": "3", "tolerance": "-1"}, ["tolerance = -1"]),
     ],
 )
@@ -154,6 +160,7 @@ def test_a_value_holds_within_what_is_expected_and_not_beyond(
     path = tmp_path / "small.toml"
     path.write_text(written({}, claim), encoding="utf-8")
     (one,) = lesson_from_file(path).checkpoints
+    assert isinstance(one, Checkpoint)
     assert all(one.expected.holds(value) for value in holds)
     assert not any(one.expected.holds(value) for value in fails)
 
@@ -176,6 +183,31 @@ def test_the_command_prints_what_it_measures_and_says_whether_all_holds(
     assert code == 1
     assert printed.splitlines()[1].startswith("  - It ends.")
     assert printed.endswith("expected never\n")
+
+
+def test_a_claim_of_one_instant_has_to_hold_where_the_plots_stand(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings = '{ load = "ramp", elements = 40, instants = 5, substructures = 2 }'
+    claim = {"quantity": '"end_displacement"', "expected": "4.1e-4", "tolerance": "0.01"}
+    claim |= {"settings": "{}"}
+    path = tmp_path / "small.toml"
+    for instant, code, words in (("1", 0, "  + It"), ("0.75", 1, "0.0002303 m at the instant")):
+        parts = {"settings": settings, "instant": instant}
+        path.write_text(written(parts, claim), encoding="utf-8")
+        assert main(["lesson", str(path)]) == code
+        assert words in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("words", "code"), [("not known to be accurate", 0), ("Certified", 1)])
+def test_what_a_run_has_to_say_at_its_end_is_compared_with_its_status(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: str, code: int
+) -> None:
+    settings = '{ method = "paper", tolerance = 0.1, max_iterations = 3 }'
+    claim = {"settings": settings, "says": f'"{words}"', "quantity": None, "expected": None}
+    found, printed, _ = run(tmp_path, capsys, **claim)
+    assert found == code
+    assert "not known to be accurate enough" in printed
 
 
 def test_the_command_refuses_what_is_no_lesson_and_runs_nothing(

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.views.catalogue import VIEWS, fitting
-from solver.lessons.checking import Outcome, check
+from solver.lessons.checking import Outcome, Said, check
+from solver.lessons.command import line
 from solver.lessons.lesson import Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
+from solver.scenes import discretise
 
 FOLDER = Path(__file__).resolve().parents[1] / "app" / "lessons"
 LESSONS = {path.stem: lesson_from_file(path) for path in sorted(FOLDER.glob("*.toml"))}
@@ -25,7 +27,7 @@ PAIRED = re.compile(r"\*\*[^*]+\*\*|\*[^*]+\*")
 
 
 @functools.cache
-def outcomes(name: str) -> list[Outcome]:
+def outcomes(name: str) -> list[Outcome | Said]:
     """Give all of a lesson's at once, because they share runs."""
     return list(check(LESSONS[name]))
 
@@ -33,7 +35,12 @@ def outcomes(name: str) -> list[Outcome]:
 @pytest.mark.parametrize(("name", "number"), CHECKPOINTS)
 def test_what_a_lesson_claims_is_measured(name: str, number: int) -> None:
     found = outcomes(name)[number]
-    assert found.holds, f"{found.checkpoint.reading.title}: {found.value}"
+    assert found.holds, line(found)
+
+
+@each
+def test_the_interface_that_plots_are_of_is_there(lesson: Lesson) -> None:
+    assert {lesson.interface} <= {"", *discretise(lesson.settings).rubbing}
 
 
 @each

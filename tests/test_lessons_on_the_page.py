@@ -94,7 +94,9 @@ def test_a_sentence_falls_into_what_a_browser_shows() -> None:
 def test_a_lesson_is_opened_by_its_address_alone(lesson: Lesson) -> None:
     settings, complaint = settings_from_query(f"?lesson={lesson.name}")
     assert (settings.values(), complaint) == (lesson.settings.values(), "")
-    assert query_of(settings, Sight(lesson=lesson.name)) == f"?lesson={lesson.name}"
+    sight, complaint = sight_from_query(f"?lesson={lesson.name}")
+    assert (sight, complaint) == (Sight(lesson=lesson.name, instant=lesson.instant), "")
+    assert query_of(settings, sight) == f"?lesson={lesson.name}"
 
 
 @pytest.mark.parametrize("changes", [{"method": "fast"}, {"substructures": 5}, {"start": "nested"}])
@@ -153,6 +155,13 @@ def test_the_next_lesson_starts_its_own_run_which_is_compared_with_none_before(
     assert (order.is_alone, order.label) == (True, "")
     assert page._sidebar.view.shown["the-lesson"] == "small-indicator"
     assert page._teaching.asks
+
+
+def test_the_plots_of_a_lesson_stand_where_it_says(page: Dashboard) -> None:
+    for name in ("broken-wire", "leaf-spring"):
+        tell(page, "the-lesson", name)
+        lesson, look = LESSONS[name], page.session.look
+        assert (look.phase, look.interface) == (lesson.instant, lesson.interface)
 
 
 def test_a_lesson_has_none_but_its_own_settings_dragged(page: Dashboard) -> None:

@@ -47,6 +47,15 @@ def test_a_lesson_is_predicted_moved_read_reloaded_and_left(open_page: Visit) ->
     expect(modes).not_to_have_js_property("ariaValueNow", "5")
     expect(status(page)).to_contain_text(re.compile("up to (?!5 )[0-9]+ modes"))
     assert agreed(page) != before
+    page.locator(".card").first.focus()
+    readout = page.get_by_role("button", name="Whole page")
+    expect(readout).to_be_visible()
+    # As by a key or a finger, with nothing that moves over the plot.
+    page.get_by_role("button", name="Study", exact=True).dispatch_event("click")
+    for part in (lesson(page), status(page), page.locator(".card").first, readout):
+        expect(part).not_to_be_visible()
+    expect(page.get_by_role("button", name="Start", exact=True)).to_be_in_viewport()
+    press(page, "Live")
     page.wait_for_url(re.compile("(?=.*lesson=moving-front)(?=.*pgd_modes=)"))
     page.reload()
     expect(lesson(page)).to_contain_text("Not “3 to 5”, but: About 10.")

@@ -252,8 +252,8 @@ class StopRules:
 
     def _exhausted_advice(self, indicator: float) -> str:
         is_low = indicator <= self._tolerance
-        unknown = "The contact force is not known to be accurate enough"
-        why = unknown if is_low else "The LATIN indicator is still above its tolerance"
+        inexact = "below its tolerance, yet the contact force is not known to be accurate enough"
+        why = f"The LATIN indicator is {inexact if is_low else 'still above its tolerance'}"
         remedy = "Raise max_iterations, or try another k_scale."
         return f"{why}. {self._remedy(remedy)}"
 

@@ -7,34 +7,64 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from solver.checked import dump
-from solver.lessons.lesson import Checkpoint, Lesson
+from solver.lessons.lesson import Checkpoint, Lesson, Verdict
 from solver.study.finished import FinishedRun, finished_run
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A checkpoint, and what was measured, in the unit of its quantity."""
+    """A checkpoint, and what was measured, in the unit of its quantity.
+
+    Attributes
+    ----------
+    seen
+        The same at the instant at which the plots of the lesson stand, for what is of one instant.
+    """
 
     checkpoint: Checkpoint
     value: float
+    seen: float | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the claim holds, and plots show it."""
+        found = [self.value] if self.seen is None else [self.value, self.seen]
+        return all(map(self.checkpoint.expected.holds, found))
+
+
+@dataclass(frozen=True, eq=False)
+class Said:
+    """A verdict, and what the status of the run says."""
+
+    checkpoint: Verdict
+    words: str
 
     @property
     def holds(self) -> bool:
         """Whether the claim holds."""
-        return self.checkpoint.expected.holds(self.value)
+        return self.checkpoint.says in self.words
 
 
-def check(lesson: Lesson) -> Iterator[Outcome]:
+def check(lesson: Lesson) -> Iterator[Outcome | Said]:
     """Measure what a lesson claims, in order; checkpoints of equal settings share a run."""
     wanted: defaultdict[str, set[str | None]] = defaultdict(set)
     for one in lesson.checkpoints:
-        wanted[dump(one.settings)].add(one.reading.quantity.reads)
+        reads = one.reading.quantity.reads if isinstance(one, Checkpoint) else None
+        wanted[dump(one.settings)].add(reads)
     runs: dict[str, FinishedRun] = {}
     for one in lesson.checkpoints:
         key = dump(one.settings)
         if key not in runs:
-            reads = wanted[key]
+            every = wanted[key]
             runs[key] = finished_run(
-                one.settings, errors="errors" in reads, indicators="indicators" in reads
+                one.settings, errors="errors" in every, indicators="indicators" in every
             )
-        yield Outcome(one, one.reading(runs[key]))
+        yield _outcome(one, runs[key], lesson.instant)
+
+
+def _outcome(one: Checkpoint | Verdict, run: FinishedRun, instant: float) -> Outcome | Said:
+    if isinstance(one, Verdict):
+        return Said(one, run.solution.status.advice)
+    taken = one.reading.quantity.at_instant
+    place = round(instant * (run.problem.n_instants - 1))
+    return Outcome(one, one.reading(run), None if taken is None else taken(run, place))

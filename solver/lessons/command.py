@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from solver.lessons.checking import Outcome, check
+from solver.lessons.checking import Outcome, Said, check
 from solver.lessons.reading import lesson_from_file
 
 
@@ -29,11 +29,19 @@ def _lesson(chosen: argparse.Namespace) -> int:
     return int(missed > 0)
 
 
-def line(outcome: Outcome) -> str:
+def line(outcome: Outcome | Said) -> str:
     """Say in a line what was claimed, measured and expected."""
-    one = outcome.checkpoint
     sign = "+" if outcome.holds else "-"
-    measured = f"{outcome.value:.4g} {one.reading.quantity.unit}".strip()
-    if math.isinf(outcome.value):
-        measured = "never"
+    if isinstance(outcome, Said):
+        said = outcome.checkpoint
+        return f"{sign} {said.claim} The run says: {outcome.words}; expected {said.says}"
+    one = outcome.checkpoint
+    unit = one.reading.quantity.unit
+    measured = _written(outcome.value, unit)
+    if outcome.seen is not None and not one.expected.holds(outcome.seen):
+        measured += f", but {_written(outcome.seen, unit)} at the instant of the plots"
     return f"{sign} {one.claim} {one.reading.title}: {measured}; expected {one.expected.words}"
+
+
+def _written(value: float, unit: str) -> str:
+    return "never" if math.isinf(value) else f"{value:.4g} {unit}".strip()

@@ -71,6 +71,15 @@ class Checkpoint:
 
 
 @dataclass(frozen=True, eq=False)
+class Verdict:
+    """A claim of a lesson about how a run ends: words that its status has to say."""
+
+    claim: str
+    settings: Settings
+    says: str
+
+
+@dataclass(frozen=True, eq=False)
 class Lesson:
     """A lesson as its file says.
 
@@ -96,6 +105,10 @@ class Lesson:
         Paragraphs to read before the choice.
     explanation
         Paragraphs that follow it.
+    instant
+        At which its plots stand, as a share of the interval.
+    interface
+        Name of that which its plots are of; empty is the first one.
     """
 
     name: str
@@ -110,7 +123,9 @@ class Lesson:
     views: tuple[str, ...]
     text: tuple[str, ...]
     explanation: tuple[str, ...]
-    checkpoints: tuple[Checkpoint, ...]
+    checkpoints: tuple[Checkpoint | Verdict, ...]
+    instant: float
+    interface: str
 
 
 def kind_of_place(place: str) -> tuple[Literal["control", "value", ""], str]:

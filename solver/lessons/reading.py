@@ -16,6 +16,7 @@ from solver.lessons.lesson import (
     Checkpoint,
     Expected,
     Lesson,
+    Verdict,
     kind_of_place,
 )
 from solver.settings import Settings
@@ -34,9 +35,11 @@ KEYS = {
     "views": list,
     "text": str,
     "explanation": str,
+    "instant": (int, float),
+    "interface": str,
     "checkpoints": list,
 }
-"""Keys of a lesson, all needed, and the type of each."""
+"""Keys of a lesson, and the type of each; `interface` alone may be left out."""
 OF_CHECKPOINT = {
     "claim": str,
     "settings": dict,
@@ -45,6 +48,8 @@ OF_CHECKPOINT = {
     "tolerance": (int, float),
 }
 """Keys of a checkpoint; `settings` and `tolerance` may be left out."""
+OF_VERDICT = {"claim": str, "settings": dict, "says": str}
+"""Keys of one that tells with which words a run ends; `settings` may be left out."""
 WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
 MOST_CONTROLS = 2
 
@@ -87,7 +92,7 @@ def _in(place: str) -> Iterator[None]:
 
 
 def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
-    _check_keys(values, KEYS)
+    _check_keys(values, KEYS, optional=("interface",))
     kind = scene_settings(values["scene"])
     with _in("settings"):
         settings = kind.checked(values["settings"])
@@ -95,6 +100,9 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
     if not 1 <= values["right"] <= len(choices) or len(choices) < 2:
         allowed = f"the number of one of at least two choices, of which there are {len(choices)}"
         raise SettingError("right", values["right"], allowed, "count from 1")
+    if not 0.0 <= values["instant"] <= 1.0:
+        allowed = "a share of the interval, from 0 to 1"
+        raise SettingError("instant", values["instant"], allowed, "say where its plots stand")
     _check_controls(controls, settings)
     with _in("text"):
         text = _paragraphs(values["text"], controls)
@@ -114,6 +122,8 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         text=text,
         explanation=explanation,
         checkpoints=tuple(_checkpoints(values["checkpoints"], settings)),
+        instant=float(values["instant"]),
+        interface=values.get("interface", ""),
     )
 
 
@@ -164,20 +174,26 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 
-def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Checkpoint]:
+def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Checkpoint | Verdict]:
     if not values:
         raise SettingError("checkpoints", values, "at least one", "say what the lesson claims")
     for number, entry in enumerate(values, start=1):
         with _in(f"checkpoint {number}"):
             if not isinstance(entry, dict):
                 raise SettingError("checkpoints", entry, "a table", "write [[checkpoints]]")
-            _check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
-            yield Checkpoint(
-                claim=entry["claim"],
-                settings=settings.replace(**entry.get("settings", {})),
-                reading=reading(entry["quantity"]),
-                expected=_expected(entry["expected"], entry.get("tolerance")),
-            )
+            yield _checkpoint(entry, settings)
+
+
+def _checkpoint(entry: dict[str, Any], settings: Settings) -> Checkpoint | Verdict:
+    if "says" in entry:
+        _check_keys(entry, OF_VERDICT, optional=("settings",))
+    else:
+        _check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
+    claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
+    if "says" in entry:
+        return Verdict(claim, own, entry["says"])
+    expected = _expected(entry["expected"], entry.get("tolerance"))
+    return Checkpoint(claim, own, reading(entry["quantity"]), expected)
 
 
 def _expected(value: Any, tolerance: float | None) -> Expected:

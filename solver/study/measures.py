@@ -138,10 +138,13 @@ def holding_friction(run: FinishedRun, at: float | None) -> float:
 
 def end_displacement(run: FinishedRun, at: float | None) -> float:
     """Give the loop's displacement where its force first is largest, m; NaN for an angle."""
-    if not run.measures_displacement:
-        return math.nan
     size = np.abs(run.force)
-    return float(run.displacement[np.argmax(size >= (1.0 - EQUAL) * size.max())])
+    return displacement_at(run, int(np.argmax(size >= (1.0 - EQUAL) * size.max())))
+
+
+def displacement_at(run: FinishedRun, instant: int) -> float:
+    """Give the loop's displacement at an instant, m; NaN for an angle."""
+    return float(run.displacement[instant]) if run.measures_displacement else math.nan
 
 
 def residual_displacement(run: FinishedRun, at: float | None) -> float:
@@ -227,16 +230,20 @@ def first_slip_displacement(run: FinishedRun, at: float | None) -> float:
 
 
 def recovery_length(run: FinishedRun, at: float | None) -> float:
-    """Give how far from its break a wire carries its tension again, at the largest tension, m.
+    """Give how far from its break a wire carries its tension again, at the largest tension, m."""
+    return recovery_length_at(run, int(np.argmax(run.force)))
 
-    NaN without a broken wire; infinite if it does so on neither side.
+
+def recovery_length_at(run: FinishedRun, instant: int) -> float:
+    """Give how far from its break a wire carries its tension again at an instant, m.
+
+    NaN without a broken wire, or without tension; infinite if it does so on neither side.
     """
     settings = run.settings
     scene = strand(settings) if isinstance(settings, StrandSettings) else None
-    if scene is None or scene.broken is None:
+    if scene is None or scene.broken is None or not run.force[instant]:
         return math.nan
     wire, node = scene.broken
-    instant = int(np.argmax(run.force))
     axial = AxialForce(run.problem)
     force = axial(run.iterate.displacement[:, instant])[axial.wires == wire - 1]
     share = force / run.force[instant]

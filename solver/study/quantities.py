@@ -93,6 +93,8 @@ class Quantity:
         starts elsewhere has another.
     applies
         Whether runs of these settings may have it.
+    at_instant
+        Gives what it would be at an instant, for one that is taken at the largest load.
     """
 
     name: str
@@ -104,6 +106,7 @@ class Quantity:
     is_share: bool = False
     is_of_course: bool = False
     applies: Callable[[Settings], bool] = lambda settings: True
+    at_instant: Callable[[FinishedRun, int], float] | None = None
 
 
 @dataclass(frozen=True)
@@ -230,6 +233,7 @@ _ALL = (
         "m",
         measures.end_displacement,
         applies=_over_a_displacement,
+        at_instant=measures.displacement_at,
     ),
     Quantity(
         "residual_displacement",
@@ -257,6 +261,7 @@ _ALL = (
         "m",
         measures.recovery_length,
         applies=_with_a_broken_wire,
+        at_instant=measures.recovery_length_at,
     ),
 )
 QUANTITIES = {one.name: one for one in _ALL}
