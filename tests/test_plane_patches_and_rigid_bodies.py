@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved, stress
 
+from solver.discrete.equilibrium import wrench
 from solver.discrete.rest import rigid_rest
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
@@ -25,6 +26,20 @@ PATCH = {
     "top": "traction",
     "top_normal_traction": -PRESSURE,
     "violation": 1e-10,
+}
+ROCKING = {
+    "gap": "parabola",
+    "radius": 5.0,
+    "elements": 20,
+    "elements_up": 8,
+    "instants": 49,
+    "substructures": 1,
+    "substructures_up": 1,
+    "friction": 0.25,
+    "top": "traction",
+    "top_normal_traction": -PRESSURE,
+    "top_tangential_traction": 0.11 * PRESSURE,
+    "top_tangential_load": "sine",
 }
 SHEARED = {
     f"{side}_tangential_{name}": value
@@ -175,6 +190,29 @@ def test_a_rigid_body_rests_under_its_load_and_a_roller_keeps_it_upright():
     assert held[0, -1] < 0.0
     assert not held[1].any()
     assert rigid_rest(block(BlockSettings.checked({"gap": ((0.0, 1e-3),)}))) is None
+
+
+@pytest.mark.parametrize("elements", [4, 20, 33])
+@pytest.mark.parametrize("radius", [0.5, 5.0, 50.0])
+def test_a_body_that_rocks_on_a_few_points_rests_where_these_hold_its_loads(elements, radius):
+    scene = block(BlockSettings.checked({**ROCKING, "elements": elements, "radius": radius}))
+    up, turn = rigid_rest(scene)
+    x = np.linspace(0.0, scene.length, elements + 1)[:, None]
+    pressed = np.maximum(-(scene.support.gap[:, None] + up + x * turn), 0.0)[:, 1:]
+    _, force, moment = (one[1:] for one in wrench(scene))
+    total = pressed.sum(axis=0)
+    np.testing.assert_allclose(total / total[-1], force / force[-1], rtol=1e-6)
+    centre = (pressed * x).sum(axis=0) / total
+    np.testing.assert_allclose(centre, moment / force, atol=1e-6 * scene.length)
+
+
+def test_a_body_that_rocks_on_two_points_is_solved():
+    settings = BlockSettings.checked({**ROCKING, "accuracy": 1e-4})
+    problem = discretise(settings)
+    assert reference_of(problem).converged.all()
+    solution = solve(problem, settings)
+    assert solution.is_certified
+    assert solution.iterate.number < 50
 
 
 def test_a_wedge_of_gap_only_turns_the_block():
