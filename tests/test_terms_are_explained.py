@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from browser import Chrome, Server
 from pages import ENDLESS, Visit, iteration, slider, status, visits
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 from studios import SMALL, Shown, keys
 
 from app.glossary import TERMS, explained, line_of
@@ -92,16 +92,49 @@ def page(server: Server, chrome: Chrome) -> Iterator[Page]:
         yield opened
 
 
-def test_a_term_says_its_line_to_a_pointer_to_the_focus_and_in_the_list(page: Page) -> None:
+def words_in_sight(page: Page) -> list[Locator]:
+    """Give all words that are explained and stand on the page."""
+    found = [one for one in page.locator("abbr").all() if one.is_visible()]
+    assert len(found) > 20
+    return found
+
+
+def test_what_is_explained_follows_a_mouse_from_word_to_word(page: Page) -> None:
     note = page.get_by_role("tooltip")
-    page.locator(".figures abbr", has_text="k-free indicator").hover()
-    expect(note).to_have_text(line_of("k-free indicator"))
-    term = page.locator(".title abbr", has_text="closed form")
-    term.focus()
-    expect(note).to_have_text(line_of("closed form"))
-    expect(term).to_have_attribute("aria-description", line_of("closed form"))
+    for word in words_in_sight(page):
+        word.hover()
+        expect(note).to_have_text(line_of(word.inner_text()))
+    word.click()
+    expect(note).to_have_text(line_of(word.inner_text()))
+    page.locator(".status").first.hover(position={"x": 2.0, "y": 2.0})
+    expect(note).to_be_hidden()
+
+
+def test_what_is_explained_follows_a_finger_from_word_to_word(open_page: Visit) -> None:
+    page = open_page("?elements=20&substructures=2&instants=11", has_touch=True)
+    expect(status(page)).to_contain_text("✓ converged")
+    note = page.get_by_role("tooltip")
+    for word in words_in_sight(page):
+        word.tap()
+        expect(note).to_have_text(line_of(word.inner_text()))
+    page.locator(".status").first.tap(position={"x": 2.0, "y": 2.0})
+    expect(note).to_be_hidden()
+
+
+def test_what_is_explained_follows_the_keyboard_from_word_to_word(page: Page) -> None:
+    note, words = page.get_by_role("tooltip"), page.locator(".figures abbr")
+    words.first.focus()
+    for word in words.all_text_contents()[1:]:
+        page.keyboard.press("Tab")
+        expect(note).to_have_text(line_of(word))
+        expect(page.locator(".figures abbr:focus")).to_have_attribute(
+            "aria-description", line_of(word)
+        )
     page.keyboard.press("Escape")
     expect(note).to_be_hidden()
+
+
+def test_all_words_are_in_a_list(page: Page) -> None:
     page.keyboard.press("?")
     expect(page.get_by_role("dialog")).to_contain_text(line_of("singular value"))
     page.keyboard.press("Escape")
@@ -122,8 +155,6 @@ def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
 def test_what_a_control_is_for_is_said_to_the_keyboard(page: Page) -> None:
     help_of = {name: one.doc for name, one in BarSettings.definitions().items()}
     note = page.get_by_role("tooltip")
-    # A pointer that is in the page already: documents are not told of its moves inside of it.
-    page.mouse.move(900, 500)
     slider(page, "Peak load").focus()
     for _ in range(4):
         page.keyboard.press("Tab")
