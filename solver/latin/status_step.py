@@ -23,9 +23,7 @@ from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import States
 
 STILL = 1e-3
-"""Share of the largest slip of an interface below which a point counts as stuck, at most. A point
-that comes to rest goes on creeping in the local stage for a hundred iterations: with 1e-9 a fifth
-of all statuses is wrong on the bar while the force is within 1 %, with 1e-3 one in a thousand."""
+"""Share of the largest slip of an interface below which a point counts as stuck, at most."""
 FRONT = 2.0
 """The same over the square of a point's share of the length, as slip grows behind a front. To call
 a point stuck that slips is the dearer mistake: mending frees one point at a time, and stops many
@@ -105,15 +103,10 @@ def states_of(iterate: Iterate) -> States:
     Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants): -1, 0, +1 of tangential
     components; of normal ones 0 where they are closed; `OPEN` of both where they are not.
     """
-    force = iterate.boundary_local_force
     found: list[States] = []
     for law in iterate.problem.rubbing.values():
-        slip = law.slip(iterate.local_displacement, force)
-        still = min(STILL, FRONT / len(slip) ** 2) * np.abs(slip).max(initial=0.0)
-        way = np.sign(slip) * (np.abs(slip) > still)
+        status = iterate.status_at(law, min(STILL, FRONT / len(law.positions) ** 2))
         if law.normal is not None:
-            is_open = law.by_point(force[law.normal.above]) <= 0.0
-            found.append(np.where(is_open, OPEN, 0).astype(np.int8))
-            way[is_open] = OPEN
-        found.append(way.astype(np.int8))
+            found.append(np.where(status == OPEN, OPEN, 0).astype(np.int8))
+        found.append(status)
     return np.concatenate(found)

@@ -60,8 +60,9 @@ _CERTIFIED = (
     "this solution on this mesh"
 )
 _PROVEN = (
-    "Accurate enough: a status step has found the exact solution on this mesh, and the contact "
-    "force is within the accuracy of it."
+    "Accurate enough: the contact force of this iterate is within the accuracy of the exact "
+    "solution on this mesh, which a status step has found. What is shown is the iterate, not that "
+    "solution."
 )
 _EXPECTED = (
     "Accurate enough by estimate: the contact force hardly changes any more. Proof by a status "

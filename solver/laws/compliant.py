@@ -60,11 +60,6 @@ class CompliantFriction(Friction):
         stiffness = 1.0 / self.softness
         return np.asarray(stiffness / self.by_point(stiffness)[self.points])
 
-    @property
-    def reads_force(self) -> bool:
-        """Whether the status of a point shows in forces too: here it always does."""
-        return True
-
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Give where the slider of every pair stands, as `Friction.slider`."""
         found = self.tangent.jump(displacement)

@@ -151,11 +151,6 @@ class Friction(Pairs):
         """Tangential displacement before slip, per friction force, of every point, scaled."""
         return np.zeros(len(self.positions))
 
-    @property
-    def reads_force(self) -> bool:
-        """Whether the status of a point shows in forces too, and not in displacements alone."""
-        return self.opens
-
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Give the slip of every pair up to every instant, shape (n_pairs, n_instants), scaled.
 
@@ -199,7 +194,9 @@ class Friction(Pairs):
         """
         return float(self.bound[~held[self.tangent.above]].sum())
 
-    def status(self, displacement: Array, force: Array | None = None) -> NDArray[np.int8]:
+    def status(
+        self, displacement: Array, force: Array | None = None, still: float = 0.0
+    ) -> NDArray[np.int8]:
         """Give the contact status of a local stage, shape (n_points, n_instants).
 
         The law repeats the position of a stuck point bit by bit, or up to rounding where both sides
@@ -209,14 +206,17 @@ class Friction(Pairs):
         Parameters
         ----------
         displacement, force
-            W^ and F^ of all rows, shape (n_rows, n_instants); F^ where `reads_force`.
+            W^ and F^ of all rows, shape (n_rows, n_instants); F^ where the status
+            shows in forces too.
+        still
+            Slip up to which a point counts as stuck, beside what is rounding, scaled.
         """
         total = self.slip(displacement, force)
         largest = max(np.abs(displacement[rows]).max(initial=0.0) for rows in self.tangent.sides)
         if self.normal is not None and force is not None:
             # A stuck contact moves by rounding alone; but a scaled structure's compliance is 1.
             largest = max(np.abs(displacement).max(), np.abs(force).max())
-        total[np.abs(total) <= NO_SLIP * largest] = 0.0
+        total[np.abs(total) <= max(NO_SLIP * largest, still)] = 0.0
         found = np.sign(total).astype(np.int8)
         if self.normal is not None and force is not None:
             found[self.by_point(force[self.normal.above]) <= 0.0] = OPEN
