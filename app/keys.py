@@ -11,8 +11,8 @@ from app.innards import Plain
 from app.panes import script
 
 KEYS = (
-    (" ", "Space", "run or pause"),
-    ("s", "s", "do one iteration"),
+    (" ", "Space", "run, pause, or replay a run that has ended"),
+    ("s", "s", "do one iteration; of a run that has ended, show the next, or the first again"),
     ("r", "r", "start the run again"),
     ("t", "t", "play through time, or stop"),
     ("ArrowLeft", "←", "the instant before"),

@@ -21,6 +21,7 @@ from app.worker.link import Link
 from app.worker.orders import Pace, Ready, Run, Seek, Step, Watch
 from app.worker.reports import Died, Facts, Picture
 from app.worker.shown import Look
+from app.worker.words import REPLAYED
 from solver.files import scene_settings
 from solver.settings import Settings
 
@@ -93,11 +94,11 @@ class Session:
         pages.add(self)
 
     def start(
-        self, settings: Settings | None = None, *, follows_hand: bool = False, **how: bool
+        self, settings: Settings | None = None, *, follows_hand: bool = False, **how: Any
     ) -> None:
         """Start a run, with new settings or those that are wanted, in place of the one at work.
 
-        What it means to follow a hand, to be `warm` or `is_alone` stands with the order `Run`.
+        What it means to follow a hand, and all of `how`, stands with the order `Run`.
         """
         settings = settings or self.wanted
         self.attendance.heed(settings)
@@ -172,7 +173,7 @@ class Session:
         """Let iterations go on by themselves; a run that ended, or broke, starts again."""
         self.running = True
         if self.is_over:
-            self.start()
+            self._replay()
         else:
             self.keeper.send(Seek(self.ticket, None))
             self._keep_pace()
@@ -183,10 +184,10 @@ class Session:
         self.keeper.send(Pace(self.ticket, 0.0))
 
     def step(self, count: int = 1) -> None:
-        """Do so many iterations and wait; a run that broke starts again, one that ended stays."""
+        """Do so many iterations and wait; a run that ended, or broke, starts again."""
         self.running = False
-        if self.facts is not None and self.facts.is_broken:
-            self.start()
+        if self.is_over:
+            self._replay()
         else:
             self.keeper.send(Step(self.ticket, count))
 
@@ -197,8 +198,8 @@ class Session:
 
     def seek(self, iteration: int) -> None:
         """Look at an iteration that was done already; the last one follows the run."""
-        done = self.facts.done if self.facts else 0
-        self.keeper.send(Seek(self.ticket, iteration if iteration < done else None))
+        is_past = self.facts is not None and iteration < self.facts.done
+        self.keeper.send(Seek(self.ticket, iteration if is_past else None))
 
     def watch(self, **changes: Any) -> None:
         """Look elsewhere."""
@@ -268,12 +269,15 @@ class Session:
         if self._pending is not None and (self.facts is not None or self.ticket == 0):
             self.start(self._pending, warm=self.warm_start, follows_hand=self._pending_by_hand)
 
+    def _replay(self) -> None:
+        self.start(notice=REPLAYED if self.facts and self.facts.is_over else "")
+
     def _keep_pace(self) -> None:
         if self.goes_on:
             pace = self.pace if self._is_free else 0.0
             self.keeper.send(Pace(self.ticket, pace, self.is_held))
 
-    def _work(self, **how: bool) -> None:
+    def _work(self, *, notice: str = "", **how: bool) -> None:
         """Have a process do the run from its beginning."""
         self.keeper.begin(Watch(self.look), Ready())
         self.keeper.send(
@@ -282,7 +286,7 @@ class Session:
                 self.settings.scene,
                 self.settings.values(),
                 label=self._label,
-                notice=AGAIN if self.keeper.deaths else "",
+                notice=AGAIN if self.keeper.deaths else notice,
                 pace=None if self.follows_hand else self.pace,
                 pause_after=None if self._is_free else 1,
                 is_held=self.is_held,

@@ -85,7 +85,7 @@ class Transport:
         }
 
     def toggle(self) -> None:
-        """Run or pause."""
+        """Run, pause, or replay what has ended."""
         if self._session.goes_on:
             self._session.pause()
         else:
@@ -93,8 +93,12 @@ class Transport:
         self.show()
 
     def step(self) -> None:
-        """Do one iteration."""
-        self._session.step()
+        """Do one iteration, or show the next of a run that has ended."""
+        session, facts = self._session, self._session.facts
+        if facts is not None and facts.is_over and facts.iteration < facts.done:
+            session.seek(facts.iteration + 1)
+        else:
+            session.step()
         self.show()
 
     def reset(self) -> None:
@@ -159,18 +163,22 @@ class Transport:
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
-        label, icon = ("Pause", "pause") if self._session.goes_on else ("Run", "play_arrow")
+        label, icon, facts = "Run", "play_arrow", self._session.facts
+        if self._session.goes_on:
+            label, icon = "Pause", "pause"
+        elif facts is not None and facts.is_over:
+            label, icon = "Replay", "replay"
         if self._run.icon != icon:
             self._run.param.update(label=label, icon=icon)
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)
 
     def _make_buttons(self) -> None:
-        does = "Run or pause the iteration (space)."
+        does = "Run or pause the iteration, or replay a run that has ended (space)."
         self._run = button(
             "Pause", "pause", self.toggle, width=104, color="primary", description=does
         )
-        does = "Do one iteration and wait (s)."
+        does = "Do one iteration and wait; of a run that has ended, show the next (s)."
         self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
         does = "Start the run again, from its usual start (r)."
         self._reset = button(

@@ -1,4 +1,4 @@
-"""What broke can be started again, and what cannot start says so."""
+"""What broke or ended can be started again, and what cannot start says so."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,9 @@ from app.transport import Transport
 from app.worker import link
 from app.worker.bench import STOPPED, Bench
 from app.worker.link import Link
-from app.worker.orders import Run, Step
+from app.worker.orders import Run, Seek, Step
 from app.worker.reports import Died, Facts, Picture, Report
+from app.worker.words import REPLAYED
 from solver.scenes.bar import BarSettings
 from solver.study import seats
 
@@ -75,6 +77,33 @@ def test_a_step_starts_a_broken_run_again_and_waits(
     hear(session, lone, reports)
     session.step()
     assert runs(lone)[-1].pause_after == 1
+
+
+ENDED = Picture(1, Facts(iteration=4, done=4, is_over=True), b"")
+
+
+def test_the_button_replays_a_run_that_has_ended(session: Session, lone: LoneLink) -> None:
+    transport = Transport(session)
+    hear(session, lone, [ENDED])
+    transport.show()
+    assert transport._run.label == "Replay"
+    transport.toggle()
+    assert (runs(lone)[-1].ticket, runs(lone)[-1].pause_after) == (2, None)
+    assert runs(lone)[-1].notice == REPLAYED
+    assert transport._run.label == "Pause"
+
+
+def test_a_step_shows_what_a_run_that_has_ended_did_next_or_begins_it_anew(
+    session: Session, lone: LoneLink
+) -> None:
+    transport = Transport(session)
+    hear(session, lone, [replace(ENDED, facts=replace(ENDED.facts, iteration=2))])
+    transport.keys()["s"]()
+    assert lone.orders[-1] == Seek(1, 3)
+    hear(session, lone, [ENDED])
+    transport.keys()["s"]()
+    assert (runs(lone)[-1].ticket, runs(lone)[-1].pause_after) == (2, 1)
+    assert runs(lone)[-1].notice == REPLAYED
 
 
 def hear(session: Session, lone: LoneLink, reports: list[Report]) -> None:

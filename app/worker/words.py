@@ -33,6 +33,7 @@ AT_REST = "■ at rest"
 COUNTED = "iteration", "friction force error"
 """Stand beside their numbers in the status line, where scripts read them; the figures mark them."""
 PAUSED = "Run goes on, Step does one iteration."
+REPLAYED = "The run had ended, and begins anew."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
 HEADS = (
     "Iteration",
