@@ -150,16 +150,14 @@ class Dashboard:
     def tick(self) -> None:
         """Keep the page alive: run while a browser shows it, and pass on what came."""
         self._presence.check()
-        if self.session.attend():
-            self._tabs.refresh()
+        self._tabs.catch_up(is_news=self.session.attend())
         self._sidebar.obey()
         self._banner.catch_up()
         self._teaching.catch_up()
         self.transport.tick()
         self._pass_on(self.session.collect())
         self._log()
-        is_lost = self._painted < self._sent
-        if is_lost and time.monotonic() - self._sent_at > LOST_AFTER:
+        if self._painted < self._sent and time.monotonic() - self._sent_at > LOST_AFTER:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
         self._link.follow()

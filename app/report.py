@@ -1,10 +1,13 @@
 """What the tabs of long reports share: ask, watch, cancel, read, and take away.
 
 What is read is the report of the command line, as it grows; its plots are drawn for the page.
+Only the page's own turns touch its document. A callback that a thread adds to a document while
+Bokeh lets that go from a hold is lost, and what document is the current one is the whole process's.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Collection, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
@@ -14,7 +17,6 @@ from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.document import Document
 
 from app.errand import Errand, Found
 from app.glossary import explained
@@ -57,6 +59,7 @@ class Report:
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
+        self._drawings: deque[tuple[pn.Column, Future[Any]]] = deque()
         self.view = column(role="paper", margin=(4, 10), visible=False)
 
     def open(self) -> None:
@@ -69,6 +72,13 @@ class Report:
         """Follow the errand, as soon as somebody looks."""
         if self.view.visible:
             self._refresh()
+
+    def put_drawn(self) -> None:
+        """Put a plot in its place, if the next one is drawn: the page has other things to do."""
+        if self._drawings and self._drawings[0][1].done():
+            box, drawing = self._drawings.popleft()
+            # Made here and not where it is drawn, as its theme is that of the page.
+            box.append(pn.pane.Bokeh(drawing.result(), sizing_mode="stretch_width"))
 
     def acting(self) -> Collection[str]:
         """Give the names of the settings that do something here."""
@@ -151,6 +161,8 @@ class Report:
             return
         if found is not before[0]:
             self._sheet[:] = []
+            while self._drawings:
+                self._drawings.pop()[1].cancel()
         for pane, section in zip(self._sheet, found.sections, strict=False):
             if isinstance(section, str):
                 pane.param.update(object=explained(section))
@@ -162,16 +174,12 @@ class Report:
         self._card.visible = True
 
     def _pane(self, section: Section) -> Any:
-        """Give what shows a section; a plot is drawn in it later."""
+        """Give what shows a section; a plot is put into it once it is drawn."""
         if isinstance(section, str):
             return _words(explained(section), self._role)
         # A `FlexBox` would not do: what is put into it later misses the theme.
         box = column(_words(legend(section), role="legend"), role="panels")
-        document = pn.state.curdoc
-        assert document is not None
-        put = partial(_put_later, document, box)
-        for panel in section.panels:
-            HAND.submit(_drawn, panel).add_done_callback(put)
+        self._drawings.extend((box, HAND.submit(_drawn, panel)) for panel in section.panels)
         return box
 
 
@@ -190,10 +198,6 @@ def _drawn(panel: Panel) -> Any:
     from app.report_plots import plot
 
     return plot(panel)
-
-
-def _put_later(document: Document, box: pn.Column, drawing: Future[Any]) -> None:
-    document.add_next_tick_callback(lambda: box.append(drawing.result()))
 
 
 def legend(plot: Plot) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import holoviews as hv
 import numpy as np
-import panel as pn
+from bokeh.plotting import figure
 
 from app.report import COLORS
 from solver.study.figure_data import Curve, Panel
@@ -22,13 +22,10 @@ hv.renderer("bokeh").webgl = False
 hv.renderer("bokeh").notebook_context = True
 
 
-def plot(panel: Panel) -> pn.pane.Bokeh:
-    """Draw a panel as it is put on the page, which takes little then.
-
-    It has no legend, which panels side by side share.
-    """
-    drawn = hv.renderer("bokeh").get_plot(overlay(panel)).state
-    return pn.pane.Bokeh(drawn, sizing_mode="stretch_width")
+def plot(panel: Panel) -> figure:
+    """Draw a panel; it has no legend, which panels side by side share."""
+    drawn: figure = hv.renderer("bokeh").get_plot(overlay(panel)).state
+    return drawn
 
 
 def overlay(panel: Panel) -> hv.Overlay:

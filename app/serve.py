@@ -10,6 +10,7 @@ import panel as pn
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 from panel_material_ui.template.base import Page
+from tornado.ioloop import IOLoop
 
 from app.address import (
     PACES,
@@ -65,7 +66,9 @@ def open_page() -> Page:
     )
     pn.state.onload(dashboard.loaded)
     document.add_periodic_callback(dashboard.tick, TICK_MS)
-    dashboard.session.keeper.wake = lambda: document.add_next_tick_callback(dashboard.tick)
+    # The loop's thread alone touches documents: what another adds may be lost (`report.py`).
+    wake = partial(IOLoop.current().add_callback, document.add_next_tick_callback, dashboard.tick)
+    dashboard.session.keeper.wake = wake
     pn.state.on_session_destroyed(partial(_end, dashboard, document))
     pn.state.log(f"page opened, {len(PAGES)} in all")
     return dashboard.page

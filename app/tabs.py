@@ -89,6 +89,13 @@ class Tabs:
         for tab in self._beside.values():
             tab.refresh()
 
+    def catch_up(self, *, is_news: bool) -> None:
+        """Follow the sweep and the reports, and what is drawn of the one that is looked at."""
+        if is_news:
+            self.refresh()
+        if self.report is not None:
+            self.report.put_drawn()
+
     def leave_the_header(self) -> None:
         """Stand above what is chosen: a phone's header has no room."""
         if self.bar not in self.main:

@@ -8,7 +8,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-PATIENCE = 60.0
+PATIENCE = 120.0
+"""Seconds that a test waits for what comes at all, also where others keep the machine busy."""
 
 
 def is_alive(pid: int) -> bool:

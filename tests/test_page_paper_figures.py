@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pickle
 import re
-from collections.abc import Callable, Iterator, Sequence
+import threading
+from collections.abc import Iterator, Sequence
 from html import escape
-from queue import SimpleQueue
 from typing import Any
 
 import holoviews as hv
 import numpy as np
+import panel as pn
 import pytest
 from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
@@ -28,22 +29,6 @@ from app.worker.desk import SECTIONS, Desk, said
 from app.worker.studies import figures_of_the_paper
 from solver.study.figure_data import Panel
 from solver.study.page import Plot, Section
-
-
-class Page(Document):
-    """A document without a server, which calls back when it is asked to."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._due: SimpleQueue[Callable[[], Any]] = SimpleQueue()
-
-    def add_next_tick_callback(self, callback: Callable[[], Any]) -> Any:
-        self._due.put(callback)
-
-    def draw(self, count: int) -> None:
-        """Put so many plots on the page, each when it is drawn."""
-        for _ in range(count):
-            self._due.get(timeout=PATIENCE)()
 
 
 @pytest.fixture(scope="module")
@@ -136,47 +121,68 @@ def test_a_plot_can_be_read_and_enlarged_but_does_not_hold_a_page_that_is_scroll
     assert drawn.toolbar.active_scroll in (None, "auto")
 
 
-def test_a_plot_is_drawn_without_a_touch_to_the_page_that_the_server_is_at_work_on(
-    panels: list[Panel],
+def test_no_thread_touches_the_page_and_its_own_turns_put_each_plot_on_it_in_its_theme(
+    view: PaperFigures, found: Found, panels: list[Panel], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    class Untouched(Document):
-        def __setattr__(self, name: str, value: Any) -> None:
-            assert not self.__dict__.get("is_made"), name
-            super().__setattr__(name, value)
+    touched: list[str] = []
 
-    page = Untouched()
-    callbacks = set(page.callbacks.session_destroyed_callbacks)
-    page.is_made = True
-    with patch_curdoc(page):
-        plot(panels[0])
-    assert set(page.callbacks.session_destroyed_callbacks) == callbacks
+    class Touched(Document):
+        def __getattribute__(self, name: str) -> Any:
+            if threading.current_thread() is not threading.main_thread():
+                touched.append(name)
+            return super().__getattribute__(name)
+
+    def slowly(panel: Panel) -> Any:
+        drawing.set()
+        assert go.wait(PATIENCE)
+        return plot(panel)
+
+    drawing, go = threading.Event(), threading.Event()
+    monkeypatch.setattr("app.report._drawn", slowly)
+    page = Touched()
+    # As the server has it for all threads while it is at work on a page.
+    with patch_curdoc(page), set_curdoc(page):
+        view._made()
+        view._put(found)
+        assert drawing.wait(PATIENCE)
+        monkeypatch.setitem(pn.config._session_config, page, {"theme": "dark"})
+        go.set()
+        boxes = [box for box, _ in view._drawings]
+        themes = []
+        for box in boxes:
+            wait_for(view._drawings[0][1].done)
+            put = len(box)
+            view.put_drawn()
+            assert len(box) == put + 1
+            themes.append(box[-1]._design.theme._name)
+        view.put_drawn()
+    assert touched == []
+    assert themes == ["dark"] * len(panels)
+    assert [pane.object.title.text for box in dict.fromkeys(boxes) for pane in box[1:]] == [
+        panel.title for panel in panels
+    ]
 
 
 def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
-    view: PaperFigures, errand: Errand, computed: list[Found], found: Found, panels: list[Panel]
+    view: PaperFigures, errand: Errand, computed: list[Found], found: Found
 ) -> None:
     computed.append(found)
-    page = Page()
-    with set_curdoc(page):
+    with set_curdoc(Document()):
         view.open()
-        page.draw(len(panels))
     assert not errand.is_busy
     assert not view._start.visible
     assert view._card.visible
-    drawn = 0
     for pane, section in zip(view._sheet, found.sections, strict=True):
         if isinstance(section, Plot):
             legend = re.sub("</?abbr[^>]*>", "", pane[0].object)
             assert all(escape(c.label) in legend for p in section.panels for c in p.curves)
-            drawn += len(pane) - 1
         else:
             assert pane.object == explained(section)
-    assert drawn == len(panels)
 
 
 def test_what_is_drawn_stays_while_a_report_grows(view: PaperFigures, found: Found) -> None:
     grows = Found("any", found.sections[:3])
-    with set_curdoc(Page()):
+    with set_curdoc(Document()):
         view._made()
         view._put(grows)
         first = list(view._sheet)
@@ -222,7 +228,7 @@ def test_it_can_be_cancelled_and_another_page_has_them_later(
     assert "Cancelled." in view._progress.object
     assert view._start.visible
     computed.append(found)
-    with set_curdoc(Page()):
+    with set_curdoc(Document()):
         view.open()
     assert len(view._sheet) == len(found.sections)
     assert not view._start.visible

@@ -11,6 +11,9 @@ from pages import ENDLESS, Visit, at_rest, open_report, press, status, visits
 from playwright.sync_api import Page, expect
 
 TINY = "?elements=8&substructures=2&instants=5"
+DRAWN = """[...Bokeh.documents[0].all_models].filter((one) => one.type === "Figure" &&
+  Bokeh.index.find_one_by_id(one.id)?.el.getClientRects().length)"""
+"""Figures that are seen: those of other tabs are not, and some that have gone are not forgotten."""
 
 
 @pytest.fixture(scope="module")
@@ -92,18 +95,18 @@ def test_the_papers_figures_are_drawn_in_the_dark_theme_say_their_values_and_can
     page: Page,
 ) -> None:
     theme = page.get_by_role("button", name="Toggle theme")
-    theme.click()
     press(page, "Figures")
-    expect(page.get_by_text("Fig. 8").first).to_be_visible()
     expect(page.locator(".plots").first).to_be_hidden()
+    page.wait_for_function(f"{DRAWN}.length > 0")
+    theme.click()
+    expect(page.get_by_text("Fig. 8").first).to_be_visible()
     page.wait_for_function(
-        """() => {
-          const models = [...Bokeh.documents[0].all_models]
-          const drawn = models.filter((one) => one.type === "Figure" && one.title?.text)
+        f"""() => {{
+          const drawn = {DRAWN}
           const rgb = (color) => color.match(/[0-9a-f]{2}/gi).map((part) => parseInt(part, 16))
           return drawn.length === 12 && drawn.every(
             (one) => Math.max(...rgb(one.background_fill_color)) < 80)
-        }"""
+        }}"""
     )
     place = at_rest(
         page,
