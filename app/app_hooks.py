@@ -1,6 +1,8 @@
 """What `panel serve app` runs once, before it answers: the first visitor waits for no import."""
 
+import contextlib
 import gc
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -15,14 +17,35 @@ def on_server_loaded(_server_context: Any) -> None:
     # Here and not above: what a hook's module does to the path while it loads is undone.
     if ROOT not in sys.path:
         sys.path.insert(0, ROOT)
-    from app.innards import alive_with, open_in_turn
+    from app.innards import alive_with, ignore_the_lost, open_in_turn, stay_on_loop
     from app.serve import LATENESS, facts, rehearse
 
     rehearse()
     alive_with(facts)
     open_in_turn()
+    stay_on_loop()
+    ignore_the_lost()
     IOLoop.current().spawn_callback(LATENESS.watch)
+    heed_interrupts()
     # What is imported stays: without this, every full collection walks it for 0.15 s, in which
     # all pages stand still.
     gc.collect()
     gc.freeze()
+
+
+def heed_interrupts() -> None:
+    """Have an interrupt end the server between two tasks of its loop, as a termination does.
+
+    Raised in the midst of one, it may be lost, or leave a page locked that the server waits for.
+    """
+    loop: Any = IOLoop.current()
+
+    def end() -> None:
+        # Another one ends it whatever it is at.
+        loop.asyncio_loop.remove_signal_handler(signal.SIGINT)
+        print("Interrupted, shutting down")
+        loop.stop()
+
+    # Loops of Windows heed no signals.
+    with contextlib.suppress(NotImplementedError):
+        loop.asyncio_loop.add_signal_handler(signal.SIGINT, end)

@@ -11,10 +11,15 @@ from typing import Any
 
 import panel as pn
 from bokeh.document import Document
+from bokeh.server import session as bokeh_session
+from bokeh.server.protocol_handler import ProtocolHandler
 from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
 from panel.io.server import DocHandler
 from panel.util.parameters import edit_readonly
+
+THREADS = "_run_in_executor"
+"""Of Bokeh 3.10: what gives threads the messages of browsers and the callbacks of sessions."""
 
 
 class Plain(JSComponent):
@@ -73,6 +78,30 @@ def open_in_turn() -> None:
             await asyncio.sleep(0)
 
     DocHandler.get = wait  # type: ignore[method-assign]
+
+
+def stay_on_loop() -> None:
+    """Have all that pages do done on the event loop, one after the other.
+
+    Bokeh does it on threads from 3.10 on. What pages share is made for one at a time; and Panel
+    1.10, busy for the first time on a thread, goes on asking for the loop from there, without end.
+    """
+
+    async def do(what: Callable[..., Any], *args: Any, **options: Any) -> Any:
+        return what(*args, **options)
+
+    if hasattr(bokeh_session, THREADS):
+        setattr(bokeh_session, THREADS, do)
+
+
+def ignore_the_lost() -> None:
+    """Have no messages heeded of pages that were given up: a server that ends still reads them."""
+    handle: Any = ProtocolHandler.handle
+
+    async def heed(handler: ProtocolHandler, message: Any, connection: Any) -> Any:
+        return await handle(handler, message, connection) if connection._session else None
+
+    ProtocolHandler.handle = heed  # type: ignore[method-assign]
 
 
 def ignore_business(page: Any) -> None:

@@ -4,10 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import inspect
+import threading
+from types import SimpleNamespace
+from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 import pytest
+from bokeh.document import Document
+from bokeh.server import session as bokeh_session
+from bokeh.server.connection import ServerConnection
+from bokeh.server.protocol_handler import ProtocolHandler
 from bokeh.server.session import ServerSession
 from panel.io.server import DocHandler
 from panel.models.esm import DataEvent, ESMEvent
@@ -16,7 +23,7 @@ from tornado.websocket import WebSocketHandler
 from web_pages import run_apart
 
 from app.figures import make_figure
-from app.innards import ignore_business, open_in_turn
+from app.innards import THREADS, ignore_business, ignore_the_lost, open_in_turn, stay_on_loop
 from app.pulse import pulse
 from app.views.catalogue import VIEWS
 
@@ -53,6 +60,31 @@ def test_pages_are_opened_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -
 
     run_apart(both())
     assert said == ["one begins", "one ends", "two begins", "two ends"]
+
+
+def test_pages_are_served_on_the_loops_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    if hasattr(bokeh_session, THREADS):
+        monkeypatch.setattr(bokeh_session, THREADS, getattr(bokeh_session, THREADS))
+
+    async def serve() -> None:
+        stay_on_loop()
+        session: Any = ServerSession("page", Document(), asyncio.get_running_loop())
+        assert await session.with_document_locked(threading.get_ident) == threading.get_ident()
+
+    run_apart(serve())
+
+
+def test_messages_of_a_page_that_was_given_up_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "self._session = None" in inspect.getsource(ServerConnection.detach_session)
+
+    async def handle(handler: ProtocolHandler, message: str, connection: Any) -> str:
+        return message
+
+    monkeypatch.setattr(ProtocolHandler, "handle", handle)
+    ignore_the_lost()
+    for there, heeded in (object(), "picture"), (None, None):
+        work = ProtocolHandler().handle("picture", SimpleNamespace(_session=there))
+        assert run_apart(work) == heeded
 
 
 def test_tags_of_a_pane_are_those_of_its_model() -> None:

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import json
+import os
 import re
+import time
+import urllib.request
 from pathlib import Path
 
 from browser import Chrome, Server
@@ -11,6 +15,60 @@ from pages import open_report, press, status
 from playwright.sync_api import expect
 from processes import wait_for
 from web_pages import WebPage, run_apart, until
+
+SHORT = ("--unused-session-lifetime", "500", "--check-unused-sessions", "200")
+"""Options of a server that gives up a page soon after it was closed."""
+AT_REST = 0.2
+"""Of a processor, far above what a page takes that waits (0.01 to 0.03), and far below one that is
+never idle."""
+
+
+def share(server: Server, seconds: float = 2.0) -> float:
+    """Give the share of a processor that a server takes for a while, its workers aside."""
+
+    def taken() -> float:
+        fields = Path(f"/proc/{server.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    before, began = taken(), time.monotonic()
+    time.sleep(seconds)
+    return (taken() - before) / (time.monotonic() - began)
+
+
+def pages(server: Server) -> int:
+    with urllib.request.urlopen(server.health) as answer:
+        return int(json.load(answer)["pages"])
+
+
+def test_a_page_at_rest_takes_next_to_nothing_and_one_that_is_closed_nothing(
+    tmp_path: Path,
+) -> None:
+    """The first page of a server, without a browser: what is done once only, is done for it."""
+
+    async def visit() -> None:
+        page = WebPage(server.address + "?iteration=2")
+        await page.open()
+        life = asyncio.create_task(page.live())
+        await until(lambda: page.times)
+        await asyncio.to_thread(until_at_rest, page)
+        assert await asyncio.to_thread(share, server) < AT_REST
+        page.close()
+        await life
+
+    def until_at_rest(page: WebPage) -> None:
+        shown = -1
+        while shown != len(page.times):
+            shown = len(page.times)
+            time.sleep(1.0)
+
+    server = Server(tmp_path / "log", 0, *SHORT)
+    try:
+        server.wait()
+        run_apart(visit())
+        wait_for(lambda: pages(server) == 0)
+        assert share(server) < AT_REST
+    finally:
+        server.stop()
 
 
 def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
@@ -52,6 +110,6 @@ def test_a_server_that_is_interrupted_leaves_no_worker_of_its_pages(tmp_path: Pa
         server.wait()
         run_apart(visit())
         wait_for(lambda: server.processes() == [])
-        assert "Traceback" not in server.log
+        assert "Traceback" not in server.log, server.log
     finally:
         server.stop()

@@ -18,6 +18,7 @@ from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, websocket_connect
 
 from app import serve
+from app.innards import stay_on_loop
 
 READY = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
 
@@ -25,6 +26,7 @@ READY = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
 def serve_pages() -> Server:
     """Serve pages from this process, each given up soon after it was closed."""
     pn.extension(notifications=True)
+    stay_on_loop()
     served: Server = get_server(
         {"/app": lambda: serve.open_page()},
         port=0,
