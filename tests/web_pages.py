@@ -20,6 +20,8 @@ from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, w
 from app import serve
 from app.innards import stay_on_loop
 
+LONGEST = 270.0
+"""Seconds that what runs apart may take, less than a test may."""
 READY = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
 
 
@@ -201,9 +203,12 @@ def _plain(content: Any) -> Any:
 
 
 def run_apart(main: Coroutine[Any, Any, Any]) -> Any:
-    """Run in a thread of its own: that of the browser's tests has a loop at work."""
+    """Run in a thread of its own: that of the browser's tests has a loop at work.
+
+    No limit of a test ends a thread, so that it has to be given up here before.
+    """
     with ThreadPoolExecutor(1) as thread:
-        return thread.submit(asyncio.run, main).result()
+        return thread.submit(asyncio.run, asyncio.wait_for(main, LONGEST)).result()
 
 
 async def until(condition: Any, patience: float = 120.0) -> None:
