@@ -17,11 +17,18 @@ def on_server_loaded(_server_context: Any) -> None:
     # Here and not above: what a hook's module does to the path while it loads is undone.
     if ROOT not in sys.path:
         sys.path.insert(0, ROOT)
-    from app.innards import alive_with, ignore_the_lost, open_in_turn, stay_on_loop
-    from app.serve import LATENESS, facts, rehearse
+    from app.innards import (
+        alive_with,
+        answer_heads,
+        ignore_the_lost,
+        open_in_turn,
+        stay_on_loop,
+    )
+    from app.serve import LATENESS, NAMES, facts, rehearse
 
     rehearse()
     alive_with(facts)
+    answer_heads(NAMES.__contains__)
     open_in_turn()
     stay_on_loop()
     ignore_the_lost()

@@ -58,8 +58,8 @@ class Dashboard:
 
     Attributes
     ----------
-    page
-        What is served.
+    page, pulse
+        What is served, and its part that has its name.
     """
 
     def __init__(
@@ -79,8 +79,8 @@ class Dashboard:
         self._sent_at = 0.0
         self._is_dimmed = False
         self._painted_scene = session.settings.scene
-        self._pulse, self._keys = pulse(), Keys(css_classes=["keys"])
-        self._presence = Presence(session, self._pulse)
+        self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
+        self._presence = Presence(session, self.pulse)
         session.watch(complaint=complaint)
         self.transport = Transport(session)
         self._looks = Looks(session)
@@ -119,7 +119,7 @@ class Dashboard:
         self._stage.show(self._sight.view)
         self._dress()
         parts = self._tabs.bar, self._sidebar, self._teaching, self._stage, self._what_if
-        self._link = PageLink(self.session, self._pulse, *parts)
+        self._link = PageLink(self.session, self.pulse, *parts)
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
@@ -168,15 +168,15 @@ class Dashboard:
             pn.state.notifications.error(text, duration=8000)
 
     def _listen(self) -> None:
-        self._pulse.on("painted", self._on_painted)
-        self._pulse.param.watch(lambda event: self._on_narrow(), "narrow")
+        self.pulse.on("painted", self._on_painted)
+        self.pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         does = {**self.transport.keys(), "p": self._present}
         self._keys.on_msg(lambda message: does[message.data]())
 
     def _make_live(self) -> pn.Column:
         words, self._figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
         heads = self._banner.view, self._teaching.view, self.transport.view
-        parts = *heads, words, self._figures, self._gallery, self._pulse, self._keys
+        parts = *heads, words, self._figures, self._gallery, self.pulse, self._keys
         return column(*parts, role="live", margin=(4, 10))
 
     def _arrange(self) -> None:
@@ -226,7 +226,7 @@ class Dashboard:
             with pn.io.hold():
                 self._sent_at = time.monotonic()
                 self._sent += 1
-                self._pulse.paint(self._sent, block)
+                self.pulse.paint(self._sent, block)
                 if self.session.facts is not None:
                     self._painted_scene = self.session.settings.scene
                 self._show()
@@ -267,15 +267,15 @@ class Dashboard:
     def _on_lesson(self) -> None:
         """Make room for a lesson, for its question alone, or for all else."""
         self._dress()
-        is_aside = self._teaching.lesson or self._pulse.narrow or self._stage.is_bare
+        is_aside = self._teaching.lesson or self.pulse.narrow or self._stage.is_bare
         self.page.sidebar_open = not is_aside
         self._tabs.bar.value = TABS[0]
         self._arrange()
 
     def _on_narrow(self) -> None:
-        if self._loaded and self._pulse.narrow:
+        if self._loaded and self.pulse.narrow:
             self.page.sidebar_open = False
-        if self._loaded and self._pulse.phone:
+        if self._loaded and self.pulse.phone:
             self._phone.fit()
 
     def _on_tab(self) -> None:

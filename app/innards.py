@@ -63,6 +63,17 @@ def alive_with(facts: Callable[[], Mapping[str, Any]]) -> None:
     LivenessHandler.get = tell  # type: ignore[method-assign]
 
 
+def answer_heads(is_open: Callable[[str], bool]) -> None:
+    """Have a page be asked for without its contents: 410 if it is named, and not open here."""
+
+    async def head(handler: DocHandler, *_: Any) -> None:
+        page = handler.get_argument("page", "")
+        if page and not is_open(page):
+            handler.set_status(410)
+
+    DocHandler.head = head
+
+
 def open_in_turn() -> None:
     """Have pages opened one after the other.
 

@@ -76,16 +76,22 @@ export function render({model, view}) {
   }
   // A socket may close, or, where a network only falls silent, stay open for minutes.
   let lost = false, losses = 0, gone = false, closed = null, beats = 0
-  const reach = () => fetch(
-    location.pathname, {method: "HEAD", signal: AbortSignal.timeout(WAIT)}
-  )
+  // Only its own server knows a page, and for as long as it is open; another one makes it anew.
+  const reach = async () => {
+    const asked = `${location.pathname}?page=${page}`
+    const answer = await fetch(asked, {method: "HEAD", signal: AbortSignal.timeout(WAIT)})
+    const is_known = answer.status !== 410
+    if (!is_known) { location.replace(address()) }
+    // A proxy may answer for a server that is gone.
+    else if (!answer.ok) { throw new Error(answer.statusText) }
+    return is_known
+  }
   const come_back = async (loss) => {
     // Another loss has its own way back.
     const is_lost = () => lost && !gone && loss === losses
     if (!is_lost()) { return }
     try {
-      await reach()
-      // Bokeh itself tries but five times, and does not say when it has succeeded.
+      if (!await reach() || !is_lost()) { return }
       closed?.reconnect()
       closed = null
       // On a machine that has much to do it takes its time to be heard again.
@@ -93,9 +99,7 @@ export function render({model, view}) {
         await new Promise((done) => setTimeout(done, BEAT))
         if (!is_lost()) { return }
       }
-      // A server that still knows this page has answered; for another one it is made anew.
-      await reach()
-      if (is_lost()) { location.replace(address()) }
+      if (await reach() && is_lost()) { location.replace(address()) }
     } catch { setTimeout(() => come_back(loss), 1000) }
   }
   const lose = () => {
@@ -124,7 +128,6 @@ export function render({model, view}) {
     tell("beat", -++beats)
   })
   model.on("msg:custom", ([number, picture]) => {
-    if (!number) { return location.replace(address()) }
     closed = null
     paint(picture)
     speak()

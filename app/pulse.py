@@ -30,10 +30,7 @@ class Pulse(Plain):
     _esm = "pulse.js"
 
     def paint(self, number: int, block: bytes) -> None:
-        """Send a picture, as `app.worker.block` packs it; once painted, its number comes back.
-
-        Number 0 has the page made anew.
-        """
+        """Send a picture, as `app.worker.block` packs it; once painted, its number comes back."""
         self._send_msg([number, block])
 
     def on(self, kind: str, does: Callable[[int], None]) -> None:
@@ -44,11 +41,9 @@ class Pulse(Plain):
 
         def hear(message: Any) -> None:
             told, page, number = message.data
+            # A server that is started again has models of the same names as the one before.
             if told == kind and page == self.page:
                 does(number)
-            elif told == kind:
-                # A server that is started again has models of the same names as the one before.
-                self.paint(0, b"")
 
         self.on_msg(hear)
 

@@ -30,6 +30,8 @@ from app.worker.link import warm_up
 
 PAGES = Pages(most_pages())
 LATENESS = Lateness()
+NAMES: set[str] = set()
+"""Of the pages that are open."""
 FULL = (
     "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
     "This page tries again by itself.</p>"
@@ -64,6 +66,7 @@ def open_page() -> Page:
         question=question_from_query(query),
         on_phone=is_phone(pn.state.headers),
     )
+    NAMES.add(dashboard.pulse.page)
     pn.state.onload(dashboard.loaded)
     document.add_periodic_callback(dashboard.tick, TICK_MS)
     # The loop's thread alone touches documents: what another adds may be lost (`report.py`).
@@ -100,6 +103,7 @@ def rehearse() -> None:
 def _end(dashboard: Dashboard, document: Document, _context: Any) -> None:
     """Leave nothing behind when a page is gone."""
     dashboard.session.close()
+    NAMES.discard(dashboard.pulse.page)
     forget(document)
     pn.state.log(f"page closed, {len(PAGES)} left")
 
@@ -111,4 +115,5 @@ def _full() -> Page:
 
 
 def _configure() -> None:
-    pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
+    # A page that is cut off connects again by itself (`pulse.js`), and to its own server alone.
+    pn.extension(notifications=True, respect_explicit_sizing=True)

@@ -142,7 +142,7 @@ def test_a_control_in_a_sentence_moves_the_run_and_shows_what_holds(page: Dashbo
     assert page.session.wanted.values()["multiscale"] is False
     assert page._teaching.view.shown["multiscale"] is False
     page._link.follow()
-    assert "lesson=coarse-problem" in page._pulse.query
+    assert "lesson=coarse-problem" in page.pulse.query
 
 
 def test_the_next_lesson_starts_its_own_run_which_is_compared_with_none_before(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import asyncio
 import inspect
 import threading
+from functools import partial
+from operator import setitem
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,7 +25,14 @@ from tornado.websocket import WebSocketHandler
 from web_pages import run_apart
 
 from app.figures import make_figure
-from app.innards import THREADS, ignore_business, ignore_the_lost, open_in_turn, stay_on_loop
+from app.innards import (
+    THREADS,
+    answer_heads,
+    ignore_business,
+    ignore_the_lost,
+    open_in_turn,
+    stay_on_loop,
+)
 from app.pulse import pulse
 from app.views.catalogue import VIEWS
 
@@ -87,6 +96,21 @@ def test_messages_of_a_page_that_was_given_up_are_left(monkeypatch: pytest.Monke
         assert run_apart(work) == heeded
 
 
+def test_a_page_is_known_where_it_is_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(DocHandler, "head", DocHandler.head)
+    answer_heads({"mine"}.__contains__)
+
+    def asked(**given: str) -> int:
+        found = [200]
+        handler: Any = SimpleNamespace(
+            get_argument=given.get, set_status=partial(setitem, found, 0)
+        )
+        run_apart(DocHandler.head(handler))
+        return found[0]
+
+    assert [asked(), asked(page="mine"), asked(page="another's")] == [200, 200, 410]
+
+
 def test_tags_of_a_pane_are_those_of_its_model() -> None:
     assert pn.pane.HTML("", tags=["status"]).get_root().tags == ["status"]
 
@@ -103,8 +127,6 @@ def test_pictures_are_messages_and_so_is_that_they_are_painted(
         for kind in ("beat", "painted"):
             made._process_event(DataEvent(made.get_root(), [kind, page, 7]))
     assert told == [7]
-    # Of another page, which is to be made anew.
-    assert sent[1:] == [(ESMEvent, [0, b""])]
 
 
 def test_what_a_picture_sets_has_its_name_in_the_figure() -> None:
