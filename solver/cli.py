@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import math
 import os
@@ -16,6 +17,7 @@ import numpy as np
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
+from solver.disk import check_place, why
 from solver.files import (
     remarks,
     save_result,
@@ -37,8 +39,10 @@ from solver.sweep_command import add_sweep
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; give the exit code: 0 converged, 1 stopped otherwise, 2 refused input."""
     chosen = _parser().parse_args(arguments)
+    code = 0
     try:
-        code: int = chosen.command(chosen)
+        code = chosen.command(chosen)
+        sys.stdout.flush()
     except SettingError as refusal:
         print(f"slipfront: {refusal}", file=sys.stderr)
         return REFUSED
@@ -48,7 +52,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         # Whoever reads has enough (as with "| head"); Python must not complain at its own end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+    except OSError as trouble:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        print(f"slipfront: nothing can be printed: {why(trouble)}", file=sys.stderr)
+        return REFUSED
     return code
 
 
@@ -91,30 +98,27 @@ def _run(chosen: argparse.Namespace) -> int:
         print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
     distance = _distance(problem) if chosen.reference else None
     solution = solve(problem, settings, distance=distance, watch=chosen.reference, spent=spent)
-    _print_figures(settings, solution, chosen.json)
     if chosen.out is not None:
         try:
             save_result(chosen.out, settings, solution)
         except OSError as problem_there:
             raise _refused_file(chosen.out, problem_there) from None
+    with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
+        _print_figures(settings, solution, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
 def _check_file(path: Path) -> None:
     """Refuse a file that cannot be written, before the run and not after it."""
-    existed = path.exists()
     try:
-        path.open("ab").close()
+        check_place(path)
     except OSError as problem:
         raise _refused_file(path, problem) from None
-    if not existed:
-        path.unlink()
 
 
 def _refused_file(path: Path, problem: OSError) -> SettingError:
-    reason = problem.strerror or type(problem).__name__
     allowed_file = "a file in an existing folder that can be written"
-    return SettingError("--out", str(path), allowed_file, reason)
+    return SettingError("--out", str(path), allowed_file, why(problem))
 
 
 def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> None:

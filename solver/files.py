@@ -13,6 +13,7 @@ import numpy as np
 
 from solver.definitions import Curve, SettingError, parse
 from solver.discrete.inside import Inside
+from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces
@@ -40,6 +41,8 @@ def settings_from_toml(
     SettingError
         For text that is no TOML, an unknown scene, or a refused setting.
     """
+    if len(text) > LARGEST:
+        raise SettingError(source, text[:60], "TOML", TOO_LARGE)
     try:
         values = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
@@ -61,11 +64,11 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
     if scene.endswith(".toml"):
         path = Path(scene)
         try:
-            text = path.read_text(encoding="utf-8")
+            text = read_text(path)
             base = settings_from_toml(text, path.parent, f"settings file {scene}")
         except (OSError, UnicodeDecodeError) as problem:
             raise SettingError(
-                "settings file", scene, "a readable TOML file", f"{type(problem).__name__}"
+                "settings file", scene, "a readable TOML file", why(problem)
             ) from None
     kind = scene_settings(scene) if base is None else type(base)
     definitions, values = kind.definitions(), {}
@@ -224,6 +227,6 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
 
 
 def save_result(path: Path, settings: Settings, solution: Solution) -> None:
-    """Write a result file (npz)."""
-    with path.open("wb") as file:
+    """Write a result file (npz), complete or not at all."""
+    with whole_file(path, "wb") as file:
         np.savez_compressed(file, **result_arrays(settings, solution))

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
+from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.scenes import CATALOGUE
 from solver.study import survey_report
@@ -82,14 +83,16 @@ def _check_repeats(chosen: argparse.Namespace) -> None:
 
 @contextlib.contextmanager
 def writing(folder: Path) -> Iterator[None]:
-    """Refuse a folder that cannot be made or written to."""
+    """Make a folder for files; refuse one that cannot be made or written to, before all work."""
     try:
+        folder.mkdir(parents=True, exist_ok=True)
+        check_place(folder / "any")
         yield
     except BrokenPipeError:
         raise
     except OSError as problem:
         allowed_folder = "a folder that can be made and written to"
-        raise SettingError("--out", str(folder), allowed_folder, str(problem)) from None
+        raise SettingError("--out", str(folder), allowed_folder, why(problem)) from None
 
 
 def _benchmark(chosen: argparse.Namespace) -> int:
@@ -118,7 +121,6 @@ def _figures(chosen: argparse.Namespace) -> int:
         )
         return REFUSED
     with writing(chosen.out):
-        chosen.out.mkdir(parents=True, exist_ok=True)
         figures = paper_figures()
         files = write_figures(figures, chosen.out)
     for figure in figures:
@@ -133,7 +135,6 @@ def _study(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
     _check_repeats(chosen)
     with writing(chosen.out):
-        chosen.out.mkdir(parents=True, exist_ok=True)
         found = error_against_time(settings, chosen.repeats)
         sizes = growth(settings) if chosen.growth else []
         files, drawn = write_study(found, sizes, chosen.out)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
+from solver.disk import write
 from solver.files import settings_from_command
 from solver.report_commands import writing
 from solver.study.executors import FORMS, opened
@@ -59,7 +60,6 @@ def _sweep(chosen: argparse.Namespace) -> int:
             f"slipfront: {name} does nothing with the other settings as they are", file=sys.stderr
         )
     with writing(chosen.out):
-        chosen.out.mkdir(parents=True, exist_ok=True)
         with journal_of(plan, chosen.out) as journal:
             try:
                 run(plan, journal, chosen)
@@ -132,10 +132,10 @@ def write_report(plan: Plan, rows: list[Row], folder: Path) -> list[Path]:
         When a file cannot be written.
     """
     table, page_file = folder / "sweep.csv", folder / "sweep.html"
-    table.write_text(csv_of(plan, rows), encoding="utf-8", newline="")
+    write(table, csv_of(plan, rows))
     drawn = images(plan, rows)
     if drawn is None:
         print(NO_CHARTS)
-    page_file.write_text(html(plan, rows, drawn), encoding="utf-8")
+    write(page_file, html(plan, rows, drawn))
     parquet = folder / "sweep.parquet"
     return [table, page_file, *([parquet] if write_parquet(plan, rows, parquet) else [])]

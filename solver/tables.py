@@ -6,6 +6,7 @@ import csv
 from pathlib import Path
 
 from solver.definitions import Curve, Parameter, SettingError, allowed
+from solver.disk import LARGEST, TOO_LARGE, read_text, why
 
 
 def read_table(text: str, definition: Curve, name: str, source: str) -> list[list[float]]:
@@ -22,8 +23,10 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
     Raises
     ------
     SettingError
-        For a row without exactly two numbers.
+        For a table that is too large, or a row without exactly two numbers.
     """
+    if len(text) > LARGEST:
+        raise SettingError(name, source, allowed(definition), TOO_LARGE)
     rows: list[list[float]] = []
     lines = text.splitlines()
     try:
@@ -48,9 +51,9 @@ def read_table(text: str, definition: Curve, name: str, source: str) -> list[lis
 
 def _read_file(path: Path, definition: Curve, name: str) -> list[list[float]]:
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path)
     except (OSError, ValueError) as problem:  # no text, or no path at all
-        remedy = f"it is no preset, and no readable CSV file ({type(problem).__name__})"
+        remedy = f"it is no preset, and no readable CSV file ({why(problem)})"
         raise SettingError(name, str(path), allowed(definition), remedy) from None
     return read_table(text, definition, name, str(path))
 

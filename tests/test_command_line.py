@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +14,7 @@ import pytest
 
 from solver.checked import dump
 from solver.cli import main
-from solver.definitions import about, allowed
+from solver.definitions import SettingError, about, allowed
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
@@ -292,11 +294,67 @@ def test_what_a_run_does_not_heed_is_said(capsys, assignments, words):
     assert "iterations" in printed.out
 
 
-def test_a_file_that_cannot_take_the_result_costs_no_more_than_the_file(capsys):
-    assert main(["run", "bar", *SMALL, "--out", "/dev/full"]) == 2
+def test_what_is_no_file_is_refused_before_the_run_and_left_as_it_is(capsys, tmp_path):
+    link = tmp_path / "link.npz"
+    link.symlink_to("/dev/full")
+    for place in ("/dev/full", str(link)):
+        assert main(["run", "bar", *SMALL, "--out", place]) == 2
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        assert "--out" in printed.err
+        assert len(printed.err.splitlines()) == 1
+    assert Path("/dev/full").is_char_device()
+    assert link.is_symlink()
+
+
+def test_a_result_is_written_whole_or_not_at_all_before_anything_is_said(
+    capsys, tmp_path, monkeypatch
+):
+    file = tmp_path / "result.npz"
+    file.write_bytes(b"old")
+
+    def breaks(out, **arrays):
+        out.write(b"half")
+        assert file.read_bytes() == b"old"
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", breaks)
+    assert main(["run", "bar", *SMALL, "--out", str(file)]) == 2
     printed = capsys.readouterr()
-    assert "iterations" in printed.out
-    assert "--out" in printed.err
+    assert printed.out == ""
+    assert "No space left" in printed.err
+    assert len(printed.err.splitlines()) == 1
+    assert [(one.name, one.read_bytes()) for one in tmp_path.iterdir()] == [(file.name, b"old")]
+
+
+def test_whoever_reads_no_further_loses_no_file(tmp_path):
+    file = tmp_path / "bar.npz"
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "solver", "run", "bar", *SMALL, "--json", "--out", file]
+    few = ["--set", "max_iterations=1", "--set", "finish=none"]
+    done = subprocess.run(
+        [*command, *few], cwd=ROOT, stdout=writer, stderr=subprocess.PIPE, check=False
+    )
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (1, b"")
+    with np.load(file) as found:
+        assert len(found["indicator"]) == 1
+
+
+@pytest.mark.parametrize("kind", ["table", "settings", "lesson"])
+def test_a_file_without_an_end_is_read_no_further_than_any_may_be_long(kind, capsys, tmp_path):
+    endless = tmp_path / "endless.toml"
+    endless.symlink_to("/dev/zero")
+    command = {
+        "table": ["run", "bar", "--set", f"load={endless}"],
+        "settings": ["run", str(endless)],
+        "lesson": ["lesson", str(endless)],
+    }[kind]
+    assert main(command) == 2
+    assert "more than 4 MB" in capsys.readouterr().err
+    with pytest.raises(SettingError, match="more than 4 MB"):
+        settings_from_toml("#" * 5_000_000)
 
 
 def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys):

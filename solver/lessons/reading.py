@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
+from solver.disk import read_text, why
 from solver.files import scene_settings
 from solver.lessons.lesson import (
     PLACEHOLDER,
@@ -72,10 +73,11 @@ def lesson_from_file(path: Path) -> Lesson:
     """
     with _in(path.name):
         try:
-            values = tomllib.loads(path.read_text(encoding="utf-8"))
+            values = tomllib.loads(read_text(path))
         except OSError as problem:
-            reason = problem.strerror or type(problem).__name__
-            raise SettingError("lesson", str(path), "a file that can be read", reason) from None
+            raise SettingError(
+                "lesson", str(path), "a file that can be read", why(problem)
+            ) from None
         except (ValueError, RecursionError) as problem:
             reason = " ".join(str(problem).split())
             raise SettingError("lesson", str(path), "TOML", f"mend it: {reason}") from None

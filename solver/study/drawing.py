@@ -24,6 +24,7 @@ from matplotlib.tri import Triangulation
 from PIL import Image
 
 from solver.arrays import Array
+from solver.disk import write
 from solver.study.figure_data import HUES, Line, Panel, PaperFigure
 from solver.study.figure_page import TITLE, WORDS, figure_sections
 from solver.study.page import Plot, Section, page
@@ -73,7 +74,7 @@ def write_figures(figures: Sequence[PaperFigure], folder: Path) -> list[Path]:
     report = [WORDS, *chain.from_iterable(map(figure_sections, figures))]
     files = [folder / f"figure-{figure.number}.png" for figure in figures]
     for file, image in zip(files, write_page(together, TITLE, report), strict=True):
-        file.write_bytes(image)
+        write(file, image)
     return [*files, together]
 
 
@@ -87,7 +88,7 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> list[bytes]
     """
     images = {plot: png(plot) for plot in report if isinstance(plot, Plot)}
     parts = [one if isinstance(one, str) else inline(images[one], one.heading) for one in report]
-    file.write_text(page(title, parts), encoding="utf-8")
+    write(file, page(title, parts))
     return list(images.values())
 
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
+from solver.disk import check_place, whole_file
 from solver.study.page import bullets, plain_table, table
 
 BLUE, LIGHT, ORANGE, GREY, RED = "#0072B2", "#56B4E9", "#E69F00", "#999999", "#D55E00"
@@ -18,17 +19,16 @@ Values = Mapping[str, object]
 
 
 def prepare(folder: Path, name: str) -> tuple[Path, Path]:
-    """Make the folder and the two files, so that a long run does not fail at its end.
+    """Name the two files, in a folder that is there; a long run must not fail at its end.
 
     Raises
     ------
     OSError
         When that is not possible.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     files = folder / f"{name}.csv", folder / f"{name}.html"
     for file in files:
-        file.open("a", encoding="utf-8").close()
+        check_place(file)
     return files
 
 
@@ -40,7 +40,7 @@ def write_rows(file: Path, columns: Sequence[str], rows: Sequence[Values]) -> No
     OSError
         When the file cannot be written.
     """
-    with file.open("w", encoding="utf-8", newline="") as out:
+    with whole_file(file) as out:
         writer = csv.DictWriter(out, columns)
         writer.writeheader()
         writer.writerows(rows)

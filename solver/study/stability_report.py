@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from solver.disk import write
 from solver.study.page import page
 from solver.study.row_report import (
     BLUE,
@@ -141,7 +142,7 @@ def write_report(rows: Sequence[Row], apart: Mapping[str, float], folder: Path) 
     """
     table, page_file = prepare(folder, "stability")
     write_rows(table, COLUMNS, [values(row) for row in rows])
-    page_file.write_text(page(TITLE, stability_sections(rows, apart)), encoding="utf-8")
+    write(page_file, page(TITLE, stability_sections(rows, apart)))
     return [table, page_file]
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
 
+from solver.disk import whole_file
 from solver.study.error_against_time import GOAL, INCREMENTAL, LEVELS, MOST_ITERATIONS, Study
 from solver.study.growth import Growth
 
@@ -188,7 +189,7 @@ def _growth_rows(found: Sequence[Growth]) -> Iterator[Sequence[object]]:
 
 
 def _write(file: Path, head: Row, rows: Iterable[Sequence[object]]) -> Path:
-    with file.open("w", encoding="utf-8", newline="") as open_file:
+    with whole_file(file) as open_file:
         writer = csv.writer(open_file)
         writer.writerow(head)
         writer.writerows(rows)

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from solver.disk import write
 from solver.latin import Ending
 from solver.study.page import page, plain_table
 from solver.study.row_report import (
@@ -163,7 +164,7 @@ def write_report(rows: Sequence[Row], folder: Path) -> list[Path]:
     """
     table, page_file = prepare(folder, "survey")
     write_rows(table, COLUMNS, [values(row) for row in rows])
-    page_file.write_text(html(rows), encoding="utf-8")
+    write(page_file, html(rows))
     return [table, page_file]
 
 

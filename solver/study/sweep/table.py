@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from solver.checked import dump
+from solver.disk import whole_file
 from solver.study.sweep.plan import Plan
 from solver.study.sweep.point import Row
 
@@ -54,7 +55,8 @@ def write_parquet(plan: Plan, rows: Sequence[Row], file: Path) -> bool:
     columns = zip(*(cells(plan, row) for row in rows), strict=True)
     table = pyarrow.table(dict(zip(heads(plan), map(list, columns), strict=False)))
     table = table.replace_schema_metadata({"slipfront": json.dumps(plan.plain())})
-    pyarrow.parquet.write_table(table, file)
+    with whole_file(file, "wb") as out:
+        pyarrow.parquet.write_table(table, out)
     return True
 
 

@@ -1,0 +1,91 @@
+"""Files: read up to a largest size, and written complete or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any
+
+LARGEST = 4_000_000
+"""Bytes of a file of settings, a table or a lesson, at most: some 200 000 points of a load path."""
+TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
+
+
+def read_text(path: Path) -> str:
+    """Read a file of text; of one that is too large, or has no end, no more than it takes to know.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read, or is too large.
+    UnicodeDecodeError
+        If it is no text in UTF-8.
+    """
+    with path.open("rb") as file:
+        found = file.read(LARGEST + 1)
+    if len(found) > LARGEST:
+        raise OSError(errno.EFBIG, TOO_LARGE)
+    return found.decode("utf-8-sig").replace("\r\n", "\n")
+
+
+@contextmanager
+def whole_file(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
+    """Open a file to write, which takes its place once it is complete.
+
+    Until then it stands beside that place under another name, and goes if anything fails.
+
+    Raises
+    ------
+    OSError
+        If there is no such folder, it cannot be written to, or is full; if what stands there is no
+        file, or one that must not be changed.
+    """
+    place, part = _place_and_part(path)
+    encoding, newline = (None, None) if "b" in mode else ("utf-8", "")
+    try:
+        with part.open(mode.replace("w", "x"), encoding=encoding, newline=newline) as file:
+            yield file
+        part.replace(place)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def why(problem: OSError | ValueError) -> str:
+    """Say in a few words why a file cannot be read or written."""
+    reason = problem.strerror if isinstance(problem, OSError) else None
+    return reason or type(problem).__name__
+
+
+def write(path: Path, content: str | bytes) -> None:
+    """Write a file, as above."""
+    with whole_file(path, "w" if isinstance(content, str) else "wb") as file:
+        file.write(content)
+
+
+def check_place(path: Path) -> None:
+    """Find out, before long work, whether a file can be written.
+
+    Raises
+    ------
+    OSError
+        As for `whole_file`.
+    """
+    _, part = _place_and_part(path)
+    part.touch(exist_ok=False)
+    part.unlink()
+
+
+def _place_and_part(path: Path) -> tuple[Path, Path]:
+    """Give the place of a file, links followed, and what stands beside it until it is complete."""
+    place = Path(os.path.realpath(path))
+    if place.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if place.exists() and not place.is_file():
+        raise OSError(errno.EINVAL, "It is a device, not a file")
+    if place.exists() and not os.access(place, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    return place, place.with_name(f".{secrets.token_hex(6)}.part")
