@@ -25,8 +25,7 @@ from solver.study.paper_runs import PaperRuns
 LONGEST_FIRST = (
     "test_page_tabs",
     "test_page_survives_its_server",
-    "test_page_controls_of_block_and_layers",
-    "test_page_controls_of_bar_and_strand",
+    "test_page_controls",
     "test_page_fits_its_window",
     "test_page_for_everybody",
     "test_page_asks_what_if",

@@ -151,8 +151,8 @@ def tour(base: Settings, reach: Reach) -> Iterator[Move]:
                 now = yield from _step(now, name, value)
                 if getattr(now, name) != value and isinstance(value, int | float):
                     now = yield from _step(now, name, farthest(now, name, value))
-            yield from _back(now, there)
-        yield from _back(there, base)
+            yield from back(now, there)
+        yield from back(there, base)
 
 
 def _step(now: Settings, name: str, value: Any) -> Iterator[Move]:
@@ -165,7 +165,7 @@ def _step(now: Settings, name: str, value: Any) -> Iterator[Move]:
     return after
 
 
-def _back(now: Settings, goal: Settings) -> Iterator[Move]:
+def back(now: Settings, goal: Settings) -> Iterator[Move]:
     """Bring back one setting after the other, those first that are not refused."""
     while now.values() != goal.values():
         wrong = [name for name, value in goal.values().items() if getattr(now, name) != value]
