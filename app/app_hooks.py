@@ -24,6 +24,7 @@ def on_server_loaded(_server_context: Any) -> None:
         open_in_turn,
         stay_on_loop,
     )
+    from app.log import leave_out_the_unsent
     from app.serve import LATENESS, NAMES, facts, rehearse
 
     rehearse()
@@ -32,6 +33,7 @@ def on_server_loaded(_server_context: Any) -> None:
     open_in_turn()
     stay_on_loop()
     ignore_the_lost()
+    leave_out_the_unsent()
     IOLoop.current().spawn_callback(LATENESS.watch)
     heed_interrupts()
     # What is imported stays: without this, every full collection walks it for 0.15 s, in which

@@ -40,7 +40,7 @@ def pages(server: Server) -> int:
         return int(json.load(answer)["pages"])
 
 
-def test_a_page_at_rest_takes_next_to_nothing_and_one_that_is_closed_nothing(
+def test_a_page_at_rest_takes_next_to_nothing_and_one_asked_for_or_closed_nothing(
     tmp_path: Path,
 ) -> None:
     """The first page of a server, without a browser: what is done once only, is done for it."""
@@ -64,6 +64,10 @@ def test_a_page_at_rest_takes_next_to_nothing_and_one_that_is_closed_nothing(
     server = Server(tmp_path / "log", 0, *SHORT)
     try:
         server.wait()
+        asked = urllib.request.Request(server.address, method="HEAD")
+        with urllib.request.urlopen(asked) as answer:
+            assert answer.status == 200
+        assert pages(server) == 0
         run_apart(visit())
         wait_for(lambda: pages(server) == 0)
         assert share(server) < AT_REST

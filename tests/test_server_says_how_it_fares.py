@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import gc
+import inspect
 import json
 import logging
 import urllib.request
@@ -11,16 +13,20 @@ from typing import Any
 
 import pytest
 from bokeh.document import Document
+from bokeh.server.views import ws
 from browser import Server
 from lone_link import LoneLink
 from pages import Visit, status
+from panel.io import document as panel_document
 from panel.io.state import set_curdoc
 from playwright.sync_api import expect
+from tornado.websocket import WebSocketClosedError
 from web_pages import run_apart
 
 from app import lateness, serve
 from app.dashboard import Dashboard
 from app.lateness import LATE, WINDOW, Lateness
+from app.log import NOT_SENT, leave_out_the_unsent
 from app.pages import Pages
 from app.session import Session
 from app.worker.reports import Facts, Picture
@@ -68,6 +74,31 @@ def test_liveness_tells_pages_workers_and_lateness(server: Server, open_page: Vi
     assert told["/liveness"] is True
     assert told["pages"] >= told["workers"] >= 1
     assert told["lateness"]["most"] >= told["lateness"]["95%"] >= 0.0
+
+
+def test_nothing_is_said_of_what_a_closed_socket_did_not_take(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def fail(error: Exception) -> None:
+        raise error
+
+    async def forget() -> None:
+        tasks = [
+            asyncio.create_task(fail(one)) for one in (WebSocketClosedError(), OSError("disk"))
+        ]
+        await asyncio.wait(tasks)
+        tasks.clear()
+        gc.collect()
+
+    leave_out_the_unsent()
+    for module in (ws, panel_document):
+        assert NOT_SENT in inspect.getsource(module)
+        for words in (NOT_SENT, "else"):
+            logging.getLogger(module.__name__).warning(words)
+    run_apart(forget())
+    assert caplog.messages[:2] == ["else", "else"]
+    (failed,) = caplog.records[2:]
+    assert "disk" in str(failed.exc_info)
 
 
 def test_events_of_a_page_are_logged(
