@@ -17,6 +17,7 @@ from solver.reference.distance import distance_to
 """
 BEGIN = """\
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 
 settings = scene_settings({scene}).checked(
     {{
@@ -24,10 +25,11 @@ settings = scene_settings({scene}).checked(
 )
 problem = discretise(settings)
 """
-ALONE = "solution = solve(problem, settings)\n"
-BESIDE = (
-    "solution = solve(problem, settings, distance=distance_to(reference_of(problem), problem))\n"
-)
+ALONE = "solution = solve(problem, method_of(settings))\n"
+BESIDE = """\
+distance = distance_to(reference_of(problem), problem)
+solution = solve(problem, method_of(settings), distance=distance)
+"""
 END = """\
 for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)

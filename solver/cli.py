@@ -30,8 +30,10 @@ from solver.lessons.command import add_lesson
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to
+from solver.refusal import RefusedError
 from solver.report_commands import REFUSED, add_reports
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.sweep_command import add_sweep
 
@@ -43,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         code = chosen.command(chosen)
         sys.stdout.flush()
-    except SettingError as refusal:
+    except RefusedError as refusal:
         print(f"slipfront: {refusal}", file=sys.stderr)
         return REFUSED
     except NoReferenceError as refusal:
@@ -97,7 +99,9 @@ def _run(chosen: argparse.Namespace) -> int:
     if nothing_acts(problem):
         print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
     distance = _distance(problem) if chosen.reference else None
-    solution = solve(problem, settings, distance=distance, watch=chosen.reference, spent=spent)
+    solution = solve(
+        problem, method_of(settings), distance=distance, watch=chosen.reference, spent=spent
+    )
     if chosen.out is not None:
         try:
             save_result(chosen.out, settings, solution)

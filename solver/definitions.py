@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import copy
 import difflib
-import json
 import math
 import tomllib
 from collections.abc import Callable, Iterable
@@ -17,18 +16,14 @@ from typing import Any
 
 import param
 
+from solver.refusal import RefusedError
+
 Pairs = tuple[tuple[float, float], ...]
 Parameter = param.Parameter[Any]
 
 
-class SettingError(ValueError):
-    """A refused setting: the message names it, its value, the allowed range and the remedy."""
-
-    def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
-        shown = json.dumps(value, default=str)
-        shown = shown if len(shown) <= 60 else shown[:57] + "..."
-        super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
-        self.name = name
+class SettingError(RefusedError):
+    """A refused setting."""
 
 
 @dataclass(frozen=True)

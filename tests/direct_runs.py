@@ -12,17 +12,18 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 
 def direct(values: dict[str, Any]) -> Solution:
     settings = BarSettings.checked(values)
     problem = discretise(settings)
-    return solve(problem, settings, distance=distance_to(incremental(problem), problem))
+    return solve(problem, method_of(settings), distance=distance_to(incremental(problem), problem))
 
 
 def iterate_number(number: int, values: dict[str, Any]) -> Iterate:
     settings = BarSettings.checked(values)
-    for iterate in iterations(discretise(settings), settings):
+    for iterate in iterations(discretise(settings), method_of(settings)):
         if iterate.number == number:
             return iterate
     raise AssertionError

@@ -7,6 +7,7 @@ import numpy as np
 from solver.latin import iterations
 from solver.latin.indicators import behaviour_indicator
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 LOOK = 10
 
@@ -15,7 +16,7 @@ def solved(scene, *, violation=1e-8, most=1500, **values):
     """Iterate until the k-free indicator, looked at now and then, is low enough."""
     settings = CATALOGUE[scene].settings.checked(values)
     problem = discretise(settings)
-    for iterate in islice(iterations(problem, settings), LOOK - 1, most, LOOK):
+    for iterate in islice(iterations(problem, method_of(settings)), LOOK - 1, most, LOOK):
         found = behaviour_indicator(iterate)
         if found <= violation:
             return iterate

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from solver.latin import Ending, iterations, solve
-from solver.latin.acceleration import Anderson
-from solver.latin.direction import search_direction, sliding_share
+from solver.latin.acceleration import Mixing
+from solver.latin.direction import sliding_share
 from solver.latin.nested import prolong
 from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
@@ -17,6 +17,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
 
@@ -28,7 +29,10 @@ def options(**changes: object) -> BarSettings:
 def run(settings: BarSettings):
     problem = discretise(settings)
     return solve(
-        problem, settings, distance=distance_to(incremental(problem), problem), watch=False
+        problem,
+        method_of(settings),
+        distance=distance_to(incremental(problem), problem),
+        watch=False,
     )
 
 
@@ -102,10 +106,12 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit(monkeypatch):
     monkeypatch.setattr("solver.latin.acceleration.MEMORY", 4)
     chosen = options()
     problem = discretise(chosen)
-    straight = list(islice(iterations(problem, chosen), 30))
+    straight = list(islice(iterations(problem, method_of(chosen)), 30))
     for place in (1, 3, 12, 20):
         again = next(
-            islice(iterations(problem, chosen, straight[place].checkpoint), 28 - place, None)
+            islice(
+                iterations(problem, method_of(chosen), straight[place].checkpoint), 28 - place, None
+            )
         )
         assert again.number == straight[29].number
         assert np.array_equal(again.outgoing, straight[29].outgoing)
@@ -115,7 +121,7 @@ def by_point(**changes: object):
     chosen = options(**changes)
     problem = discretise(chosen)
     return problem.friction.by_point(
-        search_direction(problem, chosen)[problem.friction.tangent.above]
+        method_of(chosen).direction.of(problem)[problem.friction.tangent.above]
     )
 
 
@@ -155,7 +161,7 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
     generator = np.random.default_rng(5)
     matrix, shift = 0.9 * np.linalg.qr(generator.normal(size=(6, 6)))[0], generator.normal(size=6)
     state = [np.zeros((6, 1, 1), order="F")]
-    mix = Anderson([np.ones((6, 1, 1))], memory=10)
+    mix = Mixing([np.ones((6, 1, 1))], memory=10)
     for _ in range(9):
         mix.start(state)
         state[0][:, 0, 0] = matrix @ state[0][:, 0, 0] + shift
@@ -165,7 +171,7 @@ def test_a_fixed_point_that_is_linear_is_found_in_as_many_steps_as_it_has_dimens
 
 
 def test_the_memory_is_given_up_when_the_residual_grows():
-    mix = Anderson([np.ones((2, 1, 1))], memory=5)
+    mix = Mixing([np.ones((2, 1, 1))], memory=5)
     for size in (1.0, 0.5, 0.4, 0.41):
         mix.start([np.zeros((2, 1, 1))])
         mix([np.full((2, 1, 1), size)])
@@ -180,7 +186,7 @@ def test_what_is_linear_is_carried_over_exactly():
         for number in (20, 40)
     )
     chosen = options(substructures=5)
-    k = search_direction(fine, chosen)
+    k = method_of(chosen).direction.of(fine)
     stretch = np.linspace(0.0, 1.0, 3)
     displacement = (coarse.positions[coarse.row_dofs])[:, None] * stretch
     force = np.zeros_like(displacement)

@@ -20,6 +20,7 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise, loop_of
 from solver.scenes.incline import InclineSettings, incline
+from solver.scenes.method import method_of
 
 SMALL = {"elements": 16, "elements_up": 8, "instants": 41}
 
@@ -31,7 +32,7 @@ class Run:
         self.settings = InclineSettings.checked({**SMALL, **values})
         problem = discretise(self.settings)
         distance = distance_to(reference_of(problem), problem)
-        self.solution = solve(problem, self.settings, distance=distance)
+        self.solution = solve(problem, method_of(self.settings), distance=distance)
         iterate = self.solution.iterate
         loop = loop_of(self.settings, problem)
         self.degrees = loop.displacement(iterate.displacement)

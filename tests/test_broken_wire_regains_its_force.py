@@ -8,6 +8,7 @@ import pytest
 from solver.latin import Ending, solve
 from solver.reference.broken_wire import broken_wire
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
 
 FAST = {
@@ -23,7 +24,7 @@ GRIPPED = {"grip": "displacement"}
 def solved(**changes):
     """Give the scene of some settings, and its converged iterate."""
     settings = StrandSettings.checked({**FAST, **changes})
-    solution = solve(discretise(settings), settings, watch=False)
+    solution = solve(discretise(settings), method_of(settings), watch=False)
     assert solution.status.ending is Ending.CONVERGED
     return strand(settings), solution.iterate
 

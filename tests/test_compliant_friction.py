@@ -17,6 +17,7 @@ from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
@@ -25,7 +26,7 @@ COMPLIANT = {"friction_law": "compliant"}
 def run(scene="bar", **values):
     chosen = CATALOGUE[scene].settings.checked({**COMPLIANT, **values})
     problem = discretise(chosen)
-    return solve(problem, chosen, distance=distance_to(reference_of(problem), problem))
+    return solve(problem, method_of(chosen), distance=distance_to(reference_of(problem), problem))
 
 
 def pulled(force, stiffness):
@@ -106,7 +107,7 @@ def test_a_soft_contact_is_solved_in_a_few_iterations(scene, stiffness):
     chosen = CATALOGUE[scene].settings.checked(changes)
     problem = discretise(chosen)
     distance = distance_to(reference_of(problem), problem)
-    found = islice(iterations(problem, chosen), 20)
+    found = islice(iterations(problem, method_of(chosen)), 20)
     assert len(list(takewhile(lambda it: distance.of_friction_force(it) > 1e-6, found))) < 15
 
 

@@ -13,6 +13,7 @@ from solver.laws import OPEN
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces, distance_to
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 HERE = np.linspace(0.0, 1.0, 17)
 LEANING = Side(Given(True, 1e-4 * HERE, 0.0 * HERE), Given(False, 0.0 * HERE, 0.0 * HERE))
@@ -30,7 +31,7 @@ CASES = {
 def case(request):
     problem = discretise_stack(block(**CASES[request.param]))
     settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9)
-    iterate = next(islice(iterations(problem, settings), 399, None))
+    iterate = next(islice(iterations(problem, method_of(settings)), 399, None))
     return problem, reference_of(problem), iterate
 
 
@@ -70,7 +71,7 @@ def test_a_solve_records_its_errors_and_ends_by_its_rules():
     problem = discretise_stack(block())
     distance = distance_to(reference_of(problem), problem)
     settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9, tolerance=1e-14)
-    solution = solve(problem, settings, distance=distance)
+    solution = solve(problem, method_of(settings), distance=distance)
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-4 < 1e-2 < solution.records[0].error_force
 

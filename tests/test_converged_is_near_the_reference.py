@@ -10,6 +10,7 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.reference.fingerprint import fingerprint
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 ACCURACY = 0.01
 FEW = {"instants": 21}
@@ -61,7 +62,7 @@ def distances():
 def test_what_is_called_converged_is_within_one_percent(distances, scene, values):
     settings = CATALOGUE[scene].settings.checked(values)
     problem = discretise(settings)
-    solution = solve(problem, settings, watch=False)
+    solution = solve(problem, method_of(settings), watch=False)
     distance = distances(problem)
     assert solution.status.ending is Ending.CONVERGED
     assert distance.of_displacement(solution.iterate) < ACCURACY

@@ -9,6 +9,7 @@ from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 from solver.study.survey import ALLOWED, AT_ROUNDING, Verdict, judge, run
 from solver.study.survey_residual import kkt_residual
 
@@ -122,11 +123,11 @@ def test_a_contact_force_that_all_but_stands_still_far_from_the_solution_is_not_
         "strand substructures=3 peak=1464.7 instants=9 wires=4 broken=3 elements=320"
     )
     problem = discretise(settings)
-    certified = solve(problem, settings, watch=False)
+    certified = solve(problem, method_of(settings), watch=False)
     assert certified.is_certified
     # An incremental solver would take as long as all the runs of this file.
     assert kkt_residual(certified.iterate, problem) <= AT_ROUNDING
-    alone = solve(problem, settings.replace(finish="none"), watch=False)
+    alone = solve(problem, method_of(settings.replace(finish="none")), watch=False)
     error = distance_to(certified.iterate, problem).of_friction_force(alone.iterate)
     assert error <= ALLOWED * settings.accuracy or alone.status.ending is not Ending.CONVERGED
 
@@ -147,7 +148,7 @@ def test_contacts_that_never_close_carry_a_force_that_is_known(method):
     problem = discretise(settings)
     reference = reference_of(problem)
     assert not reference.contact_force.any()
-    solution = solve(problem, settings, distance=distance_to(reference, problem))
+    solution = solve(problem, method_of(settings), distance=distance_to(reference, problem))
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-7
 

@@ -14,6 +14,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested"}
 
@@ -25,18 +26,21 @@ def options(**changes: object) -> BarSettings:
 def run(settings: BarSettings):
     problem = discretise(settings)
     return solve(
-        problem, settings, distance=distance_to(incremental(problem), problem), watch=False
+        problem,
+        method_of(settings),
+        distance=distance_to(incremental(problem), problem),
+        watch=False,
     )
 
 
 def sample(settings: BarSettings, number: int):
-    return list(islice(iterations(discretise(settings), settings), number))
+    return list(islice(iterations(discretise(settings), method_of(settings)), number))
 
 
 def within(settings: BarSettings, level: float) -> int:
     problem = discretise(settings)
     distance = distance_to(incremental(problem), problem)
-    found = islice(iterations(problem, settings), settings.max_iterations)
+    found = islice(iterations(problem, method_of(settings)), settings.max_iterations)
     return 1 + sum(1 for _ in takewhile(lambda it: distance.of_friction_force(it) > level, found))
 
 
@@ -111,7 +115,9 @@ def test_a_run_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, acceleration,
     straight = sample(chosen, CALM + TRIAL + 20)
     for place in (2, CALM - 1, CALM, CALM + 1, CALM + 2, CALM + TRIAL, CALM + TRIAL + 3):
         rest = len(straight) - place - 1
-        again = list(islice(iterations(problem, chosen, straight[place].checkpoint), rest))
+        again = list(
+            islice(iterations(problem, method_of(chosen), straight[place].checkpoint), rest)
+        )
         for one, other in zip(again, straight[place + 1 :], strict=True):
             assert one.course.phase == other.course.phase
             assert np.array_equal(one.outgoing, other.outgoing)

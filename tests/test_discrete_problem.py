@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
 from solver.latin import iterations
 from solver.latin.coarse import CoarseProblem
-from solver.latin.direction import search_direction
 from solver.latin.indicators import latin_indicator
 from solver.latin.linear import FullLinearStage
 from solver.latin.response import DenseResponse, SparseResponse
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.method import method_of
 
 ANY = settings(derandomize=True, deadline=None, max_examples=60)
 response = importlib.import_module("solver.latin.response")
@@ -31,7 +31,7 @@ def options(**values):
 
 def sample(chosen, number):
     """Give the iterate of some number."""
-    return next(islice(iterations(discretise(chosen), chosen), number - 1, None))
+    return next(islice(iterations(discretise(chosen), method_of(chosen)), number - 1, None))
 
 
 def relative(found, expected):
@@ -149,7 +149,7 @@ def test_dense_and_sparse_boundary_responses_agree(monkeypatch, change, substruc
 def test_the_size_of_a_substructure_chooses_its_response(monkeypatch):
     chosen = options(elements=40, substructures=1)
     problem = discretise(chosen)
-    k = search_direction(problem, chosen)
+    k = method_of(chosen).direction.of(problem)
     for limit, kind in [(problem.n_rows, DenseResponse), (problem.n_rows - 1, SparseResponse)]:
         monkeypatch.setattr(response, "DENSE_UP_TO", limit)
         (group,) = FullLinearStage(problem, k, multiscale=True).groups

@@ -13,6 +13,7 @@ from solver.latin.indicators import latin_indicator
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 
 LOOK = 20
 
@@ -29,7 +30,9 @@ def balanced(substructures, **values):
 def driven(chosen):
     """Iterate until the LATIN indicator, looked at now and then, is below the tolerance."""
     problem = discretise(chosen)
-    for iterate in islice(iterations(problem, chosen), LOOK - 1, chosen.max_iterations, LOOK):
+    for iterate in islice(
+        iterations(problem, method_of(chosen)), LOOK - 1, chosen.max_iterations, LOOK
+    ):
         if latin_indicator(iterate) <= chosen.tolerance:
             return iterate
     pytest.fail(f"eta is {latin_indicator(iterate)} after {iterate.number} iterations")
@@ -48,7 +51,9 @@ def test_the_default_reaches_the_reference_in_fields_and_statuses():
     chosen = options()
     problem = discretise(chosen)
     reference = incremental(problem)
-    solution = solve(problem, chosen, distance=distance_to(reference, problem), watch=False)
+    solution = solve(
+        problem, method_of(chosen), distance=distance_to(reference, problem), watch=False
+    )
     assert solution.status.ending is Ending.CONVERGED
     last = solution.records[-1]
     assert last.indicator <= 1e-26

@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from solver.definitions import SettingError
-from solver.latin import coarse, iterations, response
-from solver.latin.direction import search_direction
+from solver.latin import (
+    PGD,
+    Accuracy,
+    Anderson,
+    Auto,
+    Indicator,
+    Iterations,
+    Latin,
+    Paper,
+    References,
+    coarse,
+    iterations,
+    response,
+)
 from solver.latin.linear import FullGroup
+from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 SMALL = {"elements": 20, "instants": 11, "substructures": 4, "search_direction": "paper"}
 
@@ -29,15 +43,29 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
 ) -> None:
     settings = BarSettings.checked(SMALL)
     monkeypatch.setattr(module, "splu", singular)
-    with pytest.raises(SettingError, match="k_scale"):
-        next(iterations(discretise(settings), settings))
+    with pytest.raises(RefusedError, match="k_scale"):
+        next(iterations(discretise(settings), method_of(settings)))
 
 
-def test_a_rule_for_the_search_direction_that_is_none_of_both_is_refused() -> None:
-    settings = BarSettings.checked(SMALL)
-    other: Any = SimpleNamespace(**{**settings.values(), "search_direction": "third"})
-    with pytest.raises(SettingError, match=r"third.*paper, auto"):
-        search_direction(discretise(settings), other)
+@pytest.mark.parametrize(
+    ("make", "name"),
+    [
+        (lambda: Auto(scale=0.0), "Auto.scale"),
+        (lambda: Paper(along=-1.0), "Paper.along"),
+        (lambda: PGD(modes=0), "PGD.modes"),
+        (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
+        (lambda: References(points=2.0), "References.points"),
+        (lambda: Anderson(memory=0), "Anderson.memory"),
+        (lambda: Accuracy(0.0), "Accuracy.share"),
+        (lambda: Indicator(-1.0), "Indicator.eta"),
+        (lambda: Iterations(0), "Iterations.most"),
+        (lambda: Latin(relaxation=1.5), "Latin.relaxation"),
+        (lambda: Latin(threads=0), "Latin.threads"),
+    ],
+)
+def test_a_part_refuses_its_own_numbers(make: Callable[[], object], name: str) -> None:
+    with pytest.raises(RefusedError, match=rf"^{name} = .* is refused; allowed: a number"):
+        make()
 
 
 @pytest.mark.parametrize("without", [0, 2, 3])

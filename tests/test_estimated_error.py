@@ -18,6 +18,7 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 SMALL: dict[str, dict[str, Any]] = {
     "bar": {"elements": 30, "instants": 41, "substructures": 5},
@@ -48,7 +49,7 @@ def test_once_there_is_a_certificate_the_estimate_is_the_true_error(
     problem = discretise(settings)
     distance = true_distance(problem)
     proven = 0
-    for iterate, verdict in judged(problem, settings):
+    for iterate, verdict in judged(problem, method_of(settings)):
         if verdict.certificate is not None:
             proven += 1
             estimate = verdict.certificate.distance.of_friction_force(iterate)
@@ -67,7 +68,7 @@ def test_a_certificate_is_the_solution_of_the_incremental_solver(scene: str, met
     reference = reference_of(problem)
     found = next(
         verdict.certificate
-        for _, verdict in judged(problem, settings)
+        for _, verdict in judged(problem, method_of(settings))
         if verdict.certificate is not None or verdict.status is not None
     )
     assert found is not None
@@ -86,7 +87,7 @@ def test_a_run_that_converges_is_as_accurate_as_was_asked(
     changes = {"finish": "none", "tolerance": 1e-3, "max_iterations": 2000}
     settings = small(scene, method=method, accuracy=accuracy, **changes)
     problem = discretise(settings)
-    solution = solve(problem, settings, distance=true_distance(problem))
+    solution = solve(problem, method_of(settings), distance=true_distance(problem))
     assert solution.status.ending is Ending.CONVERGED
     last = solution.records[-1]
     assert last.error_force <= accuracy / LOW
@@ -97,7 +98,7 @@ def test_a_smaller_accuracy_takes_more_iterations() -> None:
     settings = small("bar", finish="none")
     problem = discretise(settings)
     counts = [
-        solve(problem, settings.replace(accuracy=accuracy)).iterate.number
+        solve(problem, method_of(settings.replace(accuracy=accuracy))).iterate.number
         for accuracy in (1e-1, 1e-3, 1e-6)
     ]
     assert counts == sorted(set(counts))
@@ -108,7 +109,7 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
     for accuracy in (1e-2, 1e-6):
         settings = small(scene, accuracy=accuracy)
         problem = discretise(settings)
-        solution = solve(problem, settings, distance=true_distance(problem))
+        solution = solve(problem, method_of(settings), distance=true_distance(problem))
         assert solution.status.ending is Ending.CONVERGED
         assert solution.is_certified
         assert solution.records[-1].error_force < ROUNDING
@@ -121,9 +122,9 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
     wrong: float, has_certificate: bool
 ) -> None:
     settings = small("bar", finish="none")
-    rules = StopRules(settings)
+    rules = StopRules(method_of(settings))
     number = 20 if has_certificate else 1
-    for iterate in islice(iterations(discretise(settings), settings), number):
+    for iterate in islice(iterations(discretise(settings), method_of(settings)), number):
         known = rules.judge(iterate).certificate is not None
     assert known == has_certificate
     field = iterate.incoming.copy()
@@ -140,7 +141,7 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
 @pytest.mark.parametrize("method", METHODS)
 def test_seconds_increase_from_record_to_record(scene: str, method: str) -> None:
     settings = small(scene, method=method, max_iterations=60)
-    solution = solve(discretise(settings), settings)
+    solution = solve(discretise(settings), method_of(settings))
     assert all(one.seconds < other.seconds for one, other in pairwise(solution.records))
 
 
@@ -154,7 +155,7 @@ def test_seconds_include_all_that_the_stop_rules_take(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=clock))
     settings = small("bar")
-    found = list(judged(discretise(settings), settings))
+    found = list(judged(discretise(settings), method_of(settings)))
     rules = [verdict.seconds - iterate.seconds for iterate, verdict in found]
     assert found[-1][0].residual is not None
     assert rules == pytest.approx([100.0 * number for number in range(1, len(found) + 1)])

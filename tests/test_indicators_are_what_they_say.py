@@ -7,12 +7,12 @@ import pytest
 from bars import SMALL, boundary_of, options, sample
 
 from solver.latin import Iterate, solve
-from solver.latin.direction import search_direction
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.laws import Dirichlet, Friction, Neumann
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 
 
 def iterate_of(problem, k, displacement, force):
@@ -54,7 +54,7 @@ def test_the_latin_indicator_is_equation_2(number, multiscale):
 def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(load, change):
     chosen = options(load=load, peak=1300.0, **change)
     problem = discretise(chosen)
-    k = search_direction(problem, chosen)
+    k = method_of(chosen).direction.of(problem)
     displacement, force = boundary_of(problem, incremental(problem))
     exact = behaviour_indicator(iterate_of(problem, k, displacement, force))
     assert 0.0 <= exact < 1e-8
@@ -87,7 +87,9 @@ def test_the_behaviour_indicator_sees_no_k(number):
 def test_the_behaviour_indicator_falls_with_the_error():
     chosen = options(**SMALL)
     problem = discretise(chosen)
-    solution = solve(problem, chosen, distance=distance_to(incremental(problem), problem))
+    solution = solve(
+        problem, method_of(chosen), distance=distance_to(incremental(problem), problem)
+    )
     behaviour = np.array([entry.behaviour for entry in solution.records])
     error = np.array([entry.error_force for entry in solution.records])
     assert np.all(behaviour > 0.0)

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from solver.latin.direction import search_direction
 from solver.latin.local import LocalStage
 from solver.laws import Neumann
 from solver.laws.interface import Region
@@ -16,6 +15,7 @@ from solver.laws.perfect import perfect
 from solver.laws.play import WALK_FROM_POINTS, _Scan, _Walk, play
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 ANY = settings(derandomize=True, deadline=None, max_examples=100)
 EPS = float(np.finfo(float).eps)
@@ -237,7 +237,7 @@ def test_the_local_stage_obeys_every_law_along_its_search_direction(seed, substr
         }
     )
     problem = discretise(options)
-    k = search_direction(problem, options)
+    k = method_of(options).direction.of(problem)
     incoming = np.random.default_rng(seed).normal(size=(problem.n_rows, problem.n_instants))
     incoming *= problem.friction.bound.max() / k.min()
     stage = LocalStage(problem, k)

@@ -12,19 +12,20 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
+    ["arrays"],
+    ["refusal"],
+    ["laws"],
+    ["discrete"],
+    ["reference"],
+    ["reduction"],
+    ["latin"],
     ["definitions"],
     ["disk"],
     ["tables"],
     ["checked"],
     ["settings"],
-    ["arrays"],
     ["loads"],
-    ["laws"],
-    ["discrete"],
-    ["reference"],
     ["scenes"],
-    ["reduction"],
-    ["latin"],
     ["files"],
     ["study"],
     ["lessons", "report_commands"],
@@ -32,7 +33,8 @@ LAYERS = [
     ["cli"],
     ["__main__"],
 ]
-"""Parts of the solver; each may import itself and what stands before it."""
+"""Parts of the solver; each may import itself and what stands before it. Problem and method stand
+before all that knows settings and scenes."""
 LONGEST_FILE, LONGEST_FUNCTION = 300, 50
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 

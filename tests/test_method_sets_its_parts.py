@@ -14,6 +14,7 @@ from solver.files import settings_from_command, settings_from_toml
 from solver.latin import iterations
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 from solver.settings import Settings
 
 PAPER = {
@@ -156,7 +157,10 @@ def test_a_method_that_does_not_exist_is_refused_with_those_that_do(capsys):
 def test_a_method_is_no_more_than_its_parts(method):
     def fields(values):
         settings = BarSettings.checked({**SMALL, **values})
-        return [one.outgoing for one in islice(iterations(discretise(settings), settings), 12)]
+        return [
+            one.outgoing
+            for one in islice(iterations(discretise(settings), method_of(settings)), 12)
+        ]
 
     at_once = fields({"method": method})
     by_hand = fields({"method": other(method), **METHODS[method]})

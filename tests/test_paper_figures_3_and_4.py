@@ -16,6 +16,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 BENCHMARK = {"load": "sine", "peak": 900.0, "substructures": 10, "relaxation": 0.8}
 WITHIN = 0.2
@@ -32,7 +33,7 @@ def histories():
         chosen = options(multiscale=multiscale, max_iterations=800, tolerance=1e-30)
         problem = discretise(chosen)
         distance = distance_to(incremental(problem), problem)
-        found[multiscale] = solve(problem, chosen, distance=distance).records
+        found[multiscale] = solve(problem, method_of(chosen), distance=distance).records
     return found
 
 
@@ -91,7 +92,7 @@ def test_the_indicator_is_not_the_error_of_the_friction_force(histories):
 def test_macro_forces_of_the_multiscale_linear_stage_are_in_equilibrium(change):
     chosen = options(relaxation=1.0, **change)
     problem = discretise(chosen)
-    for iterate in islice(iterations(problem, chosen), 30):
+    for iterate in islice(iterations(problem, method_of(chosen)), 30):
         assert imbalance(problem, iterate) < 1e-12
 
 
@@ -99,7 +100,7 @@ def test_macro_forces_of_the_multiscale_linear_stage_are_in_equilibrium(change):
 def test_relaxation_keeps_its_share_of_the_imbalance_of_the_zero_start(relaxation):
     chosen = options(relaxation=relaxation)
     problem = discretise(chosen)
-    for iterate in islice(iterations(problem, chosen), 50):
+    for iterate in islice(iterations(problem, method_of(chosen)), 50):
         kept = (1.0 - relaxation) ** iterate.number
         assert imbalance(problem, iterate) == pytest.approx(kept, rel=1e-9, abs=1e-12)
 
@@ -108,7 +109,7 @@ def test_relaxation_keeps_its_share_of_the_imbalance_of_the_zero_start(relaxatio
 def test_macro_forces_of_the_monoscale_linear_stage_are_not(relaxation):
     chosen = options(relaxation=relaxation, multiscale=False)
     problem = discretise(chosen)
-    for iterate in islice(iterations(problem, chosen), 30):
+    for iterate in islice(iterations(problem, method_of(chosen)), 30):
         assert imbalance(problem, iterate) > 1e-3
 
 
@@ -116,7 +117,7 @@ def test_monoscale_without_relaxation_stalls_far_from_the_answer():
     chosen = options(relaxation=1.0, multiscale=False)
     problem = discretise(chosen)
     distance = distance_to(incremental(problem), problem)
-    solution = solve(problem, chosen, distance=distance)
+    solution = solve(problem, method_of(chosen), distance=distance)
     assert solution.status.ending is Ending.STALLED
     assert "relaxation" in solution.status.advice
     assert solution.records[-1].indicator > 1e-3

@@ -13,6 +13,7 @@ from solver.latin import solve
 from solver.reduction.svd import InterfaceField, decompositions
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 from solver.study import paper_runs
 from solver.study.paper_figures import figure_5, figure_6, figure_7, figure_8, paper_figures
 
@@ -52,7 +53,7 @@ def test_fig_5_depends_on_the_lost_load_path():
     chosen = BarSettings.checked(
         {"method": "paper", "substructures": 5, "peak": 1200.0, "tolerance": 1e-13}
     )
-    found = solve(discretise(chosen), chosen, watch=False).iterate
+    found = solve(discretise(chosen), method_of(chosen), watch=False).iterate
     second = decompositions(found, InterfaceField.FRICTION_FORCE)[1]
     assert second.modes_for(0.01) >= 10
 

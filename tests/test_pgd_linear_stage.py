@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from solver.files import result_arrays, summary
 from solver.latin import Ending, iterations, solve
-from solver.latin.direction import search_direction
 from solver.reduction.basis import SeparatedBasis
 from solver.reduction.enrichment import Enrichment
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 GENEROUS = {"pgd_modes": 100, "pgd_pairs": 100, "pgd_tolerance": 1e-12, "pgd_enrichment": 0.0}
 
@@ -29,11 +29,11 @@ def options(**changes: object) -> BarSettings:
 def run(settings: BarSettings, **rest: object):
     problem = discretise(settings)
     distance = distance_to(incremental(problem), problem)
-    return solve(problem, settings, distance=distance, **{"watch": False, **rest})
+    return solve(problem, method_of(settings), distance=distance, **{"watch": False, **rest})
 
 
 def sample(settings: BarSettings, number: int):
-    return next(islice(iterations(discretise(settings), settings), number - 1, None))
+    return next(islice(iterations(discretise(settings), method_of(settings)), number - 1, None))
 
 
 @pytest.mark.parametrize("substructures", [5, 10])
@@ -94,10 +94,10 @@ def test_the_bases_hold_the_iterate():
 def test_a_basis_given_the_exact_solution_needs_no_enrichment():
     chosen = options(substructures=5, tolerance=1e-22, max_iterations=20_000)
     exact = solve(
-        discretise(chosen), chosen.replace(linear_stage="full"), watch=False
+        discretise(chosen), method_of(chosen.replace(linear_stage="full")), watch=False
     ).iterate.checkpoint
     tight = chosen.replace(**GENEROUS, tolerance=1e-30).replace(pgd_tolerance=1e-9)
-    for iterate in islice(iterations(discretise(chosen), tight, exact), 5):
+    for iterate in islice(iterations(discretise(chosen), method_of(tight), exact), 5):
         assert iterate.reduction is not None
         assert [entry.added for entry in iterate.reduction.records] == [0] * 5
 
@@ -107,7 +107,7 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
     chosen = options(substructures=5, **change)
     straight = sample(chosen, 40)
     half = sample(chosen, 25).checkpoint
-    again = next(islice(iterations(discretise(chosen), chosen, half), 14, None))
+    again = next(islice(iterations(discretise(chosen), method_of(chosen), half), 14, None))
     assert np.array_equal(again.outgoing, straight.outgoing)
     assert again.reduction is not None
     assert straight.reduction is not None
@@ -115,7 +115,7 @@ def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
 
 
 def test_the_records_account_for_the_residual():
-    for iterate in islice(iterations(discretise(options()), options()), 30):
+    for iterate in islice(iterations(discretise(options()), method_of(options())), 30):
         assert iterate.reduction is not None
         for entry in iterate.reduction.records:
             assert 0.0 <= entry.updated <= 1.0
@@ -240,7 +240,7 @@ def test_the_fixed_point_finds_the_singular_pair(monkeypatch):
 def test_the_search_direction_is_the_full_stage_s():
     chosen = options(k_friction_scale=3.0)
     problem = discretise(chosen)
-    k = search_direction(problem, chosen)
+    k = method_of(chosen).direction.of(problem)
     iterate = sample(chosen, 3)
     for part, shown in zip(problem.substructures, iterate.bases, strict=True):
         assert np.array_equal(shown.k, k[part.rows])

@@ -12,6 +12,7 @@ from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings, block
+from solver.scenes.method import method_of
 
 PRESSURE, SHEAR = 1e6, 4e5
 DECOMPOSITIONS = [(1, 1), (3, 2), (10, 7)]
@@ -139,7 +140,7 @@ def test_a_body_that_never_touches_moves_as_a_whole_and_the_run_converges(depth)
     settings = BlockSettings.checked(
         {"gap": ((0.0, 1e-3), (0.1, 1e-3)), "top_normal_displacement": -depth, "elements": 16}
     )
-    solution = solve(discretise(settings), settings)
+    solution = solve(discretise(settings), method_of(settings))
     assert solution.status.ending is Ending.CONVERGED
     fields = solution.iterate.contact("support")
     assert np.all(fields.status == 2)
@@ -159,10 +160,10 @@ def test_a_body_falls_on_its_support_and_stands_there_as_if_it_had_been_there(ga
     flat, fallen = (
         BlockSettings.checked({**values, "instants": 21, "gap": one}) for one in ("flat", gap)
     )
-    solution = solve(discretise(fallen), fallen)
+    solution = solve(discretise(fallen), method_of(fallen))
     assert solution.status.ending is Ending.CONVERGED
     assert len(solution.records) < 40
-    wanted = solve(discretise(flat), flat).iterate.contact("support").normal_force
+    wanted = solve(discretise(flat), method_of(flat)).iterate.contact("support").normal_force
     found = solution.iterate.contact("support").normal_force
     np.testing.assert_allclose(found, wanted, atol=1e-3 * wanted.max())
 
@@ -172,7 +173,7 @@ def test_before_anything_acts_a_body_hovers_where_it_was():
         {"gap": ((0.0, 1e-2),), "top": "traction", "top_normal_traction": -PRESSURE, "instants": 5}
     )
     problem = discretise(settings)
-    for field in (solve(problem, settings).iterate, reference_of(problem)):
+    for field in (solve(problem, method_of(settings)).iterate, reference_of(problem)):
         openings = field.contact("support").opening
         np.testing.assert_allclose(openings[:, 0], 1e-2, atol=1e-12)
         assert np.abs(openings[:, 1:]).min() < 1e-9

@@ -12,6 +12,7 @@ from solver.latin import iterations
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 SMALL = {"elements": 32, "elements_up": 16, "instants": 41}
 
@@ -37,7 +38,7 @@ def errors(scene, most, **values):
     size = SMALL if scene == "block" else {"instants": 41}
     settings, problem = problem_of(scene, **{**size, **values})
     distance = known(scene)
-    found = islice(iterations(problem, settings), most)
+    found = islice(iterations(problem, method_of(settings)), most)
     return np.array([distance.of_friction_force(one) for one in found])
 
 
@@ -61,7 +62,7 @@ def test_twenty_thousand_unknowns_come_within_one_percent_in_fifteen_iterations(
         acceleration=acceleration,
     )
     distance = distance_to(reference_of(problem), problem)
-    *_, last = islice(iterations(problem, settings), 15)
+    *_, last = islice(iterations(problem, method_of(settings)), 15)
     assert distance.of_friction_force(last) <= 0.01
 
 

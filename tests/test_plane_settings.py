@@ -13,11 +13,12 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.discrete.equilibrium import wrench
 from solver.latin import iterations
-from solver.latin.direction import search_direction
 from solver.loads import PRESETS, PULLS, load_path
+from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import BlockSettings, block
 from solver.scenes.layers import LayersSettings, layers
+from solver.scenes.method import method_of
 from solver.scenes.sides import PRESCRIBED
 
 PRESSED = {"top": "traction", "top_normal_traction": -7e7}
@@ -164,8 +165,8 @@ def test_a_substructure_that_k_does_not_hold_is_refused_in_words():
         replace(part, elasticity=replace(part.elasticity, stiffness=-part.elasticity.stiffness))
         for part in problem.substructures
     ]
-    with pytest.raises(SettingError, match="k_scale"):
-        next(iterations(replace(problem, substructures=tuple(loose)), settings))
+    with pytest.raises(RefusedError, match="k_scale"):
+        next(iterations(replace(problem, substructures=tuple(loose)), method_of(settings)))
 
 
 def test_fewer_elements_take_substructures_down_with_them():
@@ -177,10 +178,10 @@ def test_fewer_elements_take_substructures_down_with_them():
 
 def test_normal_and_tangential_search_directions_are_scaled_apart():
     problem = discretise(LayersSettings.checked(SMALL))
-    plain = search_direction(problem, LayersSettings.checked(SMALL))
-    scaled = search_direction(
-        problem, LayersSettings.checked({**SMALL, "k_normal_scale": 3.0, "k_friction_scale": 5.0})
-    )
+    plain = method_of(LayersSettings.checked(SMALL)).direction.of(problem)
+    scaled = method_of(
+        LayersSettings.checked({**SMALL, "k_normal_scale": 3.0, "k_friction_scale": 5.0})
+    ).direction.of(problem)
     factor = np.ones(problem.n_rows)
     for law in problem.rubbing.values():
         factor[np.concatenate(law.normal.sides)] = 3.0

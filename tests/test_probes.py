@@ -14,6 +14,7 @@ from solver.discrete.probes import AxialForce, end_rotation, reaction, side_mean
 from solver.latin import Iterate, iterations
 from solver.reference.broken_wire import broken_wire
 from solver.scenes import CATALOGUE, discretise, loop_of
+from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
 from solver.settings import Settings
 
@@ -25,7 +26,7 @@ LAYERS = {**SMALL, "elements_up": 2, "layers": 3}
 
 def iterate_of(scene: str, values: dict[str, Any], number: int) -> tuple[Settings, Iterate]:
     settings = CATALOGUE[scene].settings.checked(values)
-    run = iterations(discretise(settings), settings)
+    run = iterations(discretise(settings), method_of(settings))
     return settings, next(islice(run, number - 1, None))
 
 

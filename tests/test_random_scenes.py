@@ -19,6 +19,7 @@ from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 FEW = settings(RANDOM, max_examples=int(RUNS or 30))
 SIZES = {
@@ -87,7 +88,7 @@ def assert_ends(scene, raw):
         reference = None
     distance = None if reference is None else distance_to(reference, problem)
     try:
-        solution = solve(problem, chosen, distance=distance)
+        solution = solve(problem, method_of(chosen), distance=distance)
     except SettingError:
         event("refused")
         return

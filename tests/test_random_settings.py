@@ -20,6 +20,7 @@ from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 RUNS = os.environ.get("SLIPFRONT_RANDOM_RUNS")
 RANDOM = settings(
@@ -127,7 +128,7 @@ def values(draw):
 def run(chosen):
     problem = discretise(chosen)
     reference = reference_of(problem)
-    return reference, solve(problem, chosen, distance=distance_to(reference, problem))
+    return reference, solve(problem, method_of(chosen), distance=distance_to(reference, problem))
 
 
 @RANDOM

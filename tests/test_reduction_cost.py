@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from solver.arrays import space_time
-from solver.latin.direction import search_direction
+from solver.latin import Auto
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.latin.response import DenseResponse
+from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.study.reduction_cost import half_plane, reduction_cost, whole_iterations
@@ -20,16 +21,14 @@ from solver.study.reduction_cost import half_plane, reduction_cost, whole_iterat
 
 def test_both_stages_give_the_same_on_the_half_plane():
     problem = half_plane(40, 12)
-    settings = BarSettings.checked(
-        {"substructures": 1, "linear_stage": "pgd", "pgd_modes": 40, "pgd_tolerance": 1e-14}
-    )
-    k = search_direction(problem, settings)
+    k = Auto().of(problem)
     generator = np.random.default_rng(3)
     start = Checkpoint(0, 0.0, np.asfortranarray(generator.normal(size=(40, 12))))
     target = np.asfortranarray(generator.normal(size=(40, 12)))
     found = []
     full = FullLinearStage(problem, k, multiscale=True)
-    reduced = ReducedLinearStage(problem, k, settings.replace(pgd_enrichment=0.0, pgd_pairs=40))
+    every = Enrichment(threshold=0.0, tolerance=1e-14, pairs=40, largest=40)
+    reduced = ReducedLinearStage(problem, k, every, multiscale=True)
     for stage in (full, reduced):
         state = stage.start(start)
         stage.read(target)
@@ -49,7 +48,7 @@ def test_the_half_plane_has_a_dense_symmetric_positive_stiffness():
 
 def test_every_size_that_fits_is_measured_and_no_other():
     settings = BarSettings.checked({"method": "paper", "substructures": 5})
-    cost = reduction_cost("bar", discretise(settings), settings, (2, 8, 64), repeats=1)
+    cost = reduction_cost("bar", discretise(settings), (2, 8, 64), repeats=1)
     assert set(cost.reduced) == set(cost.enriched) == {2, 8}
     assert cost.full > 0.0
     assert cost.reduced_values[2] < cost.reduced_values[8] < cost.values

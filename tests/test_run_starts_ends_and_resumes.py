@@ -13,16 +13,16 @@ import pytest
 from bars import SMALL, boundary_of, options, sample
 
 from solver.latin import Checkpoint, Ending, iterations, solve
-from solver.latin.direction import search_direction
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 
 
 @pytest.mark.parametrize("multiscale", [True, False])
 def test_without_load_the_run_stops_at_once(multiscale):
     chosen = options(peak=0.0, multiscale=multiscale)
-    solution = solve(discretise(chosen), chosen)
+    solution = solve(discretise(chosen), method_of(chosen))
     assert solution.status.ending is Ending.CONVERGED
     assert solution.iterate.number == 1
     assert solution.records[-1].indicator == 0.0
@@ -47,11 +47,11 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
     problem = discretise(chosen)
     reference = incremental(problem)
     displacement, force = boundary_of(problem, reference)
-    k = search_direction(problem, chosen)
+    k = method_of(chosen).direction.of(problem)
     start = Checkpoint(0, 0.0, displacement + force / k[:, None])
     solution = solve(
         problem,
-        chosen.replace(tolerance=1e-20),
+        method_of(chosen.replace(tolerance=1e-20)),
         start=start,
         distance=distance_to(reference, problem),
     )
@@ -64,8 +64,8 @@ def test_started_at_the_reference_the_run_stops_at_once(change):
 def test_started_where_it_ended_the_run_stops_at_once():
     chosen = options(**SMALL)
     problem = discretise(chosen)
-    ended = solve(problem, chosen).iterate
-    again = solve(problem, chosen, start=ended.checkpoint)
+    ended = solve(problem, method_of(chosen)).iterate
+    again = solve(problem, method_of(chosen), start=ended.checkpoint)
     assert again.status.ending is Ending.CONVERGED
     assert again.iterate.number == ended.number + 1
     assert again.iterate.seconds > ended.seconds
@@ -75,7 +75,7 @@ def test_a_run_that_nobody_resumes_keeps_nothing_for_it_and_says_so():
     chosen = options(**SMALL, acceleration="anderson")
     problem = discretise(chosen)
     kept, light = (
-        list(islice(iterations(problem, chosen, resumable=resumable), 6))[-1]
+        list(islice(iterations(problem, method_of(chosen), resumable=resumable), 6))[-1]
         for resumable in (True, False)
     )
     assert np.array_equal(kept.outgoing, light.outgoing)
@@ -89,8 +89,8 @@ def test_a_run_that_nobody_resumes_keeps_nothing_for_it_and_says_so():
 def test_resuming_from_a_checkpoint_continues_bit_by_bit(change, elements):
     chosen = options(**{**SMALL, "elements": elements}, **change)
     problem = discretise(chosen)
-    straight = list(islice(iterations(problem, chosen), 12))
-    resumed = list(islice(iterations(problem, chosen, straight[6].checkpoint), 5))
+    straight = list(islice(iterations(problem, method_of(chosen)), 12))
+    resumed = list(islice(iterations(problem, method_of(chosen), straight[6].checkpoint), 5))
     for one, other in zip(straight[7:], resumed, strict=True):
         assert one.number == other.number
         for name in ("outgoing", "incoming", "local_displacement", "local_incoming"):
@@ -109,7 +109,7 @@ def test_the_clock_stands_still_while_the_consumer_looks(monkeypatch):
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=clock))
     chosen = options(**SMALL)
     seconds = []
-    for iterate in islice(iterations(discretise(chosen), chosen), 5):
+    for iterate in islice(iterations(discretise(chosen), method_of(chosen)), 5):
         seconds.append(iterate.seconds)
         now += 1e6
     assert seconds == [1.0, 2.0, 3.0, 4.0, 5.0]
@@ -130,7 +130,7 @@ def test_iterates_stay_as_they_are_when_the_iteration_goes_on():
     chosen = options(**SMALL)
     problem = discretise(chosen)
     kept, copies = [], []
-    for iterate in islice(iterations(problem, chosen), 6):
+    for iterate in islice(iterations(problem, method_of(chosen)), 6):
         kept.append(iterate)
         copies.append(
             [iterate.outgoing.copy(), iterate.incoming.copy(), iterate.local_displacement.copy()]
@@ -147,8 +147,8 @@ def test_a_cancelled_and_an_exhausted_run_keep_their_last_iterate():
     chosen = options(**SMALL)
     problem = discretise(chosen)
     answers = iter([False, False, True])
-    cancelled = solve(problem, chosen, cancelled=lambda: next(answers))
-    exhausted = solve(problem, chosen.replace(max_iterations=3))
+    cancelled = solve(problem, method_of(chosen), cancelled=lambda: next(answers))
+    exhausted = solve(problem, method_of(chosen.replace(max_iterations=3)))
     assert cancelled.status.ending is Ending.CANCELLED
     assert exhausted.status.ending is Ending.EXHAUSTED
     for solution in (cancelled, exhausted):
@@ -161,9 +161,9 @@ def test_a_cancelled_and_an_exhausted_run_keep_their_last_iterate():
 def test_a_run_whose_numbers_overflow_says_where_and_keeps_the_last_good_iterate():
     chosen = options(**SMALL)
     problem = discretise(chosen)
-    start = next(iterations(problem, chosen)).checkpoint
+    start = next(iterations(problem, method_of(chosen))).checkpoint
     huge = replace(start, outgoing=start.outgoing * 1e160)
     with np.errstate(over="ignore", invalid="ignore"):
-        solution = solve(problem, chosen, start=huge)
+        solution = solve(problem, method_of(chosen), start=huge)
     assert solution.status.ending is Ending.DIVERGED
     assert "at iteration 2" in solution.status.advice

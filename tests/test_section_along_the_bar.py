@@ -13,6 +13,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.method import method_of
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 31}
 GRADED = [[0.0, 100.0], [0.4, 1.0], [1.0, 3.0]]
@@ -79,7 +80,9 @@ def test_the_method_reaches_the_reference(options, profile):
     fast = {"acceleration": "anderson", "tolerance": 1e-20, **options}
     chosen = settings(section_profile=profile, **fast)
     problem = discretise(chosen)
-    solution = solve(problem, chosen, distance=distance_to(incremental(problem), problem))
+    solution = solve(
+        problem, method_of(chosen), distance=distance_to(incremental(problem), problem)
+    )
     assert solution.status.ending == "converged"
     assert solution.records[-1].error_force <= 1e-6
 

@@ -15,6 +15,7 @@ from solver.latin.direction import automatic
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 
 def problem_of(scene, **values):
@@ -31,7 +32,7 @@ def layers_of(ratio, **values):
 def error_after(most, settings, problem):
     """Give the largest error of the contact force in the last three of so many iterations."""
     distance = distance_to(reference_of(problem), problem)
-    found = islice(iterations(problem, settings), most - 3, most)
+    found = islice(iterations(problem, method_of(settings)), most - 3, most)
     return max(distance.of_friction_force(one) for one in found)
 
 

@@ -16,6 +16,7 @@ from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
+from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
 from solver.study.error_against_time import FORMS, GOAL, INCREMENTAL, error_against_time
 
@@ -39,7 +40,7 @@ def test_converged_latin_is_the_reference(wires, broken, grip):
     reference = reference_of(problem)
     assert reference.converged.all()
     assert reference.residual <= 1e-10
-    last = solve(problem, settings, distance=distance_to(reference, problem)).records[-1]
+    last = solve(problem, method_of(settings), distance=distance_to(reference, problem)).records[-1]
     assert last.error_displacement < 1e-6
     assert last.error_force < 1e-6
 

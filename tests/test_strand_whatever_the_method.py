@@ -18,6 +18,7 @@ from solver.loads import PRESETS, PULLS
 from solver.reduction.svd import InterfaceField, decompositions, friction_spectra
 from solver.scenes import discretise
 from solver.scenes.base import LARGEST_FIELD
+from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
@@ -32,7 +33,7 @@ def options(**changes: object) -> StrandSettings:
 
 
 def solution_of(settings):
-    found = solve(discretise(settings), settings, watch=False)
+    found = solve(discretise(settings), method_of(settings), watch=False)
     assert found.status.ending is Ending.CONVERGED
     return found.iterate
 
@@ -91,7 +92,7 @@ def test_separated_bases_and_laws_at_reference_points_come_close(change):
     settings = options(
         linear_stage="pgd", local_stage="reduced", local_instants=1.0, max_iterations=60, **change
     )
-    found = solve(discretise(settings), settings, watch=False).iterate
+    found = solve(discretise(settings), method_of(settings), watch=False).iterate
     exact = solution_of(settings.replace(linear_stage="full", max_iterations=4000, **FAST))
     assert found.references is not None
     gap = np.linalg.norm(found.displacement - exact.displacement)
@@ -101,7 +102,7 @@ def test_separated_bases_and_laws_at_reference_points_come_close(change):
 def test_reference_points_come_in_pairs():
     settings = options(linear_stage="pgd", local_stage="reduced", local_points=0.1, wires=5)
     problem = discretise(settings)
-    for iterate in iterations(problem, settings):
+    for iterate in iterations(problem, method_of(settings)):
         if iterate.number == 12:
             break
     kept = np.zeros(problem.n_rows, dtype=bool)
@@ -166,7 +167,7 @@ def test_a_coarser_strand_is_the_same_strand(wires):
     coarser = settings.coarser()
     assert (coarser.elements, coarser.wires, coarser.broken) == (24, wires, 2)
     starts = [
-        next(iterations(discretise(some), some))
+        next(iterations(discretise(some), method_of(some)))
         for some in (settings.replace(start="nested"), settings)
     ]
     exact = solution_of(settings.replace(**FAST, tolerance=1e-14))
@@ -240,7 +241,7 @@ def test_the_largest_strand_is_refused_by_size_and_not_by_memory():
 )
 def test_the_smallest_and_oddest_strands_end_well(change, method):
     settings = StrandSettings.checked({**SMALL, "wires": 3, **method, **change})
-    found = solve(discretise(settings), settings, watch=False)
+    found = solve(discretise(settings), method_of(settings), watch=False)
     allowed = {Ending.CONVERGED, Ending.STALLED, Ending.EXHAUSTED}
     assert found.status.ending in (allowed if "linear_stage" in method else {Ending.CONVERGED})
     assert np.isfinite(found.iterate.displacement).all()

@@ -23,6 +23,7 @@ from solver.reduction.svd import (
 from solver.reference.closed_form import closed_form
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.method import method_of
 
 DEGENERATE = {
     "one instant": {"instants": 1, "load": "ramp"},
@@ -52,7 +53,7 @@ def squared_norm(field, space_weights, time_weights):
 def iterate_of(number=15, **changes):
     chosen = BarSettings.checked({"method": "paper", "substructures": 5, **changes})
     problem = discretise(chosen)
-    return next(islice(iterations(problem, chosen), number - 1, None))
+    return next(islice(iterations(problem, method_of(chosen)), number - 1, None))
 
 
 @given(weighted_fields())

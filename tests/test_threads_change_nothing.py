@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from solver.latin import iterations
-from solver.latin.acceleration import SAMPLE, Anderson
+from solver.latin.acceleration import SAMPLE, Mixing
 from solver.latin.blocks import MOST, VALUES, Blocks
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 LARGE = {
     "block": {"elements": 192, "elements_up": 96, "substructures": 8, "substructures_up": 4},
@@ -26,7 +27,7 @@ def test_iterates_are_the_same_to_the_bit_whatever_the_threads(scene):
     problem = discretise(settings)
     assert len(Blocks(problem.n_rows, problem.n_instants).slices) > 1
     one, several = (
-        next(islice(iterations(problem, settings.replace(threads=threads)), 8, None))
+        next(islice(iterations(problem, method_of(settings.replace(threads=threads))), 8, None))
         for threads in (1, 3)
     )
     assert np.array_equal(one.outgoing, several.outgoing)
@@ -60,7 +61,7 @@ def test_a_sample_of_the_residual_mixes_a_large_linear_iteration_as_well():
     size, generator = 4 * SAMPLE, np.random.default_rng(3)
     rates = generator.choice([0.9, -0.8, 0.5, 0.1], size)[:, None, None]
     state = [np.zeros((size, 1, 1), order="F")]
-    mix = Anderson([np.ones((size, 1, 1))], memory=6)
+    mix = Mixing([np.ones((size, 1, 1))], memory=6)
     for _ in range(7):
         mix.start(state)
         state[0] = np.asfortranarray(rates * state[0] + 1.0)

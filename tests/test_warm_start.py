@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from solver.discrete.problem import Problem
-from solver.latin import Iterate, iterations
+from solver.latin import Iterate, Latin, iterations
 from solver.latin.indicators import behaviour_indicator
 from solver.latin.warm import CLEARLY, StartChoice, carry, choose_start, iterations_from
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.settings import Settings
+from solver.scenes.method import method_of
 
 SIZE = {"elements": 20, "substructures": 4, "instants": 41}
 FORMS: dict[str, dict[str, Any]] = {
@@ -26,9 +26,9 @@ FORMS: dict[str, dict[str, Any]] = {
 }
 
 
-def made(**changes: Any) -> tuple[Problem, Settings]:
+def made(**changes: Any) -> tuple[Problem, Latin]:
     settings = BarSettings.checked({"method": "paper", **SIZE, **changes})
-    return discretise(settings), settings
+    return discretise(settings), method_of(settings)
 
 
 def solved(number: int = 300, **changes: Any) -> Iterate:
@@ -64,13 +64,13 @@ def same(one: Iterate, other: Iterate) -> bool:
     ids=str,
 )
 def test_a_small_change_starts_from_the_solution_before(before: Iterate, changes: Any) -> None:
-    problem, settings = made(**changes)
-    start, run = choose_start(problem, settings, before)
+    problem, latin = made(**changes)
+    start, run = choose_start(problem, latin, before)
     first = next(run)
     assert start.choice.is_previous
     assert first.number == 1
     assert start.choice.previous == behaviour_indicator(first)
-    zero = next(iterations(problem, settings))
+    zero = next(iterations(problem, latin))
     assert start.choice.own == behaviour_indicator(zero)
 
 
@@ -81,10 +81,10 @@ def test_a_small_change_starts_from_the_solution_before(before: Iterate, changes
 def test_a_large_change_starts_as_if_there_had_been_no_run_before(
     before: Iterate, changes: Any, form: str
 ) -> None:
-    problem, settings = made(**FORMS[form], **changes)
-    start, run = choose_start(problem, settings, before)
+    problem, latin = made(**FORMS[form], **changes)
+    start, run = choose_start(problem, latin, before)
     assert not start.choice.is_previous
-    for one, other in zip(islice(run, 5), iterations(problem, settings), strict=False):
+    for one, other in zip(islice(run, 5), iterations(problem, latin), strict=False):
         assert same(one, other)
 
 
@@ -92,25 +92,25 @@ def test_a_large_change_starts_as_if_there_had_been_no_run_before(
 def test_a_run_is_repeated_from_its_start_and_goes_on_from_anywhere_to_the_bit(
     before: Iterate, form: str
 ) -> None:
-    problem, settings = made(**FORMS[form], friction=0.3001)
-    start, run = choose_start(problem, settings, before)
+    problem, latin = made(**FORMS[form], friction=0.3001)
+    start, run = choose_start(problem, latin, before)
     iterates = list(islice(run, 8))
     assert start.choice.is_previous
-    again = islice(iterations_from(problem, settings, start, None), 8)
+    again = islice(iterations_from(problem, latin, start, None), 8)
     assert all(same(one, other) for one, other in zip(iterates, again, strict=True))
-    rest = islice(iterations_from(problem, settings, start, iterates[2].checkpoint), 5)
+    rest = islice(iterations_from(problem, latin, start, iterates[2].checkpoint), 5)
     assert all(same(one, other) for one, other in zip(iterates[3:], rest, strict=True))
 
 
 @pytest.mark.parametrize("peak", [905.0, -900.0])
 def test_both_first_iterations_are_on_the_clock(before: Iterate, peak: float) -> None:
-    problem, settings = made(peak=peak)
-    start, run = choose_start(problem, settings, before)
+    problem, latin = made(peak=peak)
+    start, run = choose_start(problem, latin, before)
     iterates = list(islice(run, 4))
     seconds = [iterate.seconds for iterate in iterates]
     assert 0.0 < start.seconds < seconds[0]
     assert seconds == sorted(seconds)
-    later = next(iterations_from(problem, settings, start, iterates[1].checkpoint))
+    later = next(iterations_from(problem, latin, start, iterates[1].checkpoint))
     assert later.seconds > seconds[1]
 
 
@@ -125,8 +125,8 @@ def test_what_is_carried_keeps_its_si_values_whatever_the_scales(before: Iterate
 
 
 def test_one_instant_and_many_are_carried_into_each_other(before: Iterate) -> None:
-    problem, settings = made(instants=1)
-    one = next(choose_start(problem, settings, before)[1])
+    problem, latin = made(instants=1)
+    one = next(choose_start(problem, latin, before)[1])
     assert np.isfinite(one.outgoing).all()
     back = next(choose_start(*made(), one)[1])
     assert np.isfinite(back.outgoing).all()
@@ -134,10 +134,10 @@ def test_one_instant_and_many_are_carried_into_each_other(before: Iterate) -> No
 
 def test_fields_that_are_not_finite_are_never_taken(before: Iterate) -> None:
     broken = replace(before, outgoing=np.full_like(before.outgoing, np.nan))
-    problem, settings = made()
-    start, run = choose_start(problem, settings, broken)
+    problem, latin = made()
+    start, run = choose_start(problem, latin, broken)
     assert not start.choice.is_previous
-    assert same(next(run), next(iterations(problem, settings)))
+    assert same(next(run), next(iterations(problem, latin)))
 
 
 @pytest.mark.parametrize(

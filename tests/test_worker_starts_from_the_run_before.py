@@ -18,6 +18,7 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 NEAR = {**STALLING, "friction": 0.3001}
 
@@ -25,7 +26,7 @@ NEAR = {**STALLING, "friction": 0.3001}
 def warm_iterates(number: int) -> list[Iterate]:
     """Give the iterates of NEAR, started from the end of STALLING, without the worker."""
     settings = BarSettings.checked(NEAR)
-    start, run = choose_start(discretise(settings), settings, direct(STALLING).iterate)
+    start, run = choose_start(discretise(settings), method_of(settings), direct(STALLING).iterate)
     assert start.choice.is_previous
     return list(islice(run, number))
 
@@ -33,7 +34,7 @@ def warm_iterates(number: int) -> list[Iterate]:
 def warm_records(number: int) -> list[Record]:
     settings, iterates = BarSettings.checked(NEAR), warm_iterates(number)
     problem = iterates[0].problem
-    distance, rules = distance_to(incremental(problem), problem), StopRules(settings)
+    distance, rules = distance_to(incremental(problem), problem), StopRules(method_of(settings))
     return [record(iterate, rules.judge(iterate), distance) for iterate in iterates]
 
 

@@ -6,6 +6,7 @@ from solver.discrete import Problem
 from solver.latin import Ending, Record, StopRules, record
 from solver.latin.warm import Start, iterations_from
 from solver.reference.distance import Distance
+from solver.scenes.method import method_of
 from solver.settings import Settings
 
 
@@ -23,9 +24,9 @@ class Beside:
     def __init__(self, problem: Problem, settings: Settings, start: Start | None) -> None:
         full = settings.replace(linear_stage="full", finish="none")
         self._number = 0
-        self._rules = StopRules(full)
+        self._rules = StopRules(method_of(full))
         self._ended = False
-        self._generator = iterations_from(problem, full, start, None)
+        self._generator = iterations_from(problem, method_of(full), start, None)
 
     def follow(self, number: int, distance: Distance | None) -> list[Record]:
         """Catch up with an iteration, unless it has ended before; give the new records."""

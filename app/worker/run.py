@@ -23,6 +23,7 @@ from solver.latin.warm import Start, choose_start, fits, iterations_from
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted, Reference
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 
 IN_A_HURRY = 0.1
 """Seconds that a run which follows a hand has to come to its end before it is shown."""
@@ -82,7 +83,7 @@ class WorkerRun:
             is_warm=order.warm,
         )
         self.has_news = False
-        self._rules = StopRules(self._settings)
+        self._rules = StopRules(method_of(self._settings))
         self._is_compared = False
         self._reference: Reference | None = None
         self._distance: Distance | None = None
@@ -199,7 +200,9 @@ class WorkerRun:
         if self._previous is None:
             self._generator = self._iterations(None)
         else:
-            self._start, self._generator = choose_start(problem, settings, self._previous)
+            self._start, self._generator = choose_start(
+                problem, method_of(settings), self._previous
+            )
             self._previous = None
         self.recording.choice = self._start.choice if self._start else None
         reduced = settings.is_reduced
@@ -216,7 +219,7 @@ class WorkerRun:
             self._account(newest, newest)
 
     def _iterations(self, checkpoint: Checkpoint | None) -> Iterator[Iterate]:
-        return iterations_from(self._problem, self._settings, self._start, checkpoint)
+        return iterations_from(self._problem, method_of(self._settings), self._start, checkpoint)
 
     def _compare(self, newest: Iterate) -> None:
         """Find the reference and the closed form, which take longer than the first iteration."""

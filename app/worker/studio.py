@@ -21,8 +21,8 @@ from app.worker.shown import Look, instant_of
 from app.worker.tables import table
 from app.worker.twin import Twin
 from app.worker.words import key_figures, status_line
-from solver.definitions import SettingError
 from solver.latin import Iterate
+from solver.refusal import RefusedError
 
 PAST_RUNS = 6
 
@@ -209,14 +209,14 @@ class Studio:
             action()
         except Exception as problem:
             self._run = None
-            if not isinstance(problem, SettingError | FloatingPointError):
+            if not isinstance(problem, RefusedError | FloatingPointError):
                 _log.exception("A run broke.")
             block = self._easel.say({"status": f"<b>{escape(_sentence(problem))}</b>"})
             self._send(Picture(ticket, Facts(is_broken=True), block))
 
 
 def _sentence(problem: Exception) -> str:
-    if isinstance(problem, SettingError | FloatingPointError):
+    if isinstance(problem, RefusedError | FloatingPointError):
         return str(problem)
     return (
         f"The run broke ({type(problem).__name__}: {problem}). Change a setting, or lower the "

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 from scipy.linalg.lapack import dposv
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
-from solver.latin.linear import FullLinearStage
+from solver.latin.linear import FullLinearStage, LinearStage
+from solver.refusal import check_range
 
 MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
@@ -34,21 +38,42 @@ force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1; layers 100
 wander for hundreds with 2 before they come within 1 % (25 with 1.1; measured)."""
 
 
-def anderson(problem: Problem, stage: FullLinearStage, blocks: Blocks | None = None) -> Anderson:
-    """Prepare the acceleration of a linear stage, with the norm of k over boundary and time."""
-    weights = [
-        np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
-        for group in stage.groups
-    ]
-    growth = 1.0
-    if problem.opens:
-        is_held = any(law.is_on_support for law in problem.rubbing.values())
-        growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-    return Anderson(weights, MEMORY, growth, blocks)
-
-
+@dataclass(frozen=True)
 class Anderson:
-    """Mixes the newest state with those before, so that the residual would be least if linear.
+    """Mixes the last iterates, so that both stages agree best.
+
+    Separated bases are not mixed: there the iteration stays plain.
+
+    Attributes
+    ----------
+    memory
+        Differences that are remembered at most.
+    """
+
+    memory: int = MEMORY
+
+    def __post_init__(self) -> None:
+        check_range(self, "memory", 1, 1000)
+
+    def at_work(
+        self, problem: Problem, stage: LinearStage[Any], blocks: Blocks | None = None
+    ) -> Mixing | None:
+        """Prepare the acceleration of a linear stage, with the norm of k over boundary and time."""
+        if not isinstance(stage, FullLinearStage):
+            return None
+        weights = [
+            np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
+            for group in stage.groups
+        ]
+        growth = 1.0
+        if problem.opens:
+            is_held = any(law.is_on_support for law in problem.rubbing.values())
+            growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
+        return Mixing(weights, self.memory, growth, blocks)
+
+
+class Mixing:
+    """Anderson acceleration at work: the residual of the mixture would be least if linear.
 
     One iteration maps the state y to g(y) with residual f = g(y) - y. The mixture
     g_n - sum_j gamma_j (g_j - g_{j-1}), where gamma makes f_n - sum_j gamma_j (f_j - f_{j-1})

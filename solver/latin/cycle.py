@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.acceleration import Mixing
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import LinearStage
 from solver.latin.local import LocalStage
@@ -75,50 +76,6 @@ class Everywhere:
         """Nothing is remembered."""
 
 
-class Acceleration(Protocol):
-    """What makes the next state of the last ones."""
-
-    @property
-    def memory(self) -> tuple[int, int, float] | None:
-        """What it counts, as in `Checkpoint`; None if it remembers nothing."""
-
-    @property
-    def remembered(self) -> int:
-        """States before the present one that shape the next."""
-
-    def restore(self, memory: tuple[int, int, float]) -> None:
-        """Count on from there."""
-
-    def start(self, state: State) -> None:
-        """Take in y, before the iteration that makes g(y) of it."""
-
-    def observe(self, state: State) -> bool:
-        """Take in g(y); tell whether to mix."""
-
-    def __call__(self, state: State, /) -> None:
-        """Replace g(y) by the mixture, in place."""
-
-
-class Unaccelerated:
-    """The plain iteration."""
-
-    remembered = 0
-    memory: tuple[int, int, float] | None = None
-
-    def restore(self, memory: tuple[int, int, float]) -> None:
-        """Nothing is counted."""
-
-    def start(self, state: State) -> None:
-        """Nothing is to be remembered."""
-
-    def observe(self, state: State) -> bool:
-        """Nothing is to be mixed."""
-        return False
-
-    def __call__(self, state: State) -> None:
-        """Leave the state as it is."""
-
-
 @dataclass(frozen=True, eq=False)
 class Parts:
     """What the method is plugged together from, for one search direction.
@@ -132,7 +89,7 @@ class Parts:
     linear
         Elasticity, in full or on separated bases, with the coarse problem if there is one.
     acceleration
-        What mixes states.
+        What mixes states, or None.
     relaxation
         Share of the new state, the rest being the old one.
     """
@@ -140,7 +97,7 @@ class Parts:
     k: Array
     local: LocalPart
     linear: LinearStage[Any]
-    acceleration: Acceleration
+    acceleration: Mixing | None
     relaxation: float
 
 
@@ -174,13 +131,14 @@ class Cycle:
 
     def linear_stage(self, number: int = 0, *, mixes: bool = True) -> None:
         """Solve elasticity along E- (paper, problem 2.2), relax, accelerate unless told not to."""
-        parts, state = self.parts, self.state
-        parts.acceleration.start(state)
+        parts, state, mix = self.parts, self.state, self.parts.acceleration
+        if mix is not None:
+            mix.start(state)
         parts.linear.advance(state, parts.relaxation)
-        if mixes:
-            parts.acceleration(state)
-        else:
-            parts.acceleration.observe(state)
+        if mix is not None and mixes:
+            mix(state)
+        elif mix is not None:
+            mix.observe(state)
         parts.local.keep_up(number, state)
         self.incoming = self._reflected()
 

@@ -2,39 +2,104 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
 import numpy as np
 
 from solver.arrays import Array
-from solver.definitions import SettingError
 from solver.discrete.problem import Problem
+from solver.latin.iterate import Course
 from solver.laws import Dirichlet, Neumann, Perfect
-from solver.settings import Settings
+from solver.refusal import check_range
 
 
-def search_direction(problem: Problem, settings: Settings) -> Array:
-    """Give k of every row, shape (n_rows,), scaled.
+class ConstantDirection:
+    """A search direction that stays what it is.
 
-    It is the paper's, or the automatic one, times the settings' factors.
+    Parameters
+    ----------
+    k
+        Shape (n_rows,), scaled, read-only.
     """
-    k: Array = settings.k_scale * _by_rule(problem, settings.search_direction)
-    along, across = settings.k_factors
-    for law in problem.rubbing.values():
-        for rows in law.tangent.sides:
-            k[rows] *= along
-        if law.normal is not None:
-            for rows in law.normal.sides:
-                k[rows] *= across
-    return np.ascontiguousarray(k)
+
+    is_due = False
+    course: Course | None = None
+
+    def __init__(self, k: Array) -> None:
+        self.k = k
+
+    def see(self, local_displacement: Array, incoming: Array) -> None:
+        """Nothing depends on the local stage."""
+
+    def turn(self, displacement: Array, force: Array) -> tuple[Array, Array] | None:
+        """Nothing changes."""
+        return None
 
 
-def _by_rule(problem: Problem, rule: str) -> Array:
-    match rule:
-        case "paper":
-            return problem.direction
-        case "auto":
-            return automatic(problem)
-        case _:
-            raise SettingError("search_direction", rule, "paper, auto", "choose one of these")
+@dataclass(frozen=True)
+class SearchDirection(ABC):
+    """A rule for k, and factors on it (solver/README.md, 5).
+
+    Attributes
+    ----------
+    scale
+        Factor on k of all rows.
+    along, across
+        Further factors on k of contacts, of tangential and of normal components.
+
+    Raises
+    ------
+    RefusedError
+        For a factor that is not above zero.
+    """
+
+    scale: float = 1.0
+    along: float = 1.0
+    across: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("scale", "along", "across"):
+            check_range(self, name, 0.0, np.inf, above=True)
+
+    @abstractmethod
+    def rule(self, problem: Problem) -> Array:
+        """Give k of every row without the factors, shape (n_rows,), scaled."""
+
+    def of(self, problem: Problem) -> Array:
+        """Give k of every row, shape (n_rows,), scaled, read-only."""
+        k: Array = self.scale * self.rule(problem)
+        for law in problem.rubbing.values():
+            for rows in law.tangent.sides:
+                k[rows] *= self.along
+            if law.normal is not None:
+                for rows in law.normal.sides:
+                    k[rows] *= self.across
+        k = np.ascontiguousarray(k)
+        k.flags.writeable = False
+        return k
+
+    def at_work(self, problem: Problem, course: Course | None) -> ConstantDirection:
+        """Give k of a problem to a run."""
+        return ConstantDirection(self.of(problem))
+
+
+@dataclass(frozen=True)
+class Paper(SearchDirection):
+    """The paper's k: the stiffness of a substructure."""
+
+    def rule(self, problem: Problem) -> Array:
+        """Give k of every row without the factors, shape (n_rows,), scaled."""
+        return problem.direction
+
+
+@dataclass(frozen=True)
+class Auto(SearchDirection):
+    """The automatic k, which needs no tuning."""
+
+    def rule(self, problem: Problem) -> Array:
+        """Give k of every row without the factors, shape (n_rows,), scaled."""
+        return automatic(problem)
 
 
 def automatic(problem: Problem) -> Array:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.direction import automatic
+from solver.latin.direction import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Course
 
@@ -25,27 +25,30 @@ TRIAL = 20
 """Iterations after which the new k must have made the k-free indicator smaller, again and again."""
 
 
-class ConstantDirection:
-    """A search direction that stays what it is.
+@dataclass(frozen=True)
+class FromStatus:
+    """A search direction that follows the contact status, once that has settled.
 
-    Parameters
+    Attributes
     ----------
-    k
-        Shape (n_rows,), scaled, read-only.
+    first
+        The search direction until then.
     """
 
-    is_due = False
-    course: Course | None = None
+    first: SearchDirection = Auto()
 
-    def __init__(self, k: Array) -> None:
-        self.k = k
+    @property
+    def scale(self) -> float:
+        """Factor on k of all rows."""
+        return self.first.scale
 
-    def see(self, local_displacement: Array, incoming: Array) -> None:
-        """Nothing depends on the local stage."""
+    def of(self, problem: Problem) -> Array:
+        """Give k of every row at the start, shape (n_rows,), scaled, read-only."""
+        return self.first.of(problem)
 
-    def turn(self, displacement: Array, force: Array) -> tuple[Array, Array] | None:
-        """Nothing changes."""
-        return None
+    def at_work(self, problem: Problem, course: Course | None) -> DirectionUpdate:
+        """Give k of a problem to a run, on a course that a checkpoint may remember."""
+        return DirectionUpdate(problem, self.of(problem), course)
 
 
 class DirectionUpdate:

@@ -6,10 +6,9 @@ import math
 
 from solver.latin.changes import ForceChanges
 from solver.latin.iterate import Iterate
-from solver.latin.status_step import Certificate, StatusStep, states_of
+from solver.latin.status_step import Certificate, StatusSolver, states_of
 from solver.latin.step_cost import Costs, costs_of
 from solver.reference.condensation import NoReferenceError
-from solver.settings import Settings
 
 SETTLED = 0.04
 """Relative change of the contact force at which the status step is worth its first trial: most
@@ -35,8 +34,10 @@ class ErrorEstimate:
 
     Parameters
     ----------
-    settings
-        Of the run.
+    accuracy
+        Share of the contact force that is asked for.
+    is_reduced
+        Whether the run is on separated bases, which may come to rest elsewhere.
     proves
         Whether status steps are tried at all.
 
@@ -46,11 +47,11 @@ class ErrorEstimate:
         The solution, once it is known.
     """
 
-    def __init__(self, settings: Settings, *, proves: bool = True) -> None:
-        self._accuracy, self._is_reduced = float(settings.accuracy), settings.is_reduced
+    def __init__(self, accuracy: float, *, is_reduced: bool, proves: bool = True) -> None:
+        self._accuracy, self._is_reduced = accuracy, is_reduced
         self._changes = ForceChanges()
         self._last_trial, self._next_trial = 0, 1
-        self._step: StatusStep | None = None
+        self._step: StatusSolver | None = None
         self._costs: Costs | None = None
         self._has_solver = proves
         self.certificate: Certificate | None = None
@@ -95,6 +96,14 @@ class ErrorEstimate:
         errors = distance.of_friction_force(iterate), distance.of_displacement(iterate)
         return max(errors) <= share
 
+    def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
+        """Tell whether the estimate counts for nothing without a status step, as below.
+
+        So it is where a step is worth its cost, and with bases that are too small, which converge
+        to something else.
+        """
+        return self._is_reduced or self.can_be_proven(iterate, least=least)
+
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         """Tell whether a status step is worth its cost by now.
 
@@ -119,7 +128,7 @@ class ErrorEstimate:
             return False
         self._last_trial = iterate.number
         self._next_trial = math.ceil(AGAIN * iterate.number) + 1
-        self._step = self._step or StatusStep(iterate.problem)
+        self._step = self._step or StatusSolver(iterate.problem)
         try:
             systems = self._costs_of(iterate).systems(patience * iterate.number)
             found = self._step(states_of(iterate), systems)

@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from itertools import count
 from math import inf
 
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.clock import Clock
 from solver.latin.cycle import Cycle, read_only
 from solver.latin.iterate import Checkpoint, Iterate
-from solver.latin.parts import direction_of, plugged, start_of
-from solver.settings import Settings
+from solver.latin.method import Latin
 
 
 def iterations(
     problem: Problem,
-    settings: Settings,
+    latin: Latin,
     start: Checkpoint | None = None,
     *,
     resumable: bool = True,
@@ -25,10 +25,10 @@ def iterations(
 
     Parameters
     ----------
-    problem, settings
-        What to solve, and the options of the method.
+    problem, latin
+        What to solve, and the method.
     start
-        Where to go on from; without one the settings say where to start, and a body that contact
+        Where to go on from; without one the method says where to start, and a body that contact
         alone holds where it comes to rest.
     resumable
         Whether iterates shall have checkpoints: what an acceleration remembers is kept for them,
@@ -40,7 +40,7 @@ def iterations(
     one.
     """
     clock = Clock(start.seconds if start else 0.0)
-    method = Method(problem, settings, start, clock)
+    method = AtWork(problem, latin, start, clock)
     for number in count(start.number + 1 if start else 1):
         method.choose_direction()
         method.local_stage(number)
@@ -50,12 +50,12 @@ def iterations(
         clock.go_on()
 
 
-class Method:
-    """The method of some settings at work on a problem.
+class AtWork:
+    """The method at work on a problem.
 
     Parameters
     ----------
-    problem, settings, start
+    problem, latin, start
         As for `iterations`.
     clock
         What it bills.
@@ -67,13 +67,14 @@ class Method:
     """
 
     def __init__(
-        self, problem: Problem, settings: Settings, start: Checkpoint | None, clock: Clock
+        self, problem: Problem, latin: Latin, start: Checkpoint | None, clock: Clock
     ) -> None:
-        self._problem, self._settings, self._clock = problem, settings, clock
-        self._direction = direction_of(problem, settings, start)
-        parts = plugged(problem, settings, self._direction.k, clock)
+        self._problem, self._latin, self._clock = problem, latin, clock
+        course = start.course if start else None
+        self._direction = latin.direction.at_work(problem, course)
+        parts = latin.plugged(problem, self._direction.k, clock)
         if start is None:
-            start = start_of(problem, settings, parts.k)
+            start = _own_start(problem, latin, parts.k)
         self.cycle = Cycle(problem, parts, start)
         if start is not None:
             self._recall(start)
@@ -87,7 +88,7 @@ class Method:
         cycle = self.cycle
         cycle.parts.local.recall(start, cycle.state)
         acceleration = cycle.parts.acceleration
-        if start.memory is None or acceleration.memory is None:
+        if start.memory is None or acceleration is None:
             return
         _, differences, _ = start.memory
         acceleration.restore((0, max(differences - len(start.history) + 1, 0), inf))
@@ -109,7 +110,7 @@ class Method:
         if found is None:
             return
         displacement, force = found
-        parts = plugged(self._problem, self._settings, self._direction.k, self._clock)
+        parts = self._latin.plugged(self._problem, self._direction.k, self._clock)
         outgoing = displacement + force / parts.k[:, None]
         self.cycle = Cycle(self._problem, parts, Checkpoint(0, 0.0, outgoing))
         self._outgoing, self._history = self.cycle.outgoing, []
@@ -130,7 +131,8 @@ class Method:
         """Show where the method stands."""
         cycle = self.cycle
         parts = cycle.parts
-        remembered = parts.acceleration.remembered
+        mix = parts.acceleration
+        remembered = mix.remembered if mix else 0
         if resumable and remembered:
             self._history = [*self._history, self._before][-remembered:]
         return Iterate(
@@ -146,6 +148,13 @@ class Method:
             references=parts.local.references,
             local_error=self._local_error,
             history=tuple(self._history) if resumable and remembered else (),
-            memory=parts.acceleration.memory,
+            memory=mix.memory if mix else None,
             course=self._direction.course,
         )
+
+
+def _own_start(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
+    """Give the start of the method's own choice; None is zero fields."""
+    if problem.rest is not None:
+        return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
+    return latin.start.at_work(problem, k) if latin.start else None

@@ -18,7 +18,6 @@ from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis
 from solver.reduction.enrichment import Enrichment
-from solver.settings import Settings
 
 SHARE_EVERY = 10
 """Iterations between two looks for bases that can be shared."""
@@ -60,11 +59,21 @@ class Family:
 
 
 class ReducedLinearStage(LinearStage[list[Family]]):
-    """The linear stage on separated bases."""
+    """The linear stage on separated bases.
 
-    def __init__(self, problem: Problem, k: Array, settings: Settings) -> None:
-        make_group = partial(ReducedGroup, settings=settings)
-        super().__init__(problem, k, multiscale=settings.multiscale, make_group=make_group)
+    Parameters
+    ----------
+    problem, k, multiscale
+        As of `LinearStage`.
+    enrichment
+        How modes are found, when, and how many are kept.
+    """
+
+    def __init__(
+        self, problem: Problem, k: Array, enrichment: Enrichment, *, multiscale: bool
+    ) -> None:
+        make_group = partial(ReducedGroup, enrichment=enrichment)
+        super().__init__(problem, k, multiscale=multiscale, make_group=make_group)
         self._reduced = [group for group in self.groups if isinstance(group, ReducedGroup)]
         place = {int(part.rows[0]): number for number, part in enumerate(problem.substructures)}
         self._numbers = [[place[int(row)] for row in group.rows[0]] for group in self.groups]
@@ -101,6 +110,13 @@ class ReducedGroup(Group[list[Family]]):
 
     The state is a list of families: one per substructure, fewer when bases are shared.
 
+    Parameters
+    ----------
+    problem, parts, k
+        As of `Group`.
+    enrichment
+        As of `ReducedLinearStage`.
+
     Attributes
     ----------
     iterations
@@ -108,12 +124,10 @@ class ReducedGroup(Group[list[Family]]):
     """
 
     def __init__(
-        self, problem: Problem, parts: list[Substructure], k: Array, settings: Settings
+        self, problem: Problem, parts: list[Substructure], k: Array, enrichment: Enrichment
     ) -> None:
         super().__init__(problem, parts, k)
-        self._enrichment = Enrichment.from_settings(settings)
-        self._largest = settings.pgd_modes
-        self._sharing = settings.pgd_sharing
+        self._enrichment = enrichment
         self._weights = problem.time_weights
         self.iterations = 0
 
@@ -158,7 +172,7 @@ class ReducedGroup(Group[list[Family]]):
         for family in state:
             self._advance(family, relaxation)
         self.iterations += 1
-        if self._sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
+        if self._enrichment.sharing > 0.0 and self.iterations % SHARE_EVERY == 0:
             self._share(state)
 
     def reflect(self, state: list[Family]) -> Array:
@@ -209,7 +223,7 @@ class ReducedGroup(Group[list[Family]]):
                 basis.append(mode, relaxation * time_function)
                 found += basis.squared_of(time_function[None])
                 added += 1
-            dropped = basis.downsize(rule.tolerance, self._largest)
+            dropped = basis.downsize(rule.tolerance, self._enrichment.largest)
             family.incoming_modes = self._incoming(basis)
         family.record = ReductionRecord(
             modes=basis.n_modes,
@@ -225,7 +239,7 @@ class ReducedGroup(Group[list[Family]]):
         for family in state:
             for other in joined:
                 apart = family.basis.outside(other.basis), other.basis.outside(family.basis)
-                if max(apart) <= self._sharing:
+                if max(apart) <= self._enrichment.sharing:
                     self._join(other, family)
                     break
             else:
@@ -248,7 +262,11 @@ class ReducedGroup(Group[list[Family]]):
 
     def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
         return SeparatedBasis.of_field(
-            columns, self.k, self._tiled(n_members), self._enrichment.tolerance, self._largest
+            columns,
+            self.k,
+            self._tiled(n_members),
+            self._enrichment.tolerance,
+            self._enrichment.largest,
         )
 
     def _empty(self, n_members: int) -> SeparatedBasis:

@@ -15,7 +15,6 @@ from solver.latin.linear import Group
 from solver.latin.local import LocalStage
 from solver.latin.reduced_linear import Family, ReducedLinearStage
 from solver.reduction.basis import ReferencePoints
-from solver.settings import Settings
 
 REFRESH = 5
 """Every so many iterations the laws are evaluated everywhere, and references chosen anew. From 2 to
@@ -30,6 +29,15 @@ class ReducedLocalStage:
     is not seen, so every few iterations the laws are evaluated everywhere. Rows of cuts, loads
     and supports are always evaluated.
 
+    Parameters
+    ----------
+    problem, k
+        Whose laws.
+    shares
+        Of the friction points, and of the instants, that are references.
+    linear_stage
+        Whose bases they are references of.
+
     Attributes
     ----------
     references
@@ -37,13 +45,16 @@ class ReducedLocalStage:
     """
 
     def __init__(
-        self, problem: Problem, k: Array, settings: Settings, linear_stage: ReducedLinearStage
+        self,
+        problem: Problem,
+        k: Array,
+        shares: tuple[float, float],
+        linear_stage: ReducedLinearStage,
     ) -> None:
         self._problem = problem
         self._k = k
         self._linear_stage = linear_stage
-        self._points = settings.local_points
-        self._instants = settings.local_instants
+        self._points, self._instants = shares
         self._rubs = np.zeros(problem.n_rows, dtype=bool)
         self._partner = np.arange(problem.n_rows)
         for law in problem.rubbing.values():

@@ -10,10 +10,13 @@ from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
-from solver.latin.stop import CANCELLED, Ending, Status, StopRules, Verdict
+from solver.latin.method import Latin
+from solver.latin.status import CANCELLED, Ending, Status
+from solver.latin.stop import StopRules, Verdict
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
-from solver.settings import Settings
+
+FAST = Latin()
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ def record(
 
 def judged(
     problem: Problem,
-    settings: Settings,
+    latin: Latin,
     start: Checkpoint | None = None,
     spent: float = 0.0,
     *,
@@ -111,13 +114,13 @@ def judged(
 
     Parameters
     ----------
-    problem, settings, start, resumable
+    problem, latin, start, resumable
         As for `iterations`, which goes on though a verdict says that the run ends.
     spent
         Seconds that the run took before, to make the problem.
     """
-    rules = StopRules(settings, spent=spent)
-    for iterate in iterations(problem, settings, start, resumable=resumable):
+    rules = StopRules(latin, spent=spent)
+    for iterate in iterations(problem, latin, start, resumable=resumable):
         verdict = rules.judge(iterate)
         yield iterate, verdict
         if verdict.finished is not None:
@@ -127,7 +130,7 @@ def judged(
 
 def solve(
     problem: Problem,
-    settings: Settings,
+    latin: Latin = FAST,
     *,
     distance: Distance | None = None,
     start: Checkpoint | None = None,
@@ -140,8 +143,10 @@ def solve(
 
     Parameters
     ----------
-    problem, settings, start, resumable
+    problem, start, resumable
         As for `iterations`.
+    latin
+        The method; its defaults are the fast one, from zero.
     distance
         To a reference, for the errors in the records.
     watch
@@ -153,7 +158,7 @@ def solve(
     """
     records: list[Record] = []
     last = None
-    for iterate, verdict in judged(problem, settings, start, spent, resumable=resumable):
+    for iterate, verdict in judged(problem, latin, start, spent, resumable=resumable):
         status = verdict.status
         if status is not None and status.ending is Ending.DIVERGED:
             return Solution(last or iterate, records, status)

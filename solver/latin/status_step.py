@@ -60,7 +60,12 @@ class Certificate:
     residual: float
 
 
+@dataclass(frozen=True)
 class StatusStep:
+    """Ends a run with the certified solution, once a status step from an iterate holds."""
+
+
+class StatusSolver:
     """The status step of one problem; what it condenses is kept for the next."""
 
     def __init__(self, problem: Problem) -> None:

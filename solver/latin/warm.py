@@ -1,4 +1,4 @@
-"""A start from the solution of the run before, where that is better than the settings' own."""
+"""A start from the solution of the run before, where that is better than the method's own."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from solver.discrete.problem import Problem
 from solver.latin.indicators import behaviour_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
+from solver.latin.method import Latin
 from solver.latin.nested import prolong
-from solver.settings import Settings
 
 CLEARLY = 0.25
 """Share of the other's indicator up to which the previous solution is taken. Between this and 1
@@ -33,7 +33,7 @@ class StartChoice:
     ----------
     previous, own
         The k-free indicator after one iteration from the previous solution, and from the
-        settings' own start.
+        method's own start.
     """
 
     previous: float
@@ -52,7 +52,7 @@ class Start:
     Attributes
     ----------
     checkpoint
-        The previous solution; None is the settings' own start.
+        The previous solution; None is the method's own start.
     seconds
         What was spent before the run: the other first iteration, and the choice.
     """
@@ -63,7 +63,7 @@ class Start:
 
 
 def choose_start(
-    problem: Problem, settings: Settings, previous: Iterate
+    problem: Problem, latin: Latin, previous: Iterate
 ) -> tuple[Start, Iterator[Iterate]]:
     """Do one iteration from each start, and go on from that with the lower k-free indicator.
 
@@ -73,8 +73,8 @@ def choose_start(
 
     Parameters
     ----------
-    problem, settings
-        What to solve, and the options of the method.
+    problem, latin
+        What to solve, and the method.
     previous
         The last iterate of another run, of the same scene.
 
@@ -82,14 +82,14 @@ def choose_start(
     -------
     The start, and the run from iteration 1 on, on whose clock are both first iterations.
     """
-    own = iterations(problem, settings)
+    own = iterations(problem, latin)
     first = next(own)
     began = time.perf_counter()
     outgoing = carry(previous, problem, first.k)
     outgoing.flags.writeable = False
     carrying = time.perf_counter() - began
     checkpoint = Checkpoint(0, 0.0, outgoing)
-    warm = iterations(problem, settings, checkpoint)
+    warm = iterations(problem, latin, checkpoint)
     second = next(warm)
     began = time.perf_counter()
     choice = StartChoice(behaviour_indicator(second), behaviour_indicator(first))
@@ -102,12 +102,12 @@ def choose_start(
 
 
 def iterations_from(
-    problem: Problem, settings: Settings, start: Start | None, checkpoint: Checkpoint | None
+    problem: Problem, latin: Latin, start: Start | None, checkpoint: Checkpoint | None
 ) -> Iterator[Iterate]:
-    """Go on from a checkpoint of a run, or repeat it from its start; None is the settings' own."""
+    """Go on from a checkpoint of a run, or repeat it from its start; None is the method's own."""
     if checkpoint is not None or start is None:
-        return iterations(problem, settings, checkpoint)
-    return _billed(iterations(problem, settings, start.checkpoint), start.seconds)
+        return iterations(problem, latin, checkpoint)
+    return _billed(iterations(problem, latin, start.checkpoint), start.seconds)
 
 
 def carry(previous: Iterate, problem: Problem, k: Array) -> Array:

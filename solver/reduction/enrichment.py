@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.settings import Settings
 
 STEPS = 4
 """Steps of the fixed point at most. On bar and strand with 20 modes, 1, 2 and 10 steps, and the
@@ -19,7 +18,7 @@ STAGNATION = 0.01
 
 @dataclass(frozen=True)
 class Enrichment:
-    """How pairs are found, and when.
+    """How pairs are found, and when; and how many are kept.
 
     Attributes
     ----------
@@ -29,20 +28,17 @@ class Enrichment:
         Share of the field, in norm, below which a residual is left alone.
     pairs
         Most pairs per iteration.
+    largest
+        Most modes of a substructure.
+    sharing
+        Share of a field that the modes of another may miss to be used instead; 0 is never.
     """
 
     threshold: float
     tolerance: float
     pairs: int
-
-    @classmethod
-    def from_settings(cls, settings: Settings) -> Enrichment:
-        """Read the settings."""
-        return cls(
-            threshold=settings.pgd_enrichment,
-            tolerance=settings.pgd_tolerance,
-            pairs=settings.pgd_pairs,
-        )
+    largest: int
+    sharing: float = 0.0
 
     def mode(self, residual: Array, k: Array, weights: Array) -> Array:
         """Give the space mode of the pair that is nearest to a residual, of any length.

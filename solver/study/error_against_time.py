@@ -22,6 +22,7 @@ from solver.latin import judged
 from solver.reference.choice import is_alone, reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import discretise, entry_of
+from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.machine import machine
 from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
@@ -223,7 +224,7 @@ def _latin_entry(
 ) -> _Entry:
     """Find the errors of a form of LATIN, until its friction force is as near as the goal."""
     errors: list[tuple[float, float]] = []
-    for iterate, _ in islice(judged(discretise(settings), settings), most):
+    for iterate, _ in islice(judged(discretise(settings), method_of(settings)), most):
         errors.append((distance.of_displacement(iterate), distance.of_friction_force(iterate)))
         force = errors[-1][1]
         if not math.isfinite(force) or (force <= goal and iterate.number >= least):
@@ -238,7 +239,8 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
     problem = discretise(settings)
     spent = time.perf_counter() - start
     return [
-        verdict.seconds for _, verdict in islice(judged(problem, settings, None, spent), number)
+        verdict.seconds
+        for _, verdict in islice(judged(problem, method_of(settings), None, spent), number)
     ]
 
 

@@ -13,9 +13,8 @@ from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, Solution, record, solve
-from solver.latin.direction import search_direction
 from solver.latin.finish import finished
-from solver.latin.status_step import StatusStep, states_of
+from solver.latin.status_step import StatusSolver, states_of
 from solver.latin.step_cost import costs_of
 from solver.latin.stop import proven
 from solver.reference.choice import reference_of
@@ -23,6 +22,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.solution import States
 from solver.scenes import discretise, loop_of
+from solver.scenes.method import method_of
 from solver.settings import Settings
 
 ALONE = 60
@@ -145,7 +145,12 @@ def finished_run(
     if before is not None and (near := neighbour(problem, settings, before)) is not None:
         return FinishedRun(settings, near, has_errors=False, was_warm=True)
     solution = solve(
-        problem, settings, distance=distance, watch=indicators, spent=spent, cancelled=cancelled
+        problem,
+        method_of(settings),
+        distance=distance,
+        watch=indicators,
+        spent=spent,
+        cancelled=cancelled,
     )
     return FinishedRun(settings, solution, distance is not None)
 
@@ -176,12 +181,12 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     if not costs.afford(ALONE):
         return None
     try:
-        certificate = StatusStep(problem)(states, costs.systems(ALONE))
+        certificate = StatusSolver(problem)(states, costs.systems(ALONE))
     except NoReferenceError:
         return None
     if certificate is None or certificate.residual > settings.accuracy:
         return None
-    k = search_direction(problem, settings)
+    k = method_of(settings).direction.of(problem)
     k.flags.writeable = False
     finish = finished(problem, k, certificate)
     verdict = proven(finish, certificate, time.perf_counter() - began)

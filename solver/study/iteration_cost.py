@@ -14,13 +14,13 @@ from solver.arrays import space_time
 from solver.discrete.problem import Problem
 from solver.latin import StopRules, iterations, solve
 from solver.latin.clock import Clock
-from solver.latin.direction import search_direction
-from solver.latin.iterations import Method
+from solver.latin.iterations import AtWork
 from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
 from solver.latin.response import DenseResponse
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 from solver.settings import Settings
 
 SIZES = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
@@ -64,7 +64,7 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
     """
     settings = BarSettings.checked({"method": "paper", "elements": nodes - 1, "instants": instants})
     problem = discretise(settings)
-    k = search_direction(problem, settings)
+    k = method_of(settings).direction.of(problem)
     local = LocalStage(problem, k)
     multi = FullLinearStage(problem, k, multiscale=True)
     mono = FullLinearStage(problem, k, multiscale=False)
@@ -173,22 +173,22 @@ class Overhead:
 def overhead(settings: Settings, repeats: int) -> Overhead:
     """Measure a run up to its accuracy in three ways, interleaved: bare, with iterates, judged."""
     settings = settings.replace(finish="none")
-    problem = discretise(settings)
-    number = len(solve(problem, settings, watch=False).records)
+    problem, method = discretise(settings), method_of(settings)
+    number = len(solve(problem, method, watch=False).records)
 
     def bare() -> None:
-        cycle = Method(problem, settings, None, Clock()).cycle
+        cycle = AtWork(problem, method, None, Clock()).cycle
         for count in range(1, number + 1):
             cycle.local_stage(count)
             cycle.linear_stage(count)
 
     def kept() -> None:
-        for _ in islice(iterations(problem, settings), number):
+        for _ in islice(iterations(problem, method), number):
             pass
 
     def judged_without_step() -> None:
-        rules = StopRules(settings, proves=False)
-        for iterate in islice(iterations(problem, settings), number):
+        rules = StopRules(method, proves=False)
+        for iterate in islice(iterations(problem, method), number):
             rules.judge(iterate)
 
     ways: list[Callable[[], object]] = [bare, kept, judged_without_step]

@@ -13,6 +13,7 @@ from solver.reference.incremental import incremental
 from solver.reference.solution import Reference
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 
 EARLY = 10
 """Iterations after which Fig. 4 looks at the friction force."""
@@ -85,7 +86,7 @@ class PaperRuns:
         settings = self.settings.replace(**changes)
         problem: Problem = discretise(settings)
         distance = distance_to(self.reference, problem)
-        early = solve(problem, settings.replace(max_iterations=EARLY), distance=distance)
+        early = solve(problem, method_of(settings.replace(max_iterations=EARLY)), distance=distance)
         checkpoint = early.iterate.checkpoint
-        late = solve(problem, settings, distance=distance, start=checkpoint)
+        late = solve(problem, method_of(settings), distance=distance, start=checkpoint)
         return Run([*early.records, *late.records], early.iterate, late.iterate)

@@ -16,15 +16,15 @@ from scipy.fft import idct
 from solver.arrays import Array, space_time
 from solver.discrete import Problem
 from solver.discrete.problem import Elasticity, Scales, Substructure
-from solver.latin import iterations
-from solver.latin.direction import search_direction
+from solver.latin import Paper, iterations
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
 from solver.laws import Component, Friction
+from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.settings import Settings
+from solver.scenes.method import method_of
 
 MODES = (2, 4, 8, 16, 32, 64)
 BARS = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
@@ -94,7 +94,7 @@ def half_plane(points: int, instants: int) -> Problem:
 
 
 def reduction_cost(
-    operator: str, problem: Problem, settings: Settings, modes: Sequence[int], repeats: int
+    operator: str, problem: Problem, modes: Sequence[int], repeats: int
 ) -> ReductionCost:
     """Measure the linear stage in full and on bases of given sizes, in turns.
 
@@ -104,14 +104,14 @@ def reduction_cost(
     ----------
     operator
         Name of what is solved.
-    problem, settings
-        What to solve.
+    problem
+        What to solve, with the paper's search direction.
     modes
         Sizes of the bases; those larger than a substructure's boundary are left out.
     repeats
         Measurements of each, whose median is taken.
     """
-    k = search_direction(problem, settings)
+    k = Paper().of(problem)
     generator = np.random.default_rng(0)
     shape = (problem.n_rows, problem.n_instants)
     start = Checkpoint(0, 0.0, np.asfortranarray(generator.normal(size=shape)))
@@ -120,9 +120,8 @@ def reduction_cost(
     sizes = [size for size in modes if size <= min(smallest - 1, problem.n_instants)]
     stages: list[LinearStage[Any]] = [FullLinearStage(problem, k, multiscale=True)]
     for threshold in (1.0, 0.0):
-        stages += [
-            ReducedLinearStage(problem, k, _with_modes(settings, size, threshold)) for size in sizes
-        ]
+        rules = [Enrichment(threshold, tolerance=1e-14, pairs=1, largest=size) for size in sizes]
+        stages += [ReducedLinearStage(problem, k, rule, multiscale=True) for rule in rules]
     steps = [_step(stage, start, target) for stage in stages]
     full, *rest = _medians(steps, repeats, max(3, int(2e6 / np.prod(shape))))
     return ReductionCost(
@@ -139,17 +138,6 @@ def reduction_cost(
             )
             for size in sizes
         },
-    )
-
-
-def _with_modes(settings: Settings, size: int, threshold: float) -> Settings:
-    """Choose bases of that many modes, enriched where they leave more than the threshold."""
-    return settings.replace(
-        linear_stage="pgd",
-        pgd_modes=size,
-        pgd_enrichment=threshold,
-        pgd_pairs=1,
-        pgd_tolerance=1e-14,
     )
 
 
@@ -199,7 +187,7 @@ def whole_iterations(nodes: int, instants: int, repeats: int) -> dict[str, tuple
                 }
             )
             clock = []
-            for iterate in islice(iterations(discretise(settings), settings), LAST):
+            for iterate in islice(iterations(discretise(settings), method_of(settings)), LAST):
                 clock.append(iterate.seconds)
                 fields[form] = iterate.boundary_displacement
             seconds[form].append((clock[-1] - clock[FIRST - 1]) / (LAST - FIRST))
@@ -246,11 +234,10 @@ def print_reduction_cost(repeats: int) -> None:
                 "substructures": 5,
             }
         )
-        _print(reduction_cost("bar", discretise(bar), bar, MODES, repeats))
+        _print(reduction_cost("bar", discretise(bar), MODES, repeats))
     for instants in HALF_PLANES:
-        settings = BarSettings.checked({"method": "paper", "substructures": 1})
         problem = half_plane(HALF_PLANE_POINTS, instants)
-        _print(reduction_cost("half plane", problem, settings, MODES, repeats))
+        _print(reduction_cost("half plane", problem, MODES, repeats))
 
     print("\nwhole iterations, ms, of the bar with 5 substructures: local stage everywhere, or at")
     print(

@@ -13,13 +13,13 @@ import numpy as np
 from solver.definitions import SettingError
 from solver.discrete.problem import Problem
 from solver.latin import Ending, solve
-from solver.latin.direction import search_direction
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 from solver.study.conditioning import condition_of_structure, condition_of_substructures
 from solver.study.stability_cases import PRECISE, REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, cases
 from solver.study.stability_plane import plane_cases
@@ -174,7 +174,7 @@ def run_case(case: Case, method: str) -> Outcome:
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as leaked:
         warnings.simplefilter("always")
-        solution = solve(problem, settings, watch=False)
+        solution = solve(problem, method_of(settings), watch=False)
     seconds = time.perf_counter() - start
     iterate = solution.iterate
     finite = _is_finite(iterate)
@@ -192,7 +192,7 @@ def run_case(case: Case, method: str) -> Outcome:
         doubt=doubt,
         condition_structure=condition_of_structure(problem),
         condition_substructure=condition_of_substructures(
-            problem, search_direction(problem, settings)
+            problem, method_of(settings).direction.of(problem)
         ),
     )
 

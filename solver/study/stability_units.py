@@ -10,6 +10,7 @@ from solver.arrays import Array
 from solver.latin import iterations
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
 from solver.study.stability import METHODS
 
 UNITS = {
@@ -35,7 +36,9 @@ def invariance(number: int = 40) -> dict[str, float]:
                 BarSettings.checked({**size, **options, **bar_in_units(*of)})
                 for of in ((1.0, 1.0), (length, force))
             )
-            both = (islice(iterations(discretise(chosen), chosen), number) for chosen in pair)
+            both = (
+                islice(iterations(discretise(chosen), method_of(chosen)), number) for chosen in pair
+            )
             found[f"{units}, {method}"] = max(
                 max(
                     _apart(one.displacement * length, other.displacement),

@@ -13,14 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from solver.definitions import SettingError
 from solver.discrete import Problem
 from solver.latin import Ending, Solution, solve
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.reference.solution import Reference
+from solver.refusal import RefusedError
 from solver.scenes import discretise
+from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.survey_draw import draw, is_foolish
 from solver.study.survey_residual import kkt_residual
@@ -195,9 +196,9 @@ def run(settings: Settings) -> Outcome:
         warnings.simplefilter("error")
         try:
             problem = discretise(settings)
-            solution = solve(problem, settings, watch=False)
+            solution = solve(problem, method_of(settings), watch=False)
             return _measured(problem, solution)
-        except SettingError as refusal:
+        except RefusedError as refusal:
             return Outcome(REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")

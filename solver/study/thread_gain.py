@@ -8,6 +8,7 @@ from itertools import pairwise
 from solver.latin import Iterate, iterations
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
+from solver.scenes.method import method_of
 
 SIZES = (96, 192, 384, 768)
 WARM = 10
@@ -38,7 +39,9 @@ def thread_gain(elements: int, threads: int, repeats: int) -> tuple[float, float
         }
     )
     problem = discretise(chosen)
-    runs = [iterations(problem, chosen.replace(threads=number)) for number in (1, threads)]
+    runs = [
+        iterations(problem, method_of(chosen.replace(threads=number))) for number in (1, threads)
+    ]
     seconds: list[list[float]] = [[], []]
     for _ in range(WARM + repeats):
         for run, own in zip(runs, seconds, strict=True):

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.definitions import SettingError
 from solver.files import save_result
 from solver.latin import Ending
+from solver.refusal import RefusedError
 from solver.study.finished import FinishedRun, finished_run
 from solver.study.memory import settle
 from solver.study.survey import BROKEN, REFUSED
@@ -180,7 +180,7 @@ def _run(plan: Plan, number: int, limit: float, fields: str | None, nearest: Nea
             row = _row(plan, number, run, fields)
             if nearest and row.holds:
                 nearest.keep(number, run.states)
-        except SettingError as refusal:
+        except RefusedError as refusal:
             row = nothing(plan, number, REFUSED, str(refusal))
         except Exception as trouble:  # whatever it is belongs in the table
             row = nothing(plan, number, BROKEN, f"{type(trouble).__name__}: {trouble}")

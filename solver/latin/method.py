@@ -1,0 +1,126 @@
+"""The method as a value: parts that are plugged together (paper, Fig. 1; solver/README.md, 2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from numpy.linalg import LinAlgError
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.latin.acceleration import Anderson
+from solver.latin.blocks import Blocks
+from solver.latin.clock import Clock
+from solver.latin.criteria import Accuracy, Indicator, Iterations
+from solver.latin.criterion import Criterion
+from solver.latin.cycle import Parts
+from solver.latin.direction import Auto, Paper, SearchDirection
+from solver.latin.direction_update import FromStatus
+from solver.latin.nested import Nested
+from solver.latin.stages import PGD, Full
+from solver.latin.status_step import StatusStep
+from solver.refusal import RefusedError, check_range
+
+
+@dataclass(frozen=True)
+class Latin:
+    """The multiscale LATIN method, made of parts.
+
+    A part is a value with its own few numbers, checked where it is made; `solve` and `iterations`
+    put it to work on a problem.
+
+    Attributes
+    ----------
+    direction
+        Search direction k: `Auto`, `Paper`, or `FromStatus` of one of these.
+    linear
+        How fields are held: `Full`, or `PGD`.
+    multiscale
+        Whether macro forces are in balance after every iteration, by the coarse problem.
+    relaxation
+        Share of the new iterate, the rest being the one before.
+    acceleration
+        `Anderson`, or None.
+    start
+        `Nested`, or None: zero, and of a body that only contact holds the place where it comes to
+        rest.
+    finish
+        `StatusStep`, which ends a run with a certified solution, or None. Runs on separated bases
+        go on.
+    stop
+        When a run ends: criteria that combine by `&` and `|`.
+    threads
+        That share an iteration on a large structure; the results are the same to the bit.
+
+    Raises
+    ------
+    RefusedError
+        For a number out of its range.
+
+    Examples
+    --------
+    >>> Latin(linear=PGD(modes=5), stop=Accuracy(0.05) | Iterations(100)).relaxation
+    0.8
+    """
+
+    direction: SearchDirection | FromStatus = Auto()
+    linear: Full | PGD = Full()
+    multiscale: bool = True
+    relaxation: float = 0.8
+    acceleration: Anderson | None = Anderson()
+    start: Nested | None = None
+    finish: StatusStep | None = StatusStep()
+    stop: Criterion = Accuracy(0.01) & Indicator(1e-3) | Iterations(1000)
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        check_range(self, "relaxation", 0.0, 1.0, above=True)
+        check_range(self, "threads", 1, 64)
+
+    @classmethod
+    def paper(cls) -> Latin:
+        """Give the method of the paper, as its section 3 has it."""
+        return cls(
+            direction=Paper(),
+            acceleration=None,
+            finish=None,
+            stop=Accuracy(0.01) & Indicator(1e-10) | Iterations(1000),
+        )
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether fields are held as a few modes."""
+        return isinstance(self.linear, PGD)
+
+    def plugged(self, problem: Problem, k: Array, clock: Clock) -> Parts:
+        """Plug the parts together for one search direction; the linear stage is factored.
+
+        Parameters
+        ----------
+        problem
+            What to solve.
+        k
+            Search direction of the rows, shape (n_rows,), scaled, read-only.
+        clock
+            On which nothing is billed that only a viewer wants.
+
+        Raises
+        ------
+        RefusedError
+            If k is so far from the stiffness that a factor breaks down.
+        """
+        blocks = Blocks(problem.n_rows, problem.n_instants, self.threads)
+        try:
+            local, linear = self.linear.at_work(
+                problem, k, blocks, clock, multiscale=self.multiscale
+            )
+        except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
+            raise RefusedError(
+                "k_scale",
+                self.direction.scale,
+                "a k that holds every substructure in the digits of a number",
+                "bring the factors on k nearer to 1, or the sides of the elements to each other",
+            ) from None
+        own = self.acceleration
+        mix = own.at_work(problem, linear, blocks) if own else None
+        return Parts(k, local, linear, mix, float(self.relaxation))

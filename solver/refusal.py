@@ -1,0 +1,49 @@
+"""What is refused: one message that names it, its value, what is allowed, and what to do."""
+
+from __future__ import annotations
+
+import json
+import math
+
+
+class RefusedError(ValueError):
+    """A refused value: the message names it, its value, the allowed range and the remedy."""
+
+    def __init__(self, name: str, value: object, allowed: str, remedy: str) -> None:
+        shown = json.dumps(value, default=str)
+        shown = shown if len(shown) <= 60 else shown[:57] + "..."
+        super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
+        self.name = name
+
+
+def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:
+    """Refuse a number of a part of the method that is no number, or out of range.
+
+    Parameters
+    ----------
+    part, name
+        The part, and which of its numbers.
+    low, high
+        The range.
+    above
+        Whether `low` itself is refused.
+
+    Raises
+    ------
+    RefusedError
+        It names the part and the number.
+    """
+    value = getattr(part, name)
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if (
+        is_number
+        and not math.isnan(value)
+        and low <= value <= high
+        and not (above and value == low)
+    ):
+        return
+    bounds = f"a number {'above' if above else 'from'} {low:g}"
+    allowed = bounds + (f" to {high:g}" if math.isfinite(high) else "")
+    raise RefusedError(
+        f"{type(part).__name__}.{name}", value, allowed, "give a number in this range"
+    )
