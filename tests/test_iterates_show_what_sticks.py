@@ -11,6 +11,7 @@ from solver.latin import solve
 from solver.latin.iterate import Iterate
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 
 SCENES: dict[str, dict[str, Any]] = {
     "bar": {},
@@ -24,7 +25,7 @@ def end_and_truth(scene: str, **changes: Any) -> tuple[Iterate, np.ndarray]:
     """Give the last iterate of a run that converges, and the status of the solution."""
     settings = CATALOGUE[scene].settings.checked({**SCENES[scene], **changes})
     problem = discretise(settings)
-    solution = solve(problem, settings, watch=False)
+    solution = solve(problem, method_of(settings), watch=False)
     assert solution.status.ending == "converged"
     return solution.iterate, reference_of(problem).status
 
