@@ -211,7 +211,7 @@ def test_a_body_that_rocks_on_two_points_is_solved():
     settings = BlockSettings.checked({**ROCKING, "accuracy": 1e-4})
     problem = discretise(settings)
     assert reference_of(problem).converged.all()
-    solution = solve(problem, settings)
+    solution = solve(problem, method_of(settings))
     assert solution.is_certified
     assert solution.iterate.number < 50
 
