@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from studios import ALL, SMALL, Shown, keys
 
 from app.views import deformed, picture, status_map
+from app.views.catalogue import fitting
 from app.views.colors import FRONT, GHOST
 from app.views.drawing import Drawing
-from app.worker.orders import Watch
+from app.worker.orders import Seek, Watch
 from app.worker.portrait import rims
 from solver.scenes import CATALOGUE
 
@@ -60,6 +62,59 @@ def test_the_ghost_of_the_same_run_lies_on_the_bodies_at_every_instant(scene: st
         for ghost, line in zip(outlines(drawing), own, strict=True):
             assert ghost == pytest.approx(line, abs=1e-6)
         assert "run before, iteration 4" in keys(drawing)
+
+
+OTHERS: dict[str, dict[str, Any]] = {
+    "bar": {"peak": 4000.0, "friction": 0.6, "length": 1.4, "duration": 2.0},
+    "strand": {"peak": 1800.0, "length": 1.4, "duration": 2.0},
+    "block": {"top_normal_displacement": -1e-4, "friction": 0.6, "length": 0.13, "duration": 2.0},
+    "incline": {"weight": 3000.0, "length": 0.13, "duration": 2.0},
+    "layers": {"pressure": 9e6, "friction": 0.6, "length": 0.6, "duration": 2.0},
+}
+"""What is larger than usual in every scene: forces, displacements, bodies, time."""
+
+
+def outside(drawing: Drawing) -> list[str]:
+    """Give the colours of all curves and bodies that leave the axes."""
+    if drawing.bodies is not None:
+        (left, right, low, high), (x, y) = drawing.bodies.box, drawing.bodies.places.T
+        places = [("bodies", x, y), *((c.color, c.x, c.y) for c in drawing.curves)]
+    else:
+        assert drawing.x is not None
+        assert drawing.y is not None
+        left, right, low, high = drawing.x.low, drawing.x.high, drawing.y.low, drawing.y.high
+        places = [(curve.color, curve.x, curve.y) for curve in drawing.curves]
+    slack_x, slack_y = 1e-5 * (right - left), 1e-5 * (high - low)
+    return [
+        name
+        for name, x, y in places
+        if np.nanmin(x, initial=left) < left - slack_x
+        or np.nanmax(x, initial=right) > right + slack_x
+        or np.nanmin(y, initial=low) < low - slack_y
+        or np.nanmax(y, initial=high) > high + slack_y
+    ]
+
+
+@pytest.mark.parametrize("is_paired", [True, False])
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_what_is_compared_is_inside_the_axes(scene: str, is_paired: bool) -> None:
+    shown, values = Shown(), {**SMALL[scene], **SHORT, "max_iterations": 12}
+    other = CATALOGUE[scene].settings.checked({**values, **OTHERS[scene]}).values()
+    if is_paired:
+        shown.run(1, scene, values, twin=other)
+    else:
+        shown.run(1, scene, other)
+        shown.run(2, scene, values)
+    kept: dict[str, Any] = {}
+    for iteration in (1, 4, 12):
+        shown.obey(Seek(shown.recording.ticket, iteration))
+        looked = shown.scene()
+        for view in fitting(looked.run.settings):
+            drawing = view.draw(looked, kept.get(view.name))
+            # Of singular values and the modes of a basis there is nothing to compare with.
+            if drawing is not None and view.name != "Singular values":
+                kept[view.name] = drawing.kept
+                assert not outside(drawing), (view.name, iteration)
 
 
 def test_a_ghost_that_would_make_the_bodies_small_is_left_out() -> None:

@@ -44,13 +44,15 @@ def draw(scene: Scene, _kept: None) -> Drawing:
         keys = (*keys, Key(BLUE, "thin", "A"))
     if is_reduced:
         past, keys = run.beside, (*keys, Key(BLUE, "thin", "full stage"))
+    ghost = past.thinned(MOST_POINTS) if past is not None else None
     values = [value for name, *_ in CURVES for value in now[name]]
+    if ghost is not None:
+        values += [value for name, *_ in CURVES[ERRORS:] for value in ghost[name]]
     y = in_decades(*decades([*LEAST_SPAN, *values], FLOOR))
     length = before.iteration if before and not is_reduced else 0
     x = spanned(0, round_up(max(run.iteration, length, 20)))
     curves = []
-    if past is not None:
-        ghost = past.thinned(MOST_POINTS)
+    if ghost is not None:
         curves += [
             Curve(ghost["iteration"], ghost[name], color, 1.2)
             for name, color, _, _ in CURVES[ERRORS:]

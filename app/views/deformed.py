@@ -35,7 +35,7 @@ def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | No
     reach = round_up(factor * reach_of(scene)) if field.largest > 0.0 else 0.0
     outlines, ghosts = ghosts_of(scene, factor)
     return Drawing(
-        bodies=Bodies(mesh.quads, moved, field.stress / np.float32(unit), _box(mesh, reach)),
+        bodies=Bodies(mesh.quads, moved, field.stress / np.float32(unit), _box(scene, reach)),
         colors=Colors(low, high, (low, 0.5 * (low + high), high), name),
         keys=(
             Key(GREY, "bare", scene.look.stress),
@@ -67,9 +67,18 @@ def _suits(scene: Scene) -> bool:
     return bool(scene.shadow and scene.shadow.pose.largest <= FARTHEST * scene.frame.pose.largest)
 
 
-def _box(mesh: Mesh, reach: float) -> tuple[float, float, float, float]:
+def sizes_of(scene: Scene) -> Array:
+    """Give the right and the upper end of all undeformed bodies that are drawn, (2,), m."""
+    nodes = [scene.run.stand.portrait.mesh.nodes]
+    if scene.before is not None and scene.shadow is not None and _suits(scene):
+        nodes.append(scene.before.stand.portrait.mesh.nodes)
+    return np.asarray(np.max([one.max(axis=0) for one in nodes], axis=0))
+
+
+def _box(scene: Scene, reach: float) -> tuple[float, float, float, float]:
     """Give room for the bodies, and for where they may move to."""
-    (left, low), (right, high) = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
+    assert scene.run.stand.mesh is not None
+    (left, low), (right, high) = scene.run.stand.mesh.nodes.min(axis=0), sizes_of(scene)
     margin = 0.02 * float(right - left) + reach
     return float(left - margin), float(right + margin), float(low - margin), float(high + margin)
 

@@ -74,6 +74,12 @@ class Scene:
         return f"{self.other}, iteration {self.before.shown if self.before else 0}"
 
     @property
+    def length(self) -> float:
+        """Length of the bodies, m, or of those of the ghost, if these are longer."""
+        compared = [self.run, self.before] if self.before and self.ghost else [self.run]
+        return max(float(one.settings.values()["length"]) for one in compared)
+
+    @property
     def ghost(self) -> tuple[Recording, Fields, int] | None:
         """The run before, its fields and its instant, where they are of the same interface."""
         fields = self.before.frame if self.before else None

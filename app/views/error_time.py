@@ -26,11 +26,12 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
     every = [one.history for one in [*past, run]] + [run.beside]
     histories = [one.thinned(MOST_POINTS) for one in every if len(one)]
     times = [one["seconds"][place] for one in histories for place in (0, -1)]
-    errors = [one["error_force"][-1] for one in histories] + [0.1]
+    errors = [0.1, *(error for one in histories for error in one["error_force"])]
     if run.reference is not None:
         times.append(run.reference_seconds)
     x = in_decades(*decades(times, 1e-6))
-    y = in_decades(decades(errors, FLOOR)[0], 2.0)
+    low, high = decades(errors, FLOOR)
+    y = in_decades(low, max(high, 2.0) if max(errors) > 2.0 else 2.0)
     curves = [_curve(one.history, colors[one.ticket], 2) for one in past]
     keys = [Key(BLUE, "line", "B" if twin else "this run")]
     if run.settings.is_reduced:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+import numpy as np
 
 from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import across, decimal_scale, length_of, spanned, upright
+from app.views.scales import Limits, across, decimal_scale, held, spanned, upright
 from solver.settings import Settings
+
+ROOM = 1.25
+"""What is seen of forces, over their bound."""
 
 
 def applies(settings: Settings) -> bool:
@@ -16,15 +19,15 @@ def applies(settings: Settings) -> bool:
     return not is_plane(settings)
 
 
-def draw(scene: Scene, _kept: Any) -> Drawing | None:
+def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     """Draw the force per length, with its bounds, the reference, the closed form and the ghost."""
     run, begun, instant = scene.run, scene.run.stand, scene.instant
     if begun.bound is None:
         return None
-    top = float(begun.bound.max()) or 1.0
-    factor, unit = decimal_scale(top, "N/m")
-    x = spanned(0.0, length_of(run.settings))
-    y = Axis(-1.25 * top / factor, 1.25 * top / factor, label=f"Friction force ({unit})")
+    limits = _limits(scene, float(begun.bound.max()) or 1.0, kept)
+    factor, unit = decimal_scale(limits[1] / ROOM, "N/m")
+    x = spanned(0.0, scene.length)
+    y = Axis(limits[0] / factor, limits[1] / factor, label=f"Friction force ({unit})")
     places, bound = begun.positions, begun.bound / factor
     curves = [
         upright(begun.cuts, y, color=GREY, alpha=0.35, width=1),
@@ -46,7 +49,18 @@ def draw(scene: Scene, _kept: Any) -> Drawing | None:
         force = run.reference.friction[:, instant] / factor
         curves.append(Curve(places, force, ORANGE, 4.5))
     curves.append(Curve(places, scene.frame.fields.friction[:, instant] / factor, BLUE))
-    return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")))
+    return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")), kept=limits)
+
+
+def _limits(scene: Scene, bound: float, kept: Limits | None) -> Limits:
+    """Give the bound room on both sides, and more to what reaches beyond at any instant."""
+    shown = [scene.frame.fields.friction]
+    if scene.ghost is not None:
+        shown.append(scene.ghost[1].friction)
+    largest = max(float(np.abs(one).max()) for one in shown)
+    if largest <= ROOM * bound:
+        return -ROOM * bound, ROOM * bound
+    return held(kept, -largest, largest)
 
 
 VIEW = View("Friction force", Plot(POSITION, "Friction force (N/m)"), draw, applies)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,7 +26,8 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     """Draw the loop of the shown iterate, beside its reference and the run before."""
     run, begun, axes = scene.run, scene.run.stand, scene.run.stand.loop
     now = _pair(run, scene.frame.fields)
-    limits = _limits(run, now, kept)
+    ghost = _newest(scene.before, axes) if scene.before is not None else None
+    limits = _limits(run, [now, ghost] if ghost else [now], kept)
     (x, across), (y, up) = (
         _axis(quantity, one) for quantity, one in zip((axes.across, axes.up), limits, strict=True)
     )
@@ -36,7 +38,7 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     curves, keys = [], [Key(BLUE, "line", scene.name)]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
-    if scene.before is not None and (ghost := _newest(scene.before, axes)):
+    if ghost is not None:
         curves.append(scaled(ghost, GHOST, 2))
         keys.append(Key(GHOST, "line", scene.ghost_name))
     if run.reference is not None:
@@ -48,20 +50,20 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     return Drawing(x, y, curves, (point,), keys=keys, kept=limits)
 
 
-def _limits(run: Recording, now: Pair, kept: tuple[Limits, Limits] | None) -> tuple[Limits, Limits]:
-    """Hold the loop that the run should come to, where it is known."""
+def _limits(
+    run: Recording, pairs: Sequence[Pair], kept: tuple[Limits, Limits] | None
+) -> tuple[Limits, Limits]:
+    """Hold the loop that the run should come to, where it is known, with all that is drawn."""
     begun, settled = run.stand, None
     if run.reference is not None:
         settled = _pair(run, run.reference)
     elif begun.closed_form_end is not None and begun.load is not None:
         settled = begun.closed_form_end, begun.load
-    if settled is None:
-        old: Any = kept or (None, None)
-        across, up = (
-            held(o, float(v.min()), float(v.max())) for o, v in zip(old, now, strict=True)
-        )
-        return across, up
-    return _around(settled[0], begun.loop.across[1]), _around(settled[1], begun.loop.up[1])
+    across, up = (
+        _around([one[axis] for one in pairs], settled and settled[axis], unit, kept and kept[axis])
+        for axis, (_, unit) in enumerate((begun.loop.across, begun.loop.up))
+    )
+    return across, up
 
 
 def _pair(run: Recording, fields: Fields) -> Pair:
@@ -85,10 +87,24 @@ def _axis(quantity: tuple[str, str], limits: Limits) -> tuple[Axis, float]:
     return spanned(limits[0] / factor, limits[1] / factor, label=f"{title} ({shown})"), factor
 
 
-def _around(values: np.ndarray, unit: str) -> Limits:
-    low, high = min(float(values.min()), 0.0), max(float(values.max()), 0.0)
+def _around(
+    values: Sequence[np.ndarray], settled: np.ndarray | None, unit: str, old: Limits | None
+) -> Limits:
+    """Give limits around values: those of what is settled, as long as they have all the others."""
+    if settled is None:
+        return held(old, *_ends(values))
+    low, high = _ends([settled])
     margin = 0.12 * (high - low) or (STILL if unit == "m" else 1.0)
-    return low - margin, high + margin
+    first, last = _ends([settled, *values])
+    if low - margin <= first and last <= high + margin:
+        return low - margin, high + margin
+    return held(old, first, last)
+
+
+def _ends(values: Sequence[np.ndarray]) -> Limits:
+    """Give the smallest and the largest value, and zero."""
+    low, high = min(float(one.min()) for one in values), max(float(one.max()) for one in values)
+    return min(low, 0.0), max(high, 0.0)
 
 
 VIEW = View(

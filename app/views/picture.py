@@ -10,7 +10,7 @@ import numpy as np
 from app.views import sketch
 from app.views.acts import OUTWARD, Act, acts_on, ends_of, holds, size_of
 from app.views.colors import BACKWARD, FORCE, FORWARD, GHOST, GIVEN, GREY, VERMILION, shaded
-from app.views.deformed import fitting, ghosts_of, reach_of
+from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
 from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, Word
 from app.views.handles import Handle, choices, on_arrow, on_bodies
 from app.views.legend import Key
@@ -70,7 +70,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
             portrait.mesh.quads,
             np.stack(artist.placed(artist.nodes), axis=1).astype(np.float32),
             portrait.mesh.parts.astype(np.float32),
-            artist.box(acts, reach_of(scene)),
+            artist.box(acts, reach_of(scene), sizes_of(scene)),
             portrait.mesh.nodes[portrait.mesh.quads, 0].mean(axis=1),
         ),
         colors=Colors(0, max(last, 1), ()),
@@ -109,8 +109,13 @@ class _Artist:
         found = sketch.turned(np.asarray(points, dtype=np.float64), self._tilt)
         return found[..., 0], found[..., 1]
 
-    def box(self, acts: Sequence[Act], reach: float) -> tuple[float, float, float, float]:
-        """Give the ends of what is seen at any instant; nothing moves farther than the reach."""
+    def box(
+        self, acts: Sequence[Act], reach: float, sizes: Array
+    ) -> tuple[float, float, float, float]:
+        """Give the ends of what is seen at any instant.
+
+        Nothing moves farther than the reach, m, and no body ends beyond the sizes, (2,), m.
+        """
         moves = self._factor * reach
         sides = dict.fromkeys(OUTWARD, (ROOM + HATCH) * self.size + moves)
         if isinstance(self._data, Stack) and self._data.support is not None:
@@ -120,7 +125,8 @@ class _Artist:
             words = WORDS * self.size if side in ("left", "right") else 0.0
             sides[side] = max(sides[side], (ARROW + ROOM) * self.size + words + moves)
         left, low = -sides["left"], -sides["bottom"]
-        right, high = self._length + sides["right"], self._height + sides["top"]
+        right = max(self._length, float(sizes[0])) + sides["right"]
+        high = max(self._height, float(sizes[1])) + sides["top"]
         corners = np.array([[left, low], [right, low], [right, high], [left, high]])
         angles = np.linspace(float(self._tilts.min()), float(self._tilts.max()), 5)
         found = np.concatenate([sketch.turned(corners, float(angle)) for angle in angles])

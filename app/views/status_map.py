@@ -9,7 +9,7 @@ import numpy as np
 from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, STICK, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import across, length_of, spanned, upright
+from app.views.scales import across, spanned, upright
 from app.worker.frames import Stand
 from app.worker.shown import Bytes
 
@@ -28,8 +28,8 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
     half_x, half_t = 0.5 * _step(places), 0.5 * _step(instants)
     first_x, last_x = float(places[0]), float(places[-1])
     first_t, last_t = float(instants[0]), float(instants[-1])
-    x = spanned(0.0, length_of(scene.run.settings))
-    y = spanned(first_t - half_t, last_t + half_t)
+    x = spanned(0.0, scene.length)
+    y = spanned(*_ends(scene, first_t - half_t, last_t + half_t))
     image = Image(
         np.ascontiguousarray((scene.frame.fields.status + 1).astype(np.uint8).T),
         left=first_x - half_x,
@@ -44,16 +44,24 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
     ghosts = []
     if scene.ghost is not None:
         before, fields, _ = scene.ghost
-        curves.insert(0, _fronts(before.stand, fields.status))
+        curves.insert(0, _fronts(before.stand, fields.status, scene.length))
         ghosts.append(Key(FRONT, "front", scene.ghost_name))
     can_open = begun.coefficient is not None
     keys = (*KEYS, *OPENED) if can_open else (*KEYS, CHOSEN)
     return Drawing(x, y, curves, image=image, keys=(*keys, *ghosts))
 
 
-def _fronts(stand: Stand, status: Bytes) -> Curve:
+def _ends(scene: Scene, low: float, high: float) -> tuple[float, float]:
+    """Give the ends of all instants of a map, s, and of those of the ghost."""
+    if scene.ghost is None:
+        return low, high
+    times = _edges(scene.ghost[0].stand.instants)
+    return min(low, float(times[0])), max(high, float(times[-1]))
+
+
+def _fronts(stand: Stand, status: Bytes, length: float) -> Curve:
     """Give the lines between points and instants of different status."""
-    x, t = _edges(stand.positions), _edges(stand.instants)
+    x, t = _edges(stand.positions).clip(0.0, length), _edges(stand.instants)
     i, j = np.nonzero(status[1:] != status[:-1])
     vertical = (x[i + 1], x[i + 1], t[j], t[j + 1])
     i, j = np.nonzero(status[:, 1:] != status[:, :-1])

@@ -7,7 +7,7 @@ import numpy as np
 from app.views.colors import BLUE, GREY, ORANGE, PURPLE
 from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held, length_of, spanned, upright
+from app.views.scales import Limits, decimal_scale, held, spanned, upright
 from app.worker.frames import Fields
 
 KEYS = (
@@ -27,8 +27,10 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         return None
     bound = begun.coefficient[:, None] * np.maximum(now.pressure, 0.0)
     top = float(bound.max())
-    low = float(min(now.pressure.min(), now.friction.min(), -top))
-    limits = held(kept, low, float(max(now.pressure.max(), now.friction.max(), top)))
+    drawn = [now, scene.ghost[1]] if scene.ghost is not None else [now]
+    shown = [one for each in drawn for one in (each.pressure, each.friction) if one is not None]
+    low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
+    limits = held(kept, min(low, -top), max(high, top))
     factor, unit = decimal_scale(max(-limits[0], limits[1]), "Pa")
     y = spanned(limits[0] / factor, limits[1] / factor, label=f"Traction ({unit})")
     curves = [upright(begun.cuts, y, color=GREY, alpha=0.35, width=1)]
@@ -44,9 +46,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     for sign in (1.0, -1.0):
         curves.append(Curve(places, sign * bound[:, instant] / factor, GREY, 1.5, "dashed"))
     curves += _pair(places, now, instant, factor)
-    return Drawing(
-        spanned(0.0, length_of(run.settings)), y, curves, keys=(*keys, *past), kept=limits
-    )
+    return Drawing(spanned(0.0, scene.length), y, curves, keys=(*keys, *past), kept=limits)
 
 
 def _pair(
