@@ -16,6 +16,7 @@ from app.comparing import PRESETS, pair
 from app.views import convergence, error_time, friction, loop, tractions
 from app.worker.orders import Pace, Run, Seek, Step, Watch
 from app.worker.sampler import Sampler
+from app.worker.words import NONE_YET
 from solver.files import scene_settings
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
@@ -117,6 +118,17 @@ def test_figures_stand_at_equal_iteration_and_at_equal_run_time() -> None:
     assert "3000.0 ms" in shown.page["figures"]["text"].split("B at A")[-1]
     assert twin.recording.last_within(3.5) == 3
     assert twin.recording.last_within(0.5) == 0
+
+
+def test_a_run_without_an_iteration_at_equal_run_time_is_said_to_have_none() -> None:
+    shown = paired()
+    assert NONE_YET not in shown.page["figures"]["text"]
+    twin = shown.studio._twin
+    assert twin is not None
+    for iteration in range(1, len(twin.recording.history) + 1):
+        twin.recording.history.change(iteration, seconds=1e3 + iteration)
+    shown.obey(Seek(1, 3))
+    assert NONE_YET in shown.page["figures"]["text"].split("A at B&#x27;s run time")[-1]
 
 
 def test_tractions_of_plane_bodies_have_a_ghost_too() -> None:

@@ -33,6 +33,7 @@ AT_REST = "■ at rest"
 COUNTED = "iteration", "friction force error"
 """Stand beside their numbers in the status line, where scripts read them; the figures mark them."""
 PAUSED = "Run goes on, Step does one iteration."
+NONE_YET = "no iteration done by then"
 REPLAYED = "The run had ended, and begins anew."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
 HEADS = (
@@ -146,6 +147,8 @@ def key_figures(scene: Scene) -> str:
 
 
 def _row(cells: Sequence[str], shown: Sequence[int], chief: str) -> str:
+    if not cells:
+        return f'<td class="chief" colspan="{len(shown)}">{NONE_YET}</td>'
     return "".join(f"<td{_mark(place, chief)}>{cells[place]}</td>" for place in shown)
 
 
@@ -170,8 +173,10 @@ def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> tuple[str
     if now is None or last is None:
         return "at equal run time", _cells(twin, 0)
     if twin.status is None and last["seconds"] < now["seconds"]:
-        return "B at A's run time", _cells(run, run.last_within(last["seconds"]))
-    return "A at B's run time", _cells(twin, twin.last_within(now["seconds"]))
+        name, slower, done = "B at A's run time", run, run.last_within(last["seconds"])
+    else:
+        name, slower, done = "A at B's run time", twin, twin.last_within(now["seconds"])
+    return name, _cells(slower, done) if done else ()
 
 
 def _cells(run: Recording, iteration: int) -> Sequence[str]:
