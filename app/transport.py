@@ -23,6 +23,7 @@ LABELS = {
     "100": "100 iterations/s",
     "fastest": "as fast as it can",
 }
+RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
 FIXED = 5
 """Buttons, pace and sliders, which always stand there."""
 PLAYED_IN = 8.0
@@ -163,22 +164,21 @@ class Transport:
 
     def show(self) -> None:
         """Bring buttons and sliders to where the session is."""
-        label, icon, facts = "Run", "play_arrow", self._session.facts
+        label, icon, does, facts = "Run", "play_arrow", RUNS, self._session.facts
         if self._session.goes_on:
             label, icon = "Pause", "pause"
         elif facts is not None and facts.is_over:
-            label, icon = "Replay", "replay"
+            label, icon, does = "Replay", "replay", REPLAYS
         if self._run.icon != icon:
-            self._run.param.update(label=label, icon=icon)
+            self._run.param.update(label=label, icon=icon, description=does)
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)
 
     def _make_buttons(self) -> None:
-        does = "Run or pause the iteration, or replay a run that has ended (space)."
         self._run = button(
-            "Pause", "pause", self.toggle, width=104, color="primary", description=does
+            "Pause", "pause", self.toggle, width=104, color="primary", description=RUNS
         )
-        does = "Do one iteration and wait; of a run that has ended, show the next (s)."
+        does = "Do one iteration and wait (s)."
         self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
         does = "Start the run again, from its usual start (r)."
         self._reset = button(
