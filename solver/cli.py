@@ -29,7 +29,7 @@ from solver.latin import Ending, Solution, solve
 from solver.lessons.command import add_lesson
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
-from solver.reference.distance import Distance, distance_to
+from solver.reference.distance import Distance, distance_to, held_instants
 from solver.refusal import RefusedError
 from solver.report_commands import REFUSED, add_reports
 from solver.scenes import CATALOGUE, discretise
@@ -107,6 +107,13 @@ def _run(chosen: argparse.Namespace) -> int:
             save_result(chosen.out, settings, solution)
         except OSError as problem_there:
             raise _refused_file(chosen.out, problem_there) from None
+    loose = int((~held_instants(problem, solution.iterate.contact_force)).sum())
+    if loose:
+        print(
+            f"slipfront: at {loose} of {problem.n_instants} instants nothing says where a body "
+            "lies: its displacement is one of many there, and counts in no error",
+            file=sys.stderr,
+        )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
         _print_figures(settings, solution, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1

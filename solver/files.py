@@ -16,7 +16,7 @@ from solver.discrete.inside import Inside
 from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
-from solver.reference.distance import determinate_forces
+from solver.reference.distance import determinate_forces, held_instants
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import resolve
@@ -146,8 +146,9 @@ def result_arrays(settings: Settings, solution: Solution) -> Mapping[str, Any]:
     Along rods `displacement` is that of the degrees of freedom at `x`, body after body;
     `friction_force` and `status` are those of the points of all interfaces with friction, one after
     the other. In the plane there are all nodes `x`, (n_nodes, 2), the nodes of `elements`,
-    (n_elements, 4), and their `displacement`, (n_nodes, 2, n_instants). Interfaces between bodies,
-    or that may open, have arrays of their own (`interface_arrays`).
+    (n_elements, 4), and their `displacement`, (n_nodes, 2, n_instants); `displacement_determinate`,
+    (n_instants,), is false where nothing says where a body lies. Interfaces between bodies, or that
+    may open, have arrays of their own (`interface_arrays`).
 
     With separated bases also pgd_modes, pgd_added, pgd_updated, pgd_enriched and pgd_dropped,
     shape (n_iterations, n_substructures), as in `ReductionRecord`.
@@ -194,6 +195,7 @@ def _in_the_plane(inside: Inside, iterate: Iterate) -> dict[str, Any]:
         "x": inside.nodes,
         "elements": inside.elements,
         "displacement": inside.displacement(iterate.displacement, slice(None)),
+        "displacement_determinate": held_instants(iterate.problem, iterate.contact_force),
     }
 
 

@@ -112,6 +112,9 @@ class Problem:
     rest
         Displacement that the method may start from, scaled, shape (n_dofs, n_instants): that of a
         body which falls onto its support as if it were rigid. None is no displacement.
+    motions
+        Rigid motions of bodies that no side holds, shape (n_dofs, n_motions), independent; None
+        where there are none, or where no digits are lost beside them.
     """
 
     substructures: tuple[Substructure, ...]
@@ -121,6 +124,7 @@ class Problem:
     scales: Scales
     inside: Inside | None = None
     rest: Array | None = None
+    motions: Array | None = None
 
     @cached_property
     def n_rows(self) -> int:

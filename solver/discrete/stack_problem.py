@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from solver.arrays import Array, Indices
+from solver.discrete.motions import rigid_motions
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.rest import rigid_rest, rigid_slide
 from solver.discrete.sides import neighbour
@@ -33,15 +36,20 @@ def discretise_stack(scene: Stack) -> Problem:
             first += size
     shared: dict[tuple[object, ...], Elasticity] = {}
     skeleton = np.unique(np.concatenate([part.dofs for part in parts]))
-    return Problem(
+    components = skeleton % 2
+    positions = grid.positions[skeleton // 2]
+    found = Problem(
         substructures=tuple(_substructure(scene, part, skeleton, shared) for part in parts),
         interfaces=dict(interfaces_of(scene, {part.place: part for part in parts})),
-        positions=grid.positions[skeleton // 2] * scene.length,
+        positions=positions * scene.length,
         instants=scene.instants,
         scales=Scales(scene.length, scene.young * scene.length, scene.duration),
         inside=StackInside(scene, parts, grid, skeleton),
-        rest=_rest(scene, grid.positions[skeleton // 2], skeleton % 2),
+        rest=_rest(scene, positions, components),
     )
+    bodies = skeleton // 2 // grid.nodes[0].size
+    motions = rigid_motions(positions, components, bodies, found.prescribed[0])
+    return replace(found, motions=motions)
 
 
 def _rest(scene: Stack, positions: Array, components: Indices) -> Array | None:

@@ -35,11 +35,12 @@ def finished(
         As in `Iterate`.
     """
     scales = problem.scales
-    displacement = certificate.displacement / scales.displacement
-    force = row_forces(problem, displacement, certificate.contact_force / scales.force)
-    moved = displacement[problem.row_dofs]
+    deformation = certificate.deformation / scales.displacement
+    force = row_forces(problem, deformation, certificate.contact_force / scales.force)
+    moved = (certificate.displacement / scales.displacement)[problem.row_dofs]
     stretched = force / k[:, None]
-    outgoing, incoming, local = map(_frozen, (moved + stretched, moved - stretched, moved))
+    fields = moved + stretched, moved - stretched, moved, force
+    outgoing, incoming, local, force = map(_frozen, fields)
     return Iterate(
         number=number,
         seconds=seconds,
@@ -50,6 +51,7 @@ def finished(
         local_displacement=local,
         local_incoming=incoming,
         residual=certificate.residual,
+        force=force,
     )
 
 
@@ -71,7 +73,7 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     problem
         Of which displacement and contact forces are the solution.
     displacement
-        Shape (n_dofs, n_instants), scaled.
+        But for rigid motions, shape (n_dofs, n_instants), scaled.
     contact_force
         Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), scaled.
 

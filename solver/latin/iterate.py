@@ -121,6 +121,9 @@ class Iterate:
     residual
         Of an iterate that is a certified solution (`solver.latin.status_step`), its KKT residual
         relative to the contact force; None of all others.
+    force
+        F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid motion the digits
+        of F/k may be lost.
     """
 
     number: int
@@ -138,6 +141,7 @@ class Iterate:
     memory: tuple[int, int, float] | None = None
     course: Course | None = None
     residual: float | None = None
+    force: Array | None = None
 
     @property
     def checkpoint(self) -> Checkpoint:
@@ -174,11 +178,15 @@ class Iterate:
     @property
     def boundary_force(self) -> Array:
         """F of the linear stage, shape (n_rows, n_instants), scaled."""
+        if self.force is not None:
+            return self.force
         return 0.5 * self.k[:, None] * (self.outgoing - self.incoming)
 
     @property
     def boundary_local_force(self) -> Array:
         """F^ of the local stage, shape (n_rows, n_instants), scaled."""
+        if self.force is not None:
+            return self.force
         return self.k[:, None] * (self.local_displacement - self.local_incoming)
 
     @cached_property

@@ -45,6 +45,8 @@ class Certificate:
     ----------
     displacement
         Shape (n_dofs, n_instants), m.
+    deformation
+        The same without rigid motions that would hide it.
     contact_force
         Stacked as `Problem.sum_of_contact` says, shape (n_forces, n_instants), N.
     distance
@@ -55,6 +57,7 @@ class Certificate:
     """
 
     displacement: Array
+    deformation: Array
     contact_force: Array
     distance: Distance
     residual: float
@@ -93,7 +96,10 @@ class StatusSolver:
         residual = found.unbalanced * np.sqrt(len(found.contact_force)) / distance.force_size
         if residual > (BLURRED if found.unbalanced <= found.rounding else CERTIFIED):
             return None
-        return Certificate(found.displacement, found.contact_force, distance, float(residual))
+        deformation = found.displacement if found.deformation is None else found.deformation
+        return Certificate(
+            found.displacement, deformation, found.contact_force, distance, float(residual)
+        )
 
     @cached_property
     def _solver(self) -> Incremental:

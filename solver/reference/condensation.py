@@ -7,8 +7,18 @@ pairs first and the laws take them out again: with K_r = K + J' rho J and C = J 
     S jump = f + q,    S = C^-1 - rho,    q = C^-1 J K_r^-1 F,
 
 which holds for every rho > 0 and needs no more than that the structure, glued at its contacts,
-is held. Where contacts close a ring, jumps depend on each other; S takes them for independent, with
-a stiffness that ties them. Jumps and forces are stacked as `Problem.sum_of_contact` says.
+is held. Jumps and forces are stacked as `Problem.sum_of_contact` says.
+
+Three things are kept apart, as they may differ by any number of digits:
+
+- The rigid motions a of bodies that contact alone holds: jump = y + Q a, with Q the jumps that they
+  make, orthonormal. They cost no force, S Q = 0, so forces follow from the deformation y alone. It
+  is chosen with Q' y = 0, which says that the forces are in equilibrium with the load, as
+  Q' q is known exactly. With that S may be replaced by S + s Q Q', which is definite.
+- What is in series with a jump, like a spring: it is no part of S.
+- Jumps that depend on each other. Those that something in series tells apart follow from a `base`
+  of the others; where contacts close a rigid ring, S takes them for independent, with a stiffness
+  that ties them.
 """
 
 from __future__ import annotations
@@ -17,13 +27,13 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import lapack
+from scipy.linalg import lapack, solve_triangular
 from scipy.sparse.linalg import splu
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.self_stress import self_stresses
+from solver.reference.self_stress import base_of, self_stresses
 from solver.reference.states import rules_of
 
 LOOSE = 1e-14
@@ -61,17 +71,24 @@ class Condensation:
     ----------
     moving
         Which jumps are unknown, shape (n_moving,), places in the stack.
+    base, ties
+        Which of these the others follow from, shape (n_base,), places among the unknown ones; and
+        how, shape (n_moving, n_base).
     stiffness
-        S of them, shape (n_moving, n_moving), symmetric, scaled.
+        S + s Q Q' between the base, shape (n_base, n_base), symmetric, scaled.
     load
-        q of them, shape (n_moving, n_instants), scaled.
+        q of it, shape (n_base, n_instants), scaled.
     springs
-        rho of each, shape (n_moving,), scaled.
+        rho of each, shape (n_base,), scaled.
+    motions, gauge
+        Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q of the base
+        that they make, shape (n_base, n_motions).
     stresses, tie
-        Where jumps depend on each other: forces that move nothing, (n_moving, n_stresses), and the
-        stiffness in S that keeps the jumps from coming apart along them, scaled.
+        Where jumps of the base depend on each other: forces that move nothing, of shape
+        (n_base, n_stresses), and the stiffness in S that keeps the jumps from coming apart along
+        them, scaled.
     compliance
-        In series with every jump, shape (n_forces,), scaled; S is of both together.
+        In series with every jump, shape (n_forces,), scaled.
     given
         Jumps that prescribed displacements make, shape (n_forces, n_instants); final where a jump
         is not unknown.
@@ -88,7 +105,12 @@ class Condensation:
         self.given: Array = self._jumps[:, fixed] @ prescribed
         own = self._jumps[:, free]
         self.moving: Indices = np.flatnonzero(np.diff(own.indptr))
-        self._condense(own[self.moving])
+        own, rigid = own[self.moving], self.compliance[self.moving] == 0.0
+        self.base, self.ties = base_of(own, rigid)
+        own, rigid = own[self.base], rigid[self.base]
+        self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
+        self.stresses: Array = self_stresses(own, rigid)
+        self._condense(own)
 
     def _condense(self, own: sparse.csr_array) -> None:
         """Factor once, and solve for the jumps and all instants together."""
@@ -100,82 +122,115 @@ class Condensation:
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
         self.springs: Array = 1.0 / (abs(own) @ (1.0 / diagonal))
         held = stiffness + own.T @ sparse.diags_array(self.springs) @ own
-        n_own = len(self.moving)
+        n_own = len(self.base)
         patterns, course = _separated(load)
         sides = np.empty((len(free), n_own + patterns.shape[1]), order="F")
         sides[:, :n_own], sides[:, n_own:] = own.T.toarray(order="F"), patterns
         solved = _solve(sparse.csc_array(held), sides)
         self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
         compliance, alone = own @ self._answers, own @ self._alone
-        in_series = self.compliance[self.moving]
-        self.stresses: Array = self_stresses(own, in_series == 0.0)
         self.tie = TIE * float(self.springs.max(initial=0.0))
         compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
-        if in_series.any():
-            self.stiffness, load = self._in_series(compliance, alone, in_series)
-        else:
-            inverse = _inverse(0.5 * (compliance + compliance.T))
-            self.stiffness, load = inverse - np.diag(self.springs), inverse @ alone
-        self.load: Array = load + self.stiffness @ self.given[self.moving]
+        inverse = _inverse(0.5 * (compliance + compliance.T))
+        self.stiffness: Array = inverse - np.diag(self.springs)
+        self.load: Array = inverse @ alone + self.stiffness @ self._given_of_base
+        if self.gauge.size:
+            self._set_motions_apart()
 
-    def _in_series(self, compliance: Array, alone: Array, more: Array) -> tuple[Array, Array]:
-        """Give S and C^-1 times the free jumps where a jump is longer by `more` times its force.
+    def _set_motions_apart(self) -> None:
+        """Take from S what rounding makes rigid motions cost, and from q what it adds to loads."""
+        gauge, stiffness = self.gauge, self.stiffness
+        costs = stiffness @ gauge
+        costs -= 0.5 * gauge @ (gauge.T @ costs)
+        more = costs @ gauge.T
+        size = float(np.diagonal(stiffness).mean())
+        self.stiffness = stiffness - more - more.T + size * gauge @ gauge.T
+        self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
-        With j = C (f + rho j) + a and p = j + c f: (C + (1 - C rho) c) f = (1 - C rho) p - a. This
-        needs no inverse of C, so jumps with something in series may depend on each other.
-        """
-        rigid = np.eye(len(more)) - compliance * self.springs
-        found = np.linalg.solve(compliance + rigid * more, np.column_stack([rigid, alone]))
-        stiffness, load = found[:, : len(more)], found[:, len(more) :]
-        return np.asarray(0.5 * (stiffness + stiffness.T)), np.asarray(load)
+    @property
+    def _given_of_base(self) -> Array:
+        return np.asarray(self.given[self.moving[self.base]])
 
-    def displacement(self, jump: Array, force: Array) -> Array:
-        """Give all displacements from those of the contacts, shape (n_dofs, n_instants), scaled.
+    @cached_property
+    def shift(self) -> Array:
+        """What prescribed displacements add to jumps beyond the base's, (n_moving, n_instants)."""
+        return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
+
+    def deformation(self, strained: Array, force: Array) -> Array:
+        """Give all displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
 
         Parameters
         ----------
-        jump, force
+        strained
+            Jumps y of the base, shape (n_base, n_instants), scaled.
+        force
             Of the unknown jumps, shape (n_moving, n_instants), scaled.
         """
         found = np.empty_like(self._force)
         found[self._fixed] = self._prescribed
-        alone = jump - self.compliance[self.moving, None] * force
-        springs = self.springs[:, None] * (alone - self.given[self.moving])
-        found[self._free] = self._alone + self._answers @ (force + springs)
+        springs = self.springs[:, None] * (strained - self._given_of_base)
+        found[self._free] = self._alone + self._answers @ (self.ties.T @ force + springs)
         return found
 
-    def jump(self, displacement: Array, force: Array | None = None) -> Array:
-        """Give the jumps of a displacement under contact forces, shape (n_forces, n_instants)."""
-        found = np.asarray(self._jumps @ displacement)
-        return found if force is None else found + self.compliance[:, None] * force
+    def jump(self, displacement: Array) -> Array:
+        """Give the jumps of a displacement, shape (n_forces, n_instants)."""
+        return np.asarray(self._jumps @ displacement)
 
-    def unbalanced(self, displacement: Array, force: Array) -> Array:
+    def unbalanced(self, deformation: Array, force: Array) -> Array:
         """Give the forces out of balance where nothing is prescribed, (n_free, n_instants).
 
         Parameters
         ----------
-        displacement
-            Shape (n_dofs, n_instants), scaled.
+        deformation
+            Displacement but for rigid motions, shape (n_dofs, n_instants), scaled.
         force
             Of all contacts, shape (n_forces, n_instants), scaled.
         """
         outer = self._force + self._jumps.T @ force
-        return np.asarray((self._whole @ displacement - outer)[self._free])
+        return np.asarray((self._whole @ deformation - outer)[self._free])
 
-    def rounding(self, displacement: Array) -> float:
+    def rounding(self, deformation: Array, motion: Array) -> float:
         """Give what rounding alone may leave out of balance at any instant, scaled.
 
         The forces inside a slender body are far larger than what acts on it; and what they were
-        once stays in the places where its contacts stick.
+        once stays in the places where its contacts stick. How far a body has moved says where a
+        spring ends, too.
+
+        Parameters
+        ----------
+        deformation, motion
+            Displacement but for rigid motions, and these, shape (n_dofs, n_instants), scaled.
         """
-        inside = abs(self._whole) @ np.abs(displacement)
-        return LEFT_INSIDE * float(inside.max(initial=0.0))
+        inside = abs(self._whole) @ np.abs(deformation)
+        opened = self.unit[:, None] * np.abs(self.jump(motion)) * (self.compliance > 0.0)[:, None]
+        return LEFT_INSIDE * float(max(inside.max(initial=0.0), opened.max(initial=0.0)))
+
+    @cached_property
+    def unit(self) -> Array:
+        """A stiffness of every jump and what is in series with it, shape (n_forces,), scaled."""
+        found = np.ones(len(self.compliance))
+        springs = abs(self.ties) @ self.springs
+        found[self.moving] = springs / (1.0 + springs * self.compliance[self.moving])
+        return found
 
     @cached_property
     def largest_force(self) -> float:
         """Largest force on any degree of freedom, of loads and of prescribed displacements."""
         pushed = self._whole[:, self._fixed] @ self._prescribed
         return float(max(np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0)))
+
+
+def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
+    """Give rigid motions, and the jumps Q of the base that they make, orthonormal."""
+    if problem.motions is None:
+        return np.zeros((problem.n_dofs, 0)), np.zeros((base.shape[0], 0))
+    _, size = np.linalg.qr(base @ problem.motions)
+    steps = np.abs(np.diagonal(size))
+    if len(steps) < size.shape[1] or steps.min() <= LOOSE * steps.max():
+        raise NotHeldError(_NOT_HELD)
+    # From the motions once more, so that what one does not move stays exactly where it is.
+    motions = solve_triangular(size, problem.motions.T, trans="T").T
+    return motions, np.asarray(base @ motions)
 
 
 def jumps(problem: Problem) -> sparse.csr_array:

@@ -15,7 +15,7 @@ from solver.reference.states import HELD, States
 
 def states_at(jumps: Array, rules: Rules) -> States:
     """Give the states of a body that is where it would be if it were rigid, (n, n_instants)."""
-    closed = (jumps + rules.gap[:, None] < 0.0)[rules.partner]
+    closed = (jumps + rules.gap[:, None] <= 0.0)[rules.partner]
     slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
     slip[rules.normal] = HELD
     return np.where(closed, slip, OPEN).astype(np.int8)
@@ -37,10 +37,9 @@ def all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array
     return found
 
 
-def status_of(rules: Rules, jumps: Array, forces: Array) -> NDArray[np.int8]:
+def status_of(rules: Rules, slip: Array, forces: Array) -> NDArray[np.int8]:
     """Give the status of every point, stacked interface by interface, (n_points, n_instants)."""
     tangential = ~rules.normal
-    slip = np.diff(jumps, axis=1, prepend=0.0)
     status = np.sign(slip).astype(np.int8)
     with_normal = rules.normal[rules.partner][:, None]
     status[with_normal & (forces[rules.partner] <= 0.0)] = OPEN

@@ -37,7 +37,7 @@ class Distance:
 
     Displacements are compared at interfaces. Where the reference field vanishes, the distance is
     relative to `load` instead, and absolute if that vanishes too; contact forces vanish also if
-    they are but rounding beside what friction could carry and beside the load. Forces are compared
+    they are but rounding beside what friction could carry and beside the load. Both are compared
     where they are determinate.
 
     Parameters
@@ -55,6 +55,8 @@ class Distance:
     determinate
         Where the contact force is, shape (n_forces, n_instants); a point that is held still by
         a support shares its force with that support in any way.
+    held
+        Instants at which the displacement is, shape (n_instants,).
 
     Attributes
     ----------
@@ -70,11 +72,12 @@ class Distance:
         bound: Array,
         dofs: Indices,
         determinate: NDArray[np.bool_],
+        held: NDArray[np.bool_],
     ) -> None:
         self._weights = time_weights
-        self._determinate = determinate
+        self._determinate, self._held = determinate, held
         self._dofs = dofs
-        self._displacement = reference.displacement[dofs]
+        self._displacement = reference.displacement[dofs] * held
         self._force = reference.contact_force * determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
         force_size, load_size = self._norm(self._force), self._norm(load)
@@ -85,7 +88,7 @@ class Distance:
 
     def of_displacement(self, fields: Fields) -> float:
         """Give the relative error of the displacement."""
-        difference = fields.displacement[self._dofs] - self._displacement
+        difference = fields.displacement[self._dofs] * self._held - self._displacement
         return self._norm(difference) / self._displacement_size
 
     def of_friction_force(self, fields: Fields) -> float:
@@ -125,7 +128,36 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
         rules_of(problem).bound * problem.scales.force,
         np.unique(problem.row_dofs),
         determinate_forces(problem),
+        held_instants(problem, reference.contact_force),
     )
+
+
+def held_instants(problem: Problem, contact_force: Array) -> NDArray[np.bool_]:
+    """Tell at which instants contact forces say where all bodies are, shape (n_instants,).
+
+    A body that contact alone holds may lie anywhere along a rigid motion that neither goes against
+    a contact that presses nor rubs: without friction, on level ground. Until contacts first carry
+    anything it is at rest.
+
+    Parameters
+    ----------
+    problem, contact_force
+        The problem, and a solution of it: stacked as `Problem.sum_of_contact` says, of shape
+        (n_forces, n_instants), N.
+    """
+    held = np.ones(problem.n_instants, dtype=bool)
+    if problem.motions is None:
+        return held
+    rules = rules_of(problem)
+    force = contact_force / problem.scales.force
+    small = VANISHING * np.abs(force).max(initial=0.0)
+    force = np.where(force > small, force, 0.0)
+    holds = np.where(rules.normal[:, None], force, rules.bounds(force)) > 0.0
+    moved = jumps(problem) @ problem.motions
+    patterns, kind = np.unique(holds, axis=1, return_inverse=True)
+    sure = [np.linalg.matrix_rank(moved[pattern]) == moved.shape[1] for pattern in patterns.T]
+    at_rest = ~np.logical_or.accumulate(holds.any(axis=0))
+    return np.asarray(np.asarray(sure)[kind.ravel()] | at_rest)
 
 
 def determinate_forces(problem: Problem) -> NDArray[np.bool_]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,9 +12,24 @@ from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
 
 
-def unbalanced_of(
-    condensed: Condensation, rules: Rules, displacement: Array, forces: Array
-) -> NDArray[np.float64]:
+class Shown(NamedTuple):
+    """Fields of a structure, scaled.
+
+    Attributes
+    ----------
+    deformation
+        Displacement but for rigid motions, shape (n_dofs, n_instants).
+    forces, opening, slip
+        Of all jumps, with what is in series, shape (n_forces, n_instants).
+    """
+
+    deformation: Array
+    forces: Array
+    opening: Array
+    slip: Array
+
+
+def unbalanced_of(condensed: Condensation, rules: Rules, shown: Shown) -> NDArray[np.float64]:
     """Give the KKT residual of every instant, a force, scaled.
 
     The largest of: forces out of balance; distance of the normal force from (f - r g)+ with the
@@ -20,17 +37,13 @@ def unbalanced_of(
     r of the pair makes a force of a length; the conditions hold if and only if both distances
     vanish.
     """
-    jumps = condensed.jump(displacement, forces)
-    unit = np.zeros((len(jumps), 1))
-    unit[condensed.moving, 0] = condensed.springs
-    unit[unit == 0.0] = 1.0
-    opening = jumps + rules.gap[:, None]
-    slip = np.diff(jumps, axis=1, prepend=0.0)
+    forces, unit = shown.forces, condensed.unit[:, None]
     bound = rules.bounds(forces)
-    pressed = np.maximum(forces - unit * opening, 0.0)
-    rubbed = np.clip(forces - unit * slip, -bound, bound)
+    pressed = np.maximum(forces - unit * shown.opening, 0.0)
+    rubbed = np.clip(forces - unit * shown.slip, -bound, bound)
     wrong = np.abs(forces - np.where(rules.normal[:, None], pressed, rubbed))
     # The force of a normal jump that is prescribed is not determinate, so it has no law to obey.
-    wrong[rules.normal & (np.isin(np.arange(len(jumps)), condensed.moving, invert=True))] = 0.0
-    unbalanced = np.abs(condensed.unbalanced(displacement, forces)).max(axis=0, initial=0.0)
+    moving = np.isin(np.arange(len(forces)), condensed.moving)
+    wrong[rules.normal & ~moving] = 0.0
+    unbalanced = np.abs(condensed.unbalanced(shown.deformation, forces)).max(axis=0, initial=0.0)
     return np.asarray(np.maximum(unbalanced, wrong.max(axis=0, initial=0.0)))

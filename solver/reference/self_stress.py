@@ -9,9 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
+from scipy.sparse.linalg import splu
 
-from solver.arrays import Array
+from solver.arrays import Array, Indices
 
 NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
@@ -33,12 +34,62 @@ def self_stresses(jumps: sparse.csr_array, rigid: NDArray[np.bool_]) -> Array:
     return whole
 
 
-def _of_rigid(jumps: sparse.csr_array) -> Array:
+def base_of(jumps: sparse.csr_array, rigid: NDArray[np.bool_]) -> tuple[Indices, sparse.csr_array]:
+    """Find jumps from which those with something in series follow, where they depend on others.
+
+    Parameters
+    ----------
+    jumps, rigid
+        As `self_stresses`.
+
+    Returns
+    -------
+    The base, shape (n_base,): all rigid jumps, and of the others as many as are independent. And
+    what all jumps are of them, shape (n_jumps, n_base).
+    """
+    size = len(rigid)
+    edges, trees = _graph(jumps)
+    if rigid.all() or size + trees == jumps.shape[1] + 1:  # a forest: no ring
+        return np.arange(size), sparse.csr_array(sparse.eye_array(size))
+    dear = np.where(rigid, 1.0, 2.0)
+    first, last = edges
+    # Of edges that join the same two points SciPy would take the sum of both for one.
+    order = np.lexsort((np.arange(size), dear, last, first))
+    new = np.ones(size, dtype=bool)
+    new[1:] = np.any(np.diff(np.stack(edges)[:, order], axis=1) != 0, axis=0)
+    single = order[new]
+    nodes = jumps.shape[1] + 1
+    weights = sparse.csr_array((dear[single], (first[single], last[single])), shape=(nodes, nodes))
+    tree = minimum_spanning_tree(weights).tocoo()
+    number = sparse.csr_array((single + 1, (first[single], last[single])), shape=(nodes, nodes))
+    own = np.asarray(number[tree.coords[0], tree.coords[1]]).ravel() - 1
+    base = np.union1d(np.flatnonzero(rigid), own)
+    others = np.setdiff1d(np.arange(size), base)
+    branches = jumps[own]
+    squares = splu(sparse.csc_array(branches @ branches.T))
+    paths = squares.solve((branches @ jumps[others].T).toarray())
+    rows = np.concatenate([base, np.repeat(others, len(own))])
+    places = np.searchsorted(base, own)
+    columns = np.concatenate([np.arange(len(base)), np.tile(places, len(others))])
+    values = np.concatenate([np.ones(len(base)), np.round(paths).T.ravel()])
+    ties = sparse.csr_array((values, (rows, columns)), shape=(size, len(base)))
+    ties.eliminate_zeros()
+    return base, ties
+
+
+def _graph(jumps: sparse.csr_array) -> tuple[tuple[Indices, Indices], int]:
+    """Give the two points that every jump is between, the last of all the ground; and the trees."""
     size, ground = jumps.shape
     first = jumps.indices[jumps.indptr[:-1]]
     last = np.where(np.diff(jumps.indptr) == 2, jumps.indices[jumps.indptr[1:] - 1], ground)
+    first, last = np.minimum(first, last), np.maximum(first, last)
     edges = sparse.csr_array((np.ones(size), (first, last)), shape=(ground + 1, ground + 1))
-    trees, _ = connected_components(edges, directed=False)
+    return (first, last), int(connected_components(edges, directed=False)[0])
+
+
+def _of_rigid(jumps: sparse.csr_array) -> Array:
+    size, ground = jumps.shape
+    _, trees = _graph(jumps)
     if size + trees == ground + 1:  # a forest: no ring
         return np.zeros((size, 0))
     products = sparse.csr_array(jumps @ jumps.T)

@@ -51,6 +51,9 @@ class Reference:
         Time taken.
     rounding
         What rounding alone may leave of `unbalanced`, N; 0 of rods on a rigid support.
+    deformation
+        Displacement but for rigid motions of bodies that contact alone holds, which would hide it;
+        shape (n_dofs, n_instants), m. None where nothing moves so.
     """
 
     problem: Problem
@@ -64,6 +67,7 @@ class Reference:
     steps: int
     seconds: float
     rounding: float = 0.0
+    deformation: Array | None = None
 
     @property
     def friction_force(self) -> Array:

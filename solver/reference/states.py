@@ -1,29 +1,24 @@
-"""One instant of frictional contact, its states known: a linear system.
+"""States of the jumps of frictional contacts at one instant, and what is given of them.
 
 Every jump has a state. A normal one is HELD at the gap, or OPEN without force. A tangential one is
 HELD where it was, slips with s = -1 or +1 against the friction force -s (r + mu f_n), or is OPEN:
-without force, as where the contact is open or there is no friction. With S jump = f + q
-(`solver.reference.condensation`), the jumps that are not held are the unknowns.
+without force, as where the contact is open or there is no friction.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.laws.rules import Rules, stacked
 
 States = NDArray[np.int8]
 HELD = 0
-SINGULAR = 1e-12
-"""Pivot, as a share of the largest, below which a system of free jumps is singular."""
-LOOSE = 1e-14
-"""The same as a share of the largest stiffness of all jumps."""
 
 
 def rules_of(problem: Problem) -> Rules:
@@ -44,11 +39,12 @@ class Sides:
     Attributes
     ----------
     load
-        q, shape (n, ...).
+        q of the step from the instant before, shape (n_base, ...).
     bound
         Friction force r that needs no normal force, shape (n, ...).
     held
-        Where held jumps stand, shape (n, ...): minus the gap, or the position before.
+        What held jumps come to in the step, shape (n, ...): minus the opening, or nothing; on top
+        of the length before of what is in series.
     """
 
     load: Array
@@ -56,79 +52,20 @@ class Sides:
     held: Array
 
 
-class Response:
-    """The linear system of given states; the last factorisation is kept.
+class Step(NamedTuple):
+    """What an instant adds to the one before, and the forces at its end.
 
     Attributes
     ----------
-    unit
-        Stiffness of every jump alone, shape (n,), scaled.
-    solutions
-        Systems solved.
-    unbalanced
-        Largest force out of balance in the last one; more than rounding, where a motion is free.
-    turned
-        Whether the determinant of the last one is negative. That of a convex problem never is,
-        and the signs at all solutions of an instant add up to one: so it has others.
-    singular
-        Whether the last one left a motion free; then its smallest solution is given.
+    jump
+        Of all jumps, with the new length of what is in series, shape (n, ...); as `Sides.held`.
+    force
+        Of all jumps, same shape.
+    strained, motion
+        Of y of the base, shape (n_base, ...), and of the rigid motions a, (n_motions, ...).
     """
 
-    def __init__(self, stiffness: Array, rules: Rules) -> None:
-        self._stiffness = stiffness
-        self.unit: Array = np.diagonal(stiffness).copy()
-        self._partner, self._friction = rules.partner, rules.friction
-        self._states: States | None = None
-        self._factors: Array
-        self._pivots: Indices
-        self.solutions = 0
-        self.unbalanced, self.turned = 0.0, False
-
-    def __call__(self, states: States, sides: Sides) -> tuple[Array, Array]:
-        """Give jump and force, shape (n, ...) each."""
-        if self._states is None or not np.array_equal(states, self._states):
-            self._factor(states)
-        self.solutions += 1
-        free, slope = self._free, self._slope
-        wide = sides.load.ndim > 1
-        jump = sides.held.copy()
-        jump[free] = 0.0
-        missing = sides.load - self._stiffness @ jump
-        way, slope = (self._way[:, None], slope[:, None]) if wide else (self._way, slope)
-        right = missing[free] - way * sides.bound[free] + slope * missing[self._under]
-        jump[free] = self._solve(right)
-        force = self._stiffness @ jump - sides.load
-        allowed = -way * sides.bound[free] - slope * force[self._under]
-        self.unbalanced = float(np.abs(force[free] - allowed).max(initial=0.0))
-        force[free] = allowed
-        return jump, force
-
-    def _factor(self, states: States) -> None:
-        self._states = states.copy()
-        self._free = free = np.flatnonzero(states)
-        self._way = np.where(np.abs(states[free]) == 1, states[free], 0).astype(float)
-        self._slope = self._way * self._friction[free]
-        self._under = self._partner[free]
-        matrix = self._stiffness[np.ix_(free, free)]
-        tied = np.flatnonzero(self._slope)
-        if len(tied):
-            under = self._stiffness[np.ix_(self._under[tied], free)]
-            matrix[tied] += self._slope[tied, None] * under
-        self._matrix = matrix
-        if len(free):
-            self._factors, self._pivots, _ = lapack.dgetrf(matrix)
-        else:
-            self._factors, self._pivots = matrix, free
-        diagonal = np.diagonal(self._factors)
-        swaps = np.count_nonzero(self._pivots != np.arange(len(free)))
-        self.turned = bool((np.count_nonzero(diagonal < 0.0) + swaps) % 2)
-        sizes = np.abs(diagonal)
-        least = max(SINGULAR * sizes.max(initial=0.0), LOOSE * self.unit.max(initial=0.0))
-        self.singular = bool(sizes.min(initial=np.inf) <= least)
-
-    def _solve(self, right: Array) -> Array:
-        if not len(right):
-            return right
-        if self.singular:
-            return np.asarray(np.linalg.lstsq(self._matrix, right, rcond=SINGULAR)[0])
-        return np.asarray(lapack.dgetrs(self._factors, self._pivots, right)[0]).reshape(right.shape)
+    jump: Array
+    force: Array
+    strained: Array
+    motion: Array

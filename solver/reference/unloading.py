@@ -18,7 +18,8 @@ import numpy as np
 from solver.arrays import Array
 from solver.laws import OPEN
 from solver.laws.rules import Rules
-from solver.reference.states import HELD, Response, Sides, States
+from solver.reference.response import Response
+from solver.reference.states import HELD, Sides, States
 
 CHANGES = 30
 """Changes of state for each jump, at most; 11 are the most seen, with mu = 10."""
@@ -26,18 +27,16 @@ FLAT = 1e-12
 """Slope, as a share of the largest, that is none."""
 
 
-def unload(response: Response, rules: Rules, sides: Sides, before: Array) -> States | None:
+def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
     """Find states that solve an instant, or None where the walk goes off to infinity.
 
     Parameters
     ----------
     response, rules, sides
         The instant, one column.
-    before
-        Position of the jumps one instant before, shape (n,), scaled.
     """
-    walk = _Walk(response, rules, sides, before)
-    for _ in range(CHANGES * len(before)):
+    walk = _Walk(response, rules, sides)
+    for _ in range(CHANGES * len(rules.gap)):
         if walk.step():
             return walk.states
         if walk.lost:
@@ -48,16 +47,18 @@ def unload(response: Response, rules: Rules, sides: Sides, before: Array) -> Sta
 class _Walk:
     """Where the walk is: states, lambda (`_level`), and whether it goes up or down."""
 
-    def __init__(self, response: Response, rules: Rules, sides: Sides, before: Array) -> None:
-        self._response, self._rules, self._before = response, rules, before
+    def __init__(self, response: Response, rules: Rules, sides: Sides) -> None:
+        self._response, self._rules = response, rules
         # An even d would let contacts of a symmetric structure change together, and the walk lose
         # its way; multiples of the golden ratio spread it, alike in every run.
-        spread = 1.0 + np.arange(1, len(before) + 1) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
+        size = len(rules.gap)
+        spread = 1.0 + np.arange(1, size + 1) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
         raised = ~rules.normal & (rules.bound > 0.0)
+        pressed = response.on_base(np.where(rules.normal, -spread, 0.0))
         self._sides = Sides(
-            np.stack([sides.load, np.where(rules.normal, -spread, 0.0)], axis=1),
-            np.stack([sides.bound, np.where(raised, spread, 0.0)], axis=1),
-            np.stack([sides.held, np.zeros(len(before))], axis=1),
+            np.column_stack([sides.load, pressed]),
+            np.column_stack([sides.bound, np.where(raised, spread, 0.0)]),
+            np.column_stack([sides.held, np.zeros(size)]),
         )
         self.states = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
         self.lost = False
@@ -66,7 +67,7 @@ class _Walk:
 
     def step(self) -> bool:
         """Go on to the next change of state; tell whether lambda = 0 comes before it."""
-        jump, force = self._response(self.states, self._sides)
+        jump, force, *_ = self._response(self.states, self._sides)
         room, slope = self._room(jump, force)
         slope[np.abs(slope) <= FLAT * np.abs(slope).max(initial=0.0)] = 0.0
         if self._changed is not None:
@@ -85,7 +86,8 @@ class _Walk:
         self.lost = not np.isfinite(level)
         if not self.lost:
             self._level = level
-            self._change(place, side, jump[:, 0] + level * jump[:, 1])
+            moved = jump - self._sides.held
+            self._change(place, side, moved[:, 0] + level * moved[:, 1])
         return False
 
     def _room(self, jump: Array, force: Array) -> tuple[Array, Array]:
@@ -96,9 +98,7 @@ class _Walk:
         rules, states = self._rules, self.states
         room = np.full((2, len(states), 2), np.inf)
         room[1] = 0.0
-        unit = self._response.unit[:, None]
-        offset = np.stack([np.where(rules.normal, rules.gap, -self._before), 0.0 * self._before])
-        moved = (unit * (jump + offset.T)).T
+        moved = (self._response.unit * (jump - self._sides.held)).T
         bound = self._sides.bound.T + rules.friction * force[rules.partner].T
         held, opened = rules.normal & (states == HELD), rules.normal & (states == OPEN)
         stuck, slips = ~rules.normal & (states == HELD), np.abs(states) == 1
@@ -110,7 +110,7 @@ class _Walk:
         room[:, slips, 0] = (states * moved)[:, slips]
         return room[0], room[1]
 
-    def _change(self, place: int, side: int, jump: Array) -> None:
+    def _change(self, place: int, side: int, moved: Array) -> None:
         """Give a jump its next state, and remember what has to grow from zero now."""
         rules, states = self._rules, self.states
         self._changed = place, 0
@@ -124,5 +124,5 @@ class _Walk:
         opens = states[place] == HELD
         states[place] = OPEN if opens else HELD
         for rubbing in np.flatnonzero((rules.partner == place) & (rules.friction > 0.0)):
-            way = 1 if jump[rubbing] >= self._before[rubbing] else -1
+            way = 1 if moved[rubbing] >= 0.0 else -1
             states[rubbing] = OPEN if opens else way

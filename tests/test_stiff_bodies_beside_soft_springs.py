@@ -1,0 +1,201 @@
+"""A stiff body beside a soft spring, and the other way round: rigid motion hides no deformation.
+
+Balance and closed forms: solver/README.md, 9.
+"""
+
+import numpy as np
+import pytest
+from contact_problems import block
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from solver.discrete.stack_problem import discretise_stack
+from solver.latin import solve
+from solver.laws import OPEN
+from solver.reference.choice import reference_of
+from solver.reference.condensation import jumps
+from solver.reference.distance import distance_to, held_instants
+from solver.reference.self_stress import base_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.incline import InclineSettings
+from solver.study.survey_residual import kkt_residual
+
+SMALL = {"elements": 6, "elements_up": 3, "substructures": 2, "instants": 21}
+STEEL = 2.1e11
+
+
+class Slope:
+    """A slope and the forces on its block: of the ground at all nodes, and of the spring."""
+
+    def __init__(self, found, values):
+        self.angle = np.radians(values.path("slope_load"))
+        self.weight, self.mu = values.weight, values.friction
+        ground, spring = found.contact("support"), found.contact("spring")
+        self.pressing, self.rubbing = ground.normal_force, ground.tangential_force
+        self.spring, self.status = spring.normal_force[0], ground.status
+        self.down = values.weight * (np.sin(self.angle) - self.mu * np.cos(self.angle))
+        self.up = values.weight * (np.sin(self.angle) + self.mu * np.cos(self.angle))
+
+    def unbalanced(self, values):
+        """Give forces and the moment about the foot that are left over, over the weight."""
+        along = self.rubbing.sum(axis=0) + self.spring - self.weight * np.sin(self.angle)
+        across = self.pressing.sum(axis=0) - self.weight * np.cos(self.angle)
+        lever = np.linspace(0.0, values.length, len(self.pressing))
+        turning = lever @ self.pressing + 0.5 * self.weight * (
+            values.height * np.sin(self.angle) - values.length * np.cos(self.angle)
+        )
+        return np.abs([along, across, turning / values.length]).max() / self.weight
+
+
+powers = st.floats(-1.0, 1.0)
+contrasts = st.fixed_dictionaries(
+    {
+        "young": powers.map(lambda power: 10.0 ** (9.0 + 9.0 * power)),
+        "spring": powers.map(lambda power: 10.0 ** (6.0 + 12.0 * power)),
+        "slack": st.sampled_from([0.0, 2e-4, 1.0, 1e6]),
+        "friction": st.sampled_from([0.0, 0.1, 0.3, 0.6]),
+        "slope": st.sampled_from([5.0, 20.0, 40.0, 60.0]),
+        "slope_load": st.sampled_from(["triangle", "ramp", "hold"]),
+    }
+)
+
+
+@settings(derandomize=True, deadline=None, max_examples=25)
+@given(contrasts)
+def test_the_reference_holds_whatever_the_stiffness_of_body_and_spring(values):
+    values = InclineSettings.checked({**SMALL, **values})
+    problem = discretise(values)
+    found = reference_of(problem)
+    forces = Slope(found, values)
+    noise = 1e-9 * values.weight
+    assert found.converged.all()
+    assert kkt_residual(found, problem) < 1e-9
+    assert forces.unbalanced(values) < 1e-12
+    assert min(forces.pressing.min(), forces.spring.min()) >= -noise
+    most = values.friction * forces.pressing
+    assert np.all(np.abs(forces.rubbing) <= most + noise)
+    slips = (forces.status != OPEN) & (forces.status != 0)
+    against = forces.rubbing + forces.status * most
+    assert np.abs(against[slips]).max(initial=0.0) < noise
+    assert np.all(forces.spring >= forces.down - noise)
+    assert np.all(forces.spring <= np.maximum(forces.up, 0.0) + noise)
+
+
+@pytest.mark.parametrize("young", [1e10, STEEL, 1e12, 1e18])
+def test_the_spring_holds_what_friction_does_not_there_and_back(young):
+    values = InclineSettings.checked({**SMALL, "instants": 61, "young": young})
+    forces = Slope(reference_of(discretise(values)), values)
+    rising = (np.tan(forces.angle) > 0.31) & (np.arange(61) <= 30)
+    np.testing.assert_allclose(forces.spring[rising], forces.down[rising], rtol=1e-10)
+    returns = (np.arange(61) > 30) & (forces.up < 0.95 * forces.spring.max())
+    assert returns.sum() > 3
+    np.testing.assert_allclose(forces.spring[returns], forces.up[returns], rtol=1e-10)
+    waits = (np.arange(61) > 30) & (forces.up > 1.05 * forces.spring.max())
+    np.testing.assert_allclose(forces.spring[waits], forces.spring.max(), rtol=1e-4)
+
+
+HARD = {
+    "steel": {"young": STEEL},
+    "a slope of 20 degrees": {"young": STEEL, "slope": 20.0},
+    "no slack": {"young": STEEL, "slack": 0.0},
+    "no friction": {"young": STEEL, "friction": 0.0},
+    "far to slide": {"young": STEEL, "slack": 1e6},
+    "a soft spring": {"spring": 1e-6},
+    "a hard spring": {"young": STEEL, "spring": 1e18},
+    "a soft body": {"young": 1.0},
+    "a hard body": {"young": 1e18},
+}
+
+
+@pytest.mark.parametrize("case", HARD)
+def test_a_run_ends_certified_and_its_forces_balance(case):
+    values = InclineSettings.checked({**SMALL, **HARD[case]})
+    problem = discretise(values)
+    distance = distance_to(reference_of(problem), problem)
+    run = solve(problem, values, distance=distance)
+    assert run.is_certified
+    assert run.records[-1].error_force < 1e-9
+    assert run.records[-1].error_displacement < 1e-9
+    assert Slope(run.iterate, values).unbalanced(values) < 1e-12
+
+
+def test_forces_are_those_of_a_body_and_a_spring_that_are_both_so_much_stiffer():
+    same = [
+        reference_of(
+            discretise(
+                InclineSettings.checked(
+                    {**SMALL, "young": 1e7 * size, "spring": 2e6 * size, "weight": 1e3 * size}
+                )
+            )
+        )
+        for size in (1.0, 1e9)
+    ]
+    soft, hard = same
+    np.testing.assert_allclose(hard.contact_force, 1e9 * soft.contact_force, atol=1e-3)
+    np.testing.assert_allclose(hard.displacement, soft.displacement, atol=1e-14)
+
+
+def test_nothing_says_where_a_block_without_friction_lies_on_level_ground():
+    values = InclineSettings.checked({**SMALL, "friction": 0.0})
+    problem = discretise(values)
+    found = reference_of(problem)
+    held = held_instants(problem, found.contact_force)
+    level = values.path("slope_load") == 0.0
+    assert np.array_equal(held, ~level)
+    assert level.sum() == 2
+    distance = distance_to(found, problem)
+    for instant in (20, 10):
+        field = found.displacement.copy()
+        field[:, instant] += 1e-4
+        fields = type(found)(**{**vars(found), "displacement": field})
+        assert (distance.of_displacement(fields) == 0.0) == level[instant]
+    assert held_instants(discretise(InclineSettings.checked(SMALL)), found.contact_force)[0]
+
+
+@pytest.mark.parametrize("stiffness", [1e-3, 1.0, 1e9])
+@pytest.mark.parametrize(
+    ("scene", "changes"),
+    [
+        (
+            "block",
+            {
+                "gap": "flat",
+                "top": "traction",
+                "top_normal_traction": -1e8,
+                "top_tangential_traction": 2e7,
+                "elements_up": 3,
+            },
+        ),
+        ("strand", {}),
+        ("layers", {"elements_up": 1, "layers": 3}),
+    ],
+)
+def test_contacts_that_give_way_hold_bodies_however_softly(scene, changes, stiffness):
+    law = {"friction_law": "compliant", "contact_stiffness": stiffness}
+    sizes = {"elements": 8, "substructures": 2, "instants": 13}
+    problem = discretise(CATALOGUE[scene].settings.checked({**sizes, **law, **changes}))
+    found = reference_of(problem)
+    assert found.converged.all()
+    assert kkt_residual(found, problem) < 1e-10
+
+
+def test_a_body_that_contact_alone_holds_has_three_rigid_motions_and_a_held_one_none():
+    problem = discretise(InclineSettings.checked(SMALL))
+    assert problem.motions.shape[1] == 3
+    strained = [
+        np.abs(part.elasticity.stiffness @ problem.motions[part.dofs]).max()
+        for part in problem.substructures
+    ]
+    assert max(strained) < 1e-13
+    assert discretise(CATALOGUE["block"].settings.checked({})).motions is None
+    two = discretise_stack(block(bodies=2, elements=(4, 2), cuts=(1, 1), height=0.3))
+    assert two.motions.shape[1] == 6
+
+
+def test_a_spring_on_a_node_that_rubs_follows_from_what_rubs():
+    problem = discretise(InclineSettings.checked(SMALL))
+    own = jumps(problem)
+    rigid = np.arange(own.shape[0]) < own.shape[0] - 2
+    base, ties = base_of(own, rigid)
+    assert np.array_equal(base, np.flatnonzero(rigid))
+    assert abs(ties @ own[base] - own).max() == 0.0
