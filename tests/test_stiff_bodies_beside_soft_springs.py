@@ -18,6 +18,7 @@ from solver.reference.distance import distance_to, held_instants
 from solver.reference.self_stress import base_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings
+from solver.scenes.method import method_of
 from solver.study.survey_residual import kkt_residual
 
 SMALL = {"elements": 6, "elements_up": 3, "substructures": 2, "instants": 21}
@@ -112,7 +113,7 @@ def test_a_run_ends_certified_and_its_forces_balance(case):
     values = InclineSettings.checked({**SMALL, **HARD[case]})
     problem = discretise(values)
     distance = distance_to(reference_of(problem), problem)
-    run = solve(problem, values, distance=distance)
+    run = solve(problem, method_of(values), distance=distance)
     assert run.is_certified
     assert run.records[-1].error_force < 1e-9
     assert run.records[-1].error_displacement < 1e-9
