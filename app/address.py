@@ -74,6 +74,10 @@ SIGHT: dict[str, Any] = {
 NUMBERS = ("instant", "iteration")
 PLOTS = "plots"
 PLOT = choice(CATALOGUE[0].name, [view.name for view in CATALOGUE], "", group="", title="")
+LEFT_OUT = "file"
+"""Names in an address a setting that has no room there: its table is too long."""
+LONGEST_VALUE = 1500
+"""Characters of a value in an address; mail, chat and proxies cut what is much longer."""
 COMPARED = "compare"
 """Name in an address of what run A has other than the run at work, B, as a JSON object."""
 
@@ -125,6 +129,9 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
     values, refused = {}, []
     for name, text in pairs.items():
         if name in SIGHT or name in (CLASS, COMPARED, PLOTS, VARY, OF):
+            continue
+        if name == LEFT_OUT:
+            refused.append(f"{shorten(text, LONGEST_NAME)} is too long for it: open its file")
             continue
         if name not in definitions:
             refused.append(f"there is no setting {shorten(name, LONGEST_NAME)}")
@@ -229,12 +236,25 @@ def query_of(
     lesson = LESSONS.get(sight.lesson)
     pairs = [(CLASS, room.code)] if room else [] if lesson else [("scene", settings.scene)]
     if room is None:
+        long = left_out(settings, twin)
         changed = settings.changed(lesson.settings if lesson else None)
-        pairs += [(name, json.dumps(value)) for name, value in changed.items()]
+        pairs += [(name, json.dumps(value)) for name, value in changed.items() if name not in long]
         apart = changes_of(twin, settings) if twin else {}
+        apart = {name: value for name, value in apart.items() if name not in long}
         pairs += [(COMPARED, json.dumps(apart, separators=(",", ":")))] if twin else []
+        pairs += [(LEFT_OUT, ", ".join(long))] if long else []
     usual = {**asdict(_first_sight(sight.lesson)), "lesson": ""}
     looked_at = asdict(sight).items()
     pairs += [(name, str(value)) for name, value in looked_at if value != usual[name]]
     pairs += question.pairs() if question else []
     return "?" + "&".join(f"{name}={quote(text)}" for name, text in pairs)
+
+
+def left_out(settings: Settings, twin: Settings | None = None) -> list[str]:
+    """Name the settings whose values are too long for an address."""
+    runs = [one.values() for one in (settings, twin) if one is not None]
+    return [name for name in settings.values() if any(_is_long(values[name]) for values in runs)]
+
+
+def _is_long(value: object) -> bool:
+    return isinstance(value, tuple) and len(json.dumps(value[:LONGEST_VALUE])) > LONGEST_VALUE

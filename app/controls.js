@@ -51,9 +51,9 @@ function controls(model) {
       // What is no number is refused as any other value, in the same words.
       tell(row, text && Number.isFinite(value) ? value : text)
     }
-    row.show = (value) => {
-      start = Math.min(start, value)
-      end = Math.max(end, value)
+    row.show = (value, most = item.end) => {
+      start = Math.min(item.start, value)
+      end = Math.max(Math.min(item.end, most), value)
       range.min = place(start)
       range.max = place(end)
       // Between two whole numbers a logarithmic slider would never leave the lower one.
@@ -85,7 +85,8 @@ function controls(model) {
       if (rows.every((one) => one.every(Number.isFinite))) { tell(row, rows) }
     }
     const drawn = drawn_points(item, send)
-    const points = make("div", {}, drawn.picture, make("div", {className: "points"}, table))
+    const told = make("p"), listed = make("div", {className: "points"}, table)
+    const points = make("div", {}, drawn.picture, listed, told)
     const number = (value) => make("input", {
       type: "number", step: "any", required: true, value, onchange: () => send(read()),
     })
@@ -105,10 +106,12 @@ function controls(model) {
       button("−", "Take this row away", () => taken(place)),
     ].map((one) => make("td", {}, one)))
     row.show = (value) => {
-      const own = Array.isArray(value) ? value : []
-      show(own.length ? item.options.at(-1)[1] : value)
-      points.hidden = !own.length
-      drawn.show(own)
+      const long = value.count, own = Array.isArray(value) ? value : []
+      show(own.length || long ? item.options.at(-1)[1] : value)
+      points.hidden = !own.length && !long
+      listed.hidden = Boolean(long)
+      told.textContent = long ? `${long} points. Change them in their file.` : ""
+      drawn.show(long ? value.drawn : own, Boolean(long))
       if (JSON.stringify(read()) !== JSON.stringify(own)) {
         body.replaceChildren(...own.map(line))
       }

@@ -14,8 +14,10 @@ export function render({model}) {
   }
   const share = (row, item) => {
     const text = (bytes) => {
-      try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) }
-      catch { return null }
+      try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) } catch {}
+      // Spreadsheets write letters as old Windows did; no text has zeros.
+      const isText = !new Uint8Array(bytes).includes(0)
+      return isText ? new TextDecoder("windows-1252").decode(bytes) : null
     }
     const upload = named(item, make("input", {type: "file", accept: ".toml,.csv"}))
     upload.onchange = async () => {
@@ -77,7 +79,7 @@ export function render({model}) {
     const obeyed = model.shown[""]
     for (const [name, row] of rows) {
       row.box.hidden = !(name in model.shown)
-      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name]) }
+      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name], model.shown["the-ends"]?.[name]) }
     }
     for (const head of heads) { head.hidden = head.rows.every((box) => box.hidden) }
   }

@@ -17,6 +17,10 @@ from solver.definitions import Curve, Parameter, about
 
 POINTS, USUAL = "table of points", "usual value"
 """What stands for values that the browser does not know."""
+ENDS = "the-ends"
+"""Among what is shown, the largest value that other settings leave to a slider, by its name."""
+MOST_LISTED = 200
+"""Points that a table on the page has; of more there is a drawing."""
 STYLE = """
 :host { font-size: 14px; line-height: 1.4; }
 h4 { margin: 14px 0 2px; font-size: 12px; font-weight: 400; letter-spacing: 0.08em;
@@ -70,6 +74,19 @@ class Form(Plain):
 
     _esm = script("values.js", "points.js", "controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
+
+
+def shown_value(value: Any) -> Any:
+    """Give a setting's value as its control shows it: of a long table the ups and downs."""
+    if not isinstance(value, tuple) or len(value) <= MOST_LISTED:
+        return value
+    size = math.ceil(2 * len(value) / MOST_LISTED)
+    parts = [value[at : at + size] for at in range(0, len(value), size)]
+    ends = [
+        {min(part, key=lambda pair: pair[1]), max(part, key=lambda pair: pair[1])} for part in parts
+    ]
+    drawn = [value[0], *(pair for part in ends for pair in sorted(part)), value[-1]]
+    return {"count": len(value), "drawn": drawn}
 
 
 def item_of(name: str, definition: Parameter) -> dict[str, Any] | None:

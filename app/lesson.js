@@ -149,7 +149,7 @@ export function render({model}) {
     const obeyed = model.shown[""]
     for (const [name, row] of rows) {
       row.box.hidden = !(name in model.shown)
-      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name]) }
+      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name], model.shown["the-ends"]?.[name]) }
     }
   }
   const fill = () => {

@@ -6,7 +6,7 @@ from typing import Any
 
 import panel as pn
 
-from app.address import PACES, Sight, query_of
+from app.address import PACES, Sight, left_out, query_of
 from app.classroom import Room
 from app.pulse import Pulse
 from app.question import Question
@@ -16,10 +16,12 @@ from app.stage import Stage
 from app.teaching import Teaching
 from app.whatif import WhatIf
 from app.worker.reports import Facts
+from solver.definitions import about
 from solver.settings import Settings
 
 Standing = tuple[Settings, Sight, Room | None, Settings | None, Question | None]
 COPIED = "Copied: the link to what stands here."
+WITHOUT = "It leaves out what is too long for a link: {}. Save gives a file that has all."
 REFUSED = "Not copied, as the browser does not let the page: take the link from the address bar."
 
 
@@ -57,7 +59,7 @@ class PageLink:
         self._session, self._pulse, self._stage = session, pulse, stage
         self._tab, self._sidebar, self._teaching, self._what_if = tab, sidebar, teaching, what_if
         self._stood: Standing | None = None
-        pulse.param.watch(lambda event: _tell(is_done=event.new > 0), "copied")
+        pulse.param.watch(lambda event: self._tell(is_done=event.new > 0), "copied")
 
     def follow(self) -> None:
         """Have the address say where the page stands."""
@@ -68,6 +70,19 @@ class PageLink:
         """Copy the link; the page says so once it is done."""
         self.follow()
         self._pulse.copy += 1
+
+    def _tell(self, *, is_done: bool) -> None:
+        if (notes := pn.state.notifications) is None:
+            return
+        wanted = self._session.wanted
+        names = left_out(wanted, self._session.twin)
+        if not is_done:
+            notes.error(REFUSED, duration=8000)
+        elif names:
+            titles = ", ".join(about(wanted.definitions()[name]).title for name in names)
+            notes.warning(f"{COPIED} {WITHOUT.format(titles)}", duration=8000)
+        else:
+            notes.success(COPIED, duration=3000)
 
     def _stands(self) -> Standing:
         session = self._session
@@ -90,12 +105,3 @@ def waits_at(facts: Facts | None, *, goes_on: bool) -> int:
         return 0
     is_last = facts.iteration == facts.done
     return 0 if is_last and (goes_on or facts.is_over) else facts.iteration
-
-
-def _tell(*, is_done: bool) -> None:
-    if (notes := pn.state.notifications) is None:
-        return
-    if is_done:
-        notes.success(COPIED, duration=3000)
-    else:
-        notes.error(REFUSED, duration=8000)

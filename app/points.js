@@ -10,7 +10,7 @@ function drawn_points(item, send) {
   const help = "Drag a point; double click adds one, or takes it away."
   picture.append(make("title"))
   picture.firstChild.textContent = help
-  let points = [], limits = [0, 1, 0, 1], held = null, moved = false
+  let points = [], limits = [0, 1, 0, 1], held = null, moved = false, fixed = false
   const across = (x) => ROOM + (WIDE - 2 * ROOM) * (x - limits[0]) / (limits[1] - limits[0])
   const up = (y) => TALL - ROOM - (TALL - 2 * ROOM) * (y - limits[2]) / (limits[3] - limits[2])
   const place = (event) => {
@@ -37,7 +37,7 @@ function drawn_points(item, send) {
       points: points.map(([x, y]) => `${across(x)},${up(y)}`).join(" "),
       fill: "none", stroke: "#C24E00", "stroke-width": 2,
     })
-    const dots = points.map(([x, y], number) => {
+    const dots = (fixed ? [] : points).map(([x, y], number) => {
       const dot = make("circle", {cx: across(x), cy: up(y), r: 6, fill: "#C24E00"})
       dot.append(make("title"))
       dot.firstChild.textContent = `${item.columns[0]}: ${short(x)}, ${item.columns[1]}: ${short(y)}`
@@ -68,6 +68,7 @@ function drawn_points(item, send) {
     if (moved) { send(points) }
   }
   picture.ondblclick = (event) => {
+    if (fixed) { return }
     const [x, y] = place(event)
     const near = points.findIndex(
       (point) => Math.hypot(across(point[0]) - across(x), up(point[1]) - up(y)) < ROOM)
@@ -76,8 +77,11 @@ function drawn_points(item, send) {
       if (points.length > 1) { send(points.toSpliced(near, 1)) }
     } else if (after > 0) { send(points.toSpliced(after, 0, [short(x), short(y)])) }
   }
-  const show = (wanted) => {
+  // Of a table that is too long to be changed here, some points are shown.
+  const show = (wanted, isLong) => {
     if (held !== null) { return }
+    fixed = isLong
+    picture.firstChild.textContent = fixed ? "" : help
     points = wanted.map((point) => [...point])
     if (points.length) {
       measure()

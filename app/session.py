@@ -15,6 +15,7 @@ from app.inquiry import Inquiry
 from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
 from app.labels import changes_of, label_of
 from app.pages import Pages
+from app.uploads import cut_off
 from app.worker.bench import Bench
 from app.worker.block import said
 from app.worker.link import Link
@@ -279,6 +280,7 @@ class Session:
 
     def _work(self, *, notice: str = "", **how: bool) -> None:
         """Have a process do the run from its beginning."""
+        again = AGAIN if self.keeper.deaths else notice
         self.keeper.begin(Watch(self.look), Ready())
         self.keeper.send(
             Run(
@@ -286,7 +288,7 @@ class Session:
                 self.settings.scene,
                 self.settings.values(),
                 label=self._label,
-                notice=AGAIN if self.keeper.deaths else notice,
+                notice=" ".join(filter(None, (again, cut_off(self.settings)))),
                 pace=None if self.follows_hand else self.pace,
                 pause_after=None if self._is_free else 1,
                 is_held=self.is_held,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from app.comparing import choice_of, pair
-from app.form import POINTS, USUAL, Form
+from app.form import ENDS, POINTS, USUAL, Form, shown_value
 from app.items import (
     CLASS,
     COMPARE,
@@ -21,13 +21,14 @@ from app.items import (
     WARM,
     items,
 )
+from app.refusals import last_that_holds, refused
 from app.report import Report
 from app.session import Session
 from app.uploads import load_in, saved
 from app.views.catalogue import VIEWS as ALL_VIEWS
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
-from solver.scenes import points_of
+from solver.scenes import ends_of, points_of
 from solver.settings import Settings
 
 
@@ -40,8 +41,8 @@ class Sidebar:
         Is told what the user changes.
     rearrange
         Called when settings or the choice of views have changed.
-    complain
-        Tells the user what was refused and why.
+    complain, tell
+        Tell the user what was refused and why, until nothing is; and what was done.
     copy
         Copies the page's address.
     teach
@@ -64,12 +65,13 @@ class Sidebar:
         session: Session,
         rearrange: Callable[[], None],
         complain: Callable[[str], None],
+        tell: Callable[[str], None],
         copy: Callable[[], None],
         teach: Callable[[str], None],
     ) -> None:
         self._session = session
         self._rearrange = rearrange
-        self._complain = complain
+        self._complain, self._tell = complain, tell
         self._copy = copy
         self._teach = teach
         self.lesson = ""
@@ -79,6 +81,7 @@ class Sidebar:
         self.named = False
         self._asked: dict[str, Any] = {}
         self._in_hand: set[str] = set()
+        self._ends: set[str] = set()
         self._has_obeyed = False
         self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
@@ -92,7 +95,7 @@ class Sidebar:
             if self.report is None
             else self.report.acting()
         )
-        values = {name: getattr(settings, name) for name in acting}
+        values = {name: shown_value(getattr(settings, name)) for name in acting}
         wanted = [name for name in self._views if name not in self._unwanted]
         own = {
             SCENE: settings.scene,
@@ -102,9 +105,10 @@ class Sidebar:
             VIEWS: [self._views, wanted],
             SHARE: None,
             "": self._answered,
+            ENDS: ends_of(settings),
         }
         if self.report is not None:
-            kept = {SCENE, SHARE, ""} if acting else {SHARE, ""}
+            kept = {SCENE, SHARE, ENDS, ""} if acting else {SHARE, ""}
             own = {NOTE: self.report.note, **{name: own[name] for name in kept}}
         changes: dict[str, Any] = {"shown": {**values, **own}}
         # Param takes longer to compare the controls with themselves than to pass on the values.
@@ -144,13 +148,33 @@ class Sidebar:
         """Make the changes that were asked for since the last one; to be called at every tick."""
         asked, self._asked = self._asked, {}
         self._has_obeyed, self._answered = bool(asked), self._heard
-        for name, value in asked.items():
-            try:
-                self._session.change(name, value, by_hand=name in self._in_hand)
-            except SettingError as refusal:
-                self._complain(str(refusal))
+        said = [self._change(name, value) for name, value in asked.items()]
+        if asked and None not in said:
+            self._complain(" ".join(filter(None, said)))
         if asked:
             self._after_change()
+
+    def _change(self, name: str, value: Any) -> str | None:
+        """Change a setting; say why not, or nothing if that was said already.
+
+        A slider that is dragged beyond what holds goes as far as it can.
+        """
+        session, by_hand = self._session, name in self._in_hand
+        try:
+            session.change(name, value, by_hand=by_hand)
+        except SettingError as refusal:
+            words = refused(refusal, session.wanted, name, value)
+        else:
+            self._ends.discard(name)
+            return ""
+        if name in self._ends:
+            return None
+        if by_hand:
+            self._ends.add(name)
+            end = last_that_holds(session.wanted, name, value)
+            if end is not None:
+                session.change(name, end, by_hand=True)
+        return words
 
     def offer(self, views: Sequence[str]) -> list[str]:
         """Offer these views, and give those of them that are wanted."""
@@ -182,7 +206,7 @@ class Sidebar:
             self._session.twin, settings = pair(choice, self._session.wanted)
             self._session.start(settings)
         except SettingError as refusal:
-            self._complain(str(refusal))
+            self._complain(refused(refusal, self._session.wanted))
         self._after_change()
 
     def _on_share(self, value: Any) -> None:
@@ -204,6 +228,7 @@ class Sidebar:
         """Follow the end of a drag."""
         self._in_hand.discard(name)
         self.obey()
+        self._ends.discard(name)
         self._session.let_go()
         # A slider whose move was refused waits for the answer to this, its last message.
         self.show(self._session.wanted)
@@ -220,6 +245,7 @@ class Sidebar:
 
     def _adopt(self, settings: Settings) -> None:
         self.obey()
+        self._complain("")
         self._session.adopt(settings)
         self._after_change()
 
@@ -232,10 +258,14 @@ class Sidebar:
         if text is None:
             self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
             return
+        settings = self._session.wanted
         try:
             if filename.endswith(".toml"):
                 self._adopt(settings_from_toml(text))
             else:
-                self._on_setting(*load_in(text, filename, self._session.wanted))
+                found, said = load_in(text, filename, settings)
+                self._adopt(found)
+                self._tell(said)
         except SettingError as refusal:
-            self._complain(str(refusal))
+            is_settings = filename.endswith(".toml")
+            self._complain(str(refusal) if is_settings else refused(refusal, settings))

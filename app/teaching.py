@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import param
 
 from app.classroom import Room
-from app.form import STYLE
+from app.form import ENDS, STYLE
 from app.innards import Plain
 from app.lesson import LESSONS, NO_CHOICE, OFFERED, content, readings
 from app.panes import script
@@ -245,5 +245,5 @@ class Teaching:
     def _show(self) -> None:
         """Show on the lesson's controls what those of the sidebar show."""
         holds = self._sidebar.view.shown
-        names = ("", *self.lesson.controls) if self.lesson else ()
+        names = ("", ENDS, *self.lesson.controls) if self.lesson else ()
         self.view.shown = {name: holds[name] for name in names if name in holds}

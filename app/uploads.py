@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 from solver.checked import dump
-from solver.definitions import Curve, SettingError
+from solver.definitions import Curve, SettingError, about
+from solver.files import ends_of_tables
 from solver.settings import Settings
-from solver.tables import read_table
+from solver.tables import heads_of, read_table
 
 WARM_NOTE = """\
 # The run on the page started from the solution of the run before it, so its iterations and times
@@ -19,8 +22,10 @@ def saved(settings: Settings, *, was_warm: bool) -> str:
     return (WARM_NOTE if was_warm else "") + dump(settings)
 
 
-def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[float]]]:
+def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
     """Read a table for the load path that its head names, or for the only one that applies.
+
+    The run then lasts until the last table ends.
 
     Parameters
     ----------
@@ -31,7 +36,7 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[
 
     Returns
     -------
-    Name of the setting, and its points.
+    The settings with it, and what to say of that.
 
     Raises
     ------
@@ -53,8 +58,8 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[
             "a load path, of which none applies",
             "have a side displaced or loaded first",
         )
-    head = [cell.strip() for cell in text.lstrip().partition("\n")[0].split(",")]
-    chosen = [name for name in paths if len(paths) == 1 or name in head]
+    heads = heads_of(text)
+    chosen = [name for name in paths if len(paths) == 1 or name in heads]
     if len(chosen) != 1:
         raise SettingError(
             "the table",
@@ -63,4 +68,26 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[str, list[list[
             f"name the one in its first line, as in time,{next(iter(paths))}",
         )
     (name,) = chosen
-    return name, read_table(text, paths[name], name, source)
+    found = settings.replace(**{name: read_table(text, paths[name], name, source)})
+    ends = max(ends_of_tables(found).values())
+    found = found.replace(duration=ends) if ends > 0.0 else found
+    return found, _said_of(found, name)
+
+
+def cut_off(settings: Settings) -> str:
+    """Say which tables go on after the run has ended, or nothing."""
+    duration, definitions = settings.values().get("duration", math.inf), settings.definitions()
+    return " ".join(
+        f"{about(definitions[name]).title} goes on to {end:g} s, but the run ends at {duration:g}"
+        " s."
+        for name, end in ends_of_tables(settings).items()
+        if end > duration
+    )
+
+
+def _said_of(settings: Settings, name: str) -> str:
+    """Say what a table has become, and what a run does not see of it."""
+    values = settings.values()
+    points, title = len(values[name]), about(settings.definitions()[name]).title
+    said = f"{title}: {points:,} points. The run lasts {values['duration']:g} s".replace(",", " ")
+    return f"{said}, and reads them at {values['instants']} instants."

@@ -84,23 +84,32 @@ def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
 
 def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
     """Say what of these settings a run does not heed: idle ones, and load tables that go on."""
-    definitions, idle = settings.definitions(), settings.usual("paper")
+    idle = settings.usual("paper")
     found = [
         f"{name} does nothing with the other settings as they are"
         for name in dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
         if not settings.applies(name) and getattr(settings, name) != idle[name]
     ]
-    duration = settings.values().get("duration")
-    for name, value in settings.values().items():
-        definition = definitions[name]
-        if not isinstance(definition, Curve) or definition.abscissa != "time":
-            continue
-        if isinstance(value, tuple) and settings.applies(name) and value[-1][0] > duration:
-            found.append(
-                f"{name} goes on to {value[-1][0]:g} s, but the run ends at {duration:g} s: "
-                f"set duration={value[-1][0]:g} to run all of it"
-            )
-    return found
+    duration = settings.values().get("duration", math.inf)
+    return found + [
+        f"{name} goes on to {end:g} s, but the run ends at {duration:g} s: "
+        f"set duration={end:g} to run all of it"
+        for name, end in ends_of_tables(settings).items()
+        if end > duration
+    ]
+
+
+def ends_of_tables(settings: Settings) -> dict[str, float]:
+    """Give the last time, s, of every load path that is a table, by the name of its setting."""
+    values = settings.values()
+    return {
+        name: values[name][-1][0]
+        for name, definition in settings.definitions().items()
+        if isinstance(definition, Curve)
+        and definition.abscissa == "time"
+        and isinstance(values[name], tuple)
+        and settings.applies(name)
+    }
 
 
 def scene_settings(scene: object) -> type[Settings]:

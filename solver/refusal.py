@@ -13,7 +13,8 @@ class RefusedError(ValueError):
         shown = json.dumps(value, default=str)
         shown = shown if len(shown) <= 60 else shown[:57] + "..."
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
-        self.name = name
+        self.name, self.value = name, value
+        self.allowed, self.remedy = allowed, remedy
 
 
 def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
+import param
 import pytest
 from lone_link import LoneLink
 
-from app.form import POINTS, USUAL, item_of
+from app.form import ENDS, POINTS, USUAL, item_of
 from app.pages import Pages
+from app.refusals import refused
 from app.session import Session
 from app.sidebar import Sidebar
 from app.worker.bench import Bench
-from solver.definitions import Curve
+from solver.definitions import Curve, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
@@ -23,7 +26,9 @@ TABLE = [(0.0, 0.0), (1.0, 500.0)]
 def sidebar() -> Sidebar:
     settings = BarSettings.checked({"method": "paper", "load": TABLE})
     session = Session(Pages(1), Bench(), settings, LoneLink().hire)
-    made = Sidebar(session, lambda: None, lambda text: None, lambda: None, lambda name: None)
+    made = Sidebar(
+        session, lambda: None, lambda text: None, lambda text: None, lambda: None, lambda name: None
+    )
     made.show(settings)
     return made
 
@@ -41,10 +46,10 @@ def test_a_refused_edit_is_answered_with_what_holds(sidebar: Sidebar) -> None:
     assert edited(sidebar, [[0, 0], [0, 500]]) == tuple(TABLE)
 
 
-def test_a_slider_that_was_refused_is_answered_when_it_is_let_go(sidebar: Sidebar) -> None:
+def test_a_slider_beyond_its_end_is_answered_with_that_when_it_is_let_go(sidebar: Sidebar) -> None:
     sidebar.hear("substructures", 51, True, 1)
     sidebar.hear("substructures", None, False, 2)
-    assert (sidebar.view.shown["substructures"], sidebar.view.shown[""]) == (10, 2)
+    assert (sidebar.view.shown["substructures"], sidebar.view.shown[""]) == (50, 2)
 
 
 def test_what_is_brought_back_has_the_value_of_its_method(sidebar: Sidebar) -> None:
@@ -63,8 +68,68 @@ def test_a_word_in_place_of_a_number_is_refused(sidebar: Sidebar) -> None:
     sidebar.hear("pressure", "many", False, 1)
     sidebar.obey()
     (words,) = told
-    assert words.startswith('pressure = "many" is refused; allowed: a number from')
+    said = "Pressure p cannot be “many”: write a number. Allowed: a number from 0 to 1e+15 N/m."
+    assert words == said
     assert sidebar.view.shown["pressure"] == 5000.0
+    sidebar.hear("pressure", 6000.0, False, 2)
+    sidebar.obey()
+    assert told[1:] == [""], "it is told until the value is right"
+
+
+def strand(told: list[str]) -> Sidebar:
+    settings = CATALOGUE["strand"].settings.checked({})
+    session = Session(Pages(1), Bench(), settings, LoneLink().hire)
+    made = Sidebar(
+        session, lambda: None, told.append, lambda text: None, lambda: None, lambda name: None
+    )
+    made.show(settings)
+    return made
+
+
+def test_what_was_moved_is_refused_and_not_what_it_does_not_go_with() -> None:
+    told: list[str] = []
+    strand(told)._on_setting("friction", 0.01)
+    assert told[0].startswith("Friction coefficient μ cannot be 0.01 while Peak tension is 600. ")
+    assert "peak =" not in told[0]
+
+
+def test_a_slider_that_is_dragged_ends_where_values_do() -> None:
+    told: list[str] = []
+    sidebar = strand(told)
+    sidebar._on_setting("friction", 0.0, by_hand=True)
+    end = sidebar._session.wanted.friction
+    assert 0.0 < end < 0.3
+    with pytest.raises(SettingError):
+        sidebar._session.wanted.with_change("friction", end - 0.02)
+    sidebar.obey()
+    sidebar._on_setting("friction", 0.005, by_hand=True)
+    sidebar.obey()
+    assert sidebar._session.wanted.friction == end
+    assert len(told) == 1, "told once a drag"
+    sidebar._on_setting("friction", 0.5, by_hand=True)
+    assert (sidebar._session.wanted.friction, told[1:]) == (0.5, [""])
+
+
+def test_a_number_of_parts_ends_where_there_are_no_more() -> None:
+    sidebar = strand([])
+    assert sidebar.view.shown[ENDS]["broken"] == 3
+    sidebar._on_setting("wires", 7)
+    assert sidebar.view.shown[ENDS]["broken"] == 7
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_no_refusal_has_words_that_only_files_have(scene: str) -> None:
+    settings = CATALOGUE[scene].settings.checked({})
+    for name, definition in settings.definitions().items():
+        if isinstance(definition, param.Boolean):
+            continue
+        for value in ("abc", -1e99, [[0, 0], [0, 1]], None):
+            try:
+                settings.with_change(name, value)
+            except SettingError as refusal:
+                words = refused(refusal, settings, name, value)
+                assert words.startswith(about(definition).title)
+                assert not re.search(r'"|\b[a-z]+_[a-z]+\b|true|\[\[', words), words
 
 
 def test_an_edit_that_is_taken_stays(sidebar: Sidebar) -> None:

@@ -17,7 +17,7 @@ from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.scenes.base import LARGEST_FIELD
-from solver.tables import resolve
+from solver.tables import read_table, resolve
 
 ANY = settings(
     derandomize=True, deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow]
@@ -223,6 +223,22 @@ def test_a_csv_may_have_quoted_names_in_capitals_and_empty_lines(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "0;0\n0,5;1200\n",
+        "Zeit [s];Kraft [kN]\n0,0;0\n0,5;1,2\n",
+        "t\tF\n0\t0\n0.5\t1.2e3\n",
+        "Bench 3, second try\ntime (ms),force / N\n0,0\n500,1200\n",
+        "t;F\ns;kN\n\n0;0\n0,5;1,2\n;\n",
+    ],
+    ids=repr,
+)
+def test_a_csv_is_read_as_spreadsheets_write_it_with_its_units(text):
+    found = read_table(text, DEFINITIONS["load"], "load", "load.csv")
+    assert found == [[0.0, 0.0], [0.5, 1200.0]]
+
+
+@pytest.mark.parametrize(
     ("rows", "remedy"),
     [
         ("", "no points"),
@@ -233,7 +249,11 @@ def test_a_csv_may_have_quoted_names_in_capitals_and_empty_lines(tmp_path):
         ("0,0\n1,2,3\n", "line 2"),
         ("0,0\n1,much\n", "line 2"),
         ("force,time\n0,0\n", "line 1"),
-        ("0;0\n1;1\n", "line 1"),
+        ("0;0\n0,5;1.5\n", "line 2"),
+        ('0,0\n1,"1,000"\n', "line 2"),
+        ("time (min),force (N)\n0,0\n", "line 1 says min: give it in s"),
+        ("time;force\ns;lbf\n0;0\n", "line 2 says lbf: give it in N"),
+        ("much,1\n1,1\n", "line 1"),
         ("0,0\n1,nan\n", "row 2"),
         ("0,0\n1,inf\n", "row 2"),
         ("1,0\n0,0\n", "must increase"),

@@ -31,7 +31,9 @@ def session() -> Iterator[Session]:
 
 @pytest.fixture
 def sidebar(session: Session) -> Sidebar:
-    made = Sidebar(session, lambda: None, lambda text: None, lambda: None, lambda name: None)
+    made = Sidebar(
+        session, lambda: None, lambda text: None, lambda text: None, lambda: None, lambda name: None
+    )
     made.show(BAR)
     return made
 

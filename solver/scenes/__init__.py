@@ -93,6 +93,12 @@ def points_of(settings: Settings, name: str) -> Pairs:
     return settings.points(name)
 
 
+def ends_of(settings: Settings) -> Mapping[str, int]:
+    """Give the largest numbers of parts that other settings leave, by the name of their setting."""
+    assert isinstance(settings, SceneSettings)
+    return settings.ends
+
+
 def behind(settings: Settings) -> Mapping[str, str]:
     """Name the settings that place or scale what acts on a scene, by what they are behind."""
     assert isinstance(settings, SceneSettings)

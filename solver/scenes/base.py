@@ -95,6 +95,11 @@ class SceneSettings(Settings):
                 changes[part] = max(value, self.definitions()[part].bounds[0])
         return self.replace(**changes)
 
+    @property
+    def ends(self) -> dict[str, int]:
+        """Largest numbers of parts that there are to deal out, by the name of their setting."""
+        return {part: getattr(self, whole) for part, whole in self.PARTS.items()}
+
     def check_together(self) -> None:
         """Refuse more parts than there is to deal out, and fields beyond memory."""
         own: Any = self
