@@ -217,11 +217,10 @@ def complaint_of(refused: list[str]) -> str:
 
 
 def class_from_query(query: str) -> tuple[Room | None, str]:
-    """Find the class that an address names; with what was refused, or nothing."""
-    code = dict(parse_qsl(query.lstrip("?"))).get(CLASS, "")
+    """Find the class that an address names; with its code if there is none at present."""
+    code = dict(parse_qsl(query.lstrip("?"))).get(CLASS, "").strip()
     room = ROOMS.find(code)
-    missing = [f"there is no class {shorten(code, LONGEST_NAME)} at present: ask for its code"]
-    return room, complaint_of(missing if code and room is None else [])
+    return room, code if room is None else ""
 
 
 def query_of(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import secrets
+
 from app.classroom import ROOMS, Poll, Room
 from app.keeper import Hire, Keeper
 from app.worker.reports import Picture
@@ -20,18 +22,24 @@ class Attendance:
 
     Attributes
     ----------
-    leads, follows
-        The class that sees what this page shows, and the one whose pictures it shows.
+    follows
+        The class whose pictures this page shows.
     left
         The class that was followed last, and may be again.
     """
 
     def __init__(self, keeper: Keeper, hire: Hire) -> None:
-        self.leads: Room | None = None
+        self._leads: Room | None = None
         self.follows: Room | None = None
         self.left: Room | None = None
         self._keeper = keeper
         self._hire = hire
+
+    @property
+    def leads(self) -> Room | None:
+        """The class that sees what this page shows; another page may have taken it over."""
+        led = self._leads
+        return led if led is not None and led.is_led_by(self) else None
 
     @property
     def poll(self) -> Poll | None:
@@ -45,13 +53,35 @@ class Attendance:
 
     def lead(self, settings: Settings) -> None:
         """Begin a class."""
-        self.leads = self.leads or ROOMS.open(settings)
+        if self.leads is None:
+            self._leads = ROOMS.open(settings)
+            self._leads.lead(self)
+
+    def resume(self, ticket: str) -> bool:
+        """Lead a class again by what `ticket` gave before the page was loaded anew; tell."""
+        code, _, key = ticket.partition(" ")
+        room = ROOMS.find(code)
+        if room is None or not secrets.compare_digest(room.key.encode(), key.encode()):
+            return False
+        room.lead(self)
+        self._leads = room
+        return True
+
+    @property
+    def ticket(self) -> str:
+        """What leads the class again that is led here, or nothing."""
+        return f"{self.leads.code} {self.leads.key}" if self.leads is not None else ""
 
     def end(self) -> None:
         """End the class that this page leads."""
         if self.leads is not None:
             ROOMS.end(self.leads)
-            self.leads = None
+            self._leads = None
+
+    def close(self) -> None:
+        """Leave the class that this page leads, which waits for it."""
+        if self.leads is not None:
+            self.leads.part(self)
 
     def follow(self, room: Room) -> None:
         """Take a seat; what the class shows is given as soon as a run with its settings starts."""

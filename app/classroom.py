@@ -1,11 +1,13 @@
 """A class: one page leads, and whoever joins follows its pictures, which are computed once.
 
-Nobody has a name or an account, and nothing is left of a class that has ended.
+Nobody has a name or an account, and nothing is left of a class that has ended. One whose leader is
+gone waits some minutes, as whoever loads a page again is gone as well.
 """
 
 from __future__ import annotations
 
 import secrets
+import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -16,6 +18,8 @@ from solver.settings import Settings
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 """Of a code; none of them is taken for a digit."""
 LENGTH = 4
+KEPT = 300.0
+"""Seconds for which a class waits for its leader, whose page was closed or is loaded again."""
 
 
 class Poll:
@@ -70,16 +74,19 @@ class Room:
         Of what is shown, as the leader has chosen.
     poll
         What is asked at present, if it is a lesson that the leader shows.
-    is_over
-        Whether the leader has left.
+    key
+        Who knows it may lead: the page that began the class, after it was loaded again.
     """
 
     def __init__(self, code: str, settings: Settings) -> None:
         self.code = code
+        self.key = secrets.token_hex(8)
         self.settings = settings
         self.views: tuple[str, ...] = ()
         self.poll: Poll | None = None
-        self.is_over = False
+        self._is_ended = False
+        self._leader: object | None = None
+        self._alone_since: float | None = None
         self._newest: Picture | None = None
         self._number = 0
         self._seats: set[Seat] = set()
@@ -88,6 +95,30 @@ class Room:
     def present(self) -> int:
         """How many follow."""
         return len(self._seats)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it was ended, or its leader has not come back."""
+        since = self._alone_since
+        return self._is_ended or (since is not None and time.monotonic() - since > KEPT)
+
+    @property
+    def is_alone(self) -> bool:
+        """Whether nobody leads it at present."""
+        return self._alone_since is not None or self._is_ended
+
+    def lead(self, leader: object) -> None:
+        """Have it led by this one, in place of whoever did."""
+        self._leader, self._alone_since = leader, None
+
+    def is_led_by(self, one: object) -> bool:
+        """Tell whether this one leads it."""
+        return self._leader is one and not self.is_over
+
+    def part(self, leader: object) -> None:
+        """Wait for the leader, whose page is closed; another one may lead already."""
+        if self._leader is leader:
+            self._leader, self._alone_since = None, time.monotonic()
 
     def show(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:
         """Give all followers a whole picture, each as soon as it has painted the one before."""
@@ -115,7 +146,7 @@ class Room:
 
     def end(self) -> None:
         """End the class; who follows keeps the last picture."""
-        self.is_over = True
+        self._is_ended = True
 
     def newer_than(self, number: int) -> tuple[int, Picture | None]:
         """Give the newest picture with its number, if there is one after a number."""
@@ -165,6 +196,7 @@ class Rooms:
 
     def open(self, settings: Settings) -> Room:
         """Begin a class."""
+        self._open = {code: room for code, room in self._open.items() if not room.is_over}
         code = ""
         while not code or code in self._open:
             code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
@@ -173,7 +205,8 @@ class Rooms:
 
     def find(self, code: str) -> Room | None:
         """Give a class that has not ended."""
-        return self._open.get(code.strip().upper())
+        room = self._open.get(code.strip().upper())
+        return None if room is None or room.is_over else room
 
     def end(self, room: Room) -> None:
         """End a class."""

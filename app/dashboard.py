@@ -133,7 +133,7 @@ class Dashboard:
         self._presence.begin()
         self._begin(self._sight.iteration)
         self._on_narrow()
-        self._keys.hears = self._teaching.view.recalls = True
+        self._keys.hears = self._teaching.view.recalls = self.pulse.recalls = True
         if self._stage.view == EMBED and self.session.look.complaint:
             # There is no status line to say it.
             self.complain(self.session.look.complaint)
@@ -157,6 +157,7 @@ class Dashboard:
         self._sidebar.obey()
         self._banner.catch_up()
         self._teaching.catch_up()
+        self.pulse.leads = self.session.attendance.ticket
         self.transport.tick()
         self._pass_on(self.session.collect())
         self._log()
@@ -180,6 +181,7 @@ class Dashboard:
 
     def _listen(self) -> None:
         self.pulse.on("painted", self._on_painted)
+        self.pulse.on("leads", self._lead_again)
         self.pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         does = {**self.transport.keys(), "p": self._present}
         self._keys.on_msg(lambda message: does[message.data]())
@@ -251,6 +253,11 @@ class Dashboard:
         if (session.ticket, came_to) != self._logged:
             self._logged = session.ticket, came_to
             pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
+
+    def _lead_again(self, ticket: str) -> None:
+        attendance = self.session.attendance
+        if attendance.follows is None and attendance.resume(ticket):
+            self.session.ask(afresh=True)
 
     def _on_painted(self, number: int) -> None:
         self._painted = number

@@ -13,6 +13,7 @@ import panel as pn
 from bokeh.document import Document
 from bokeh.server import session as bokeh_session
 from bokeh.server.protocol_handler import ProtocolHandler
+from bokeh.server.util import check_allowlist
 from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
 from panel.io.server import DocHandler
@@ -37,6 +38,14 @@ def connections() -> set[Any]:
     """Give the present session's sockets: one that broke and was opened again is another one."""
     context: Any = pn.state.curdoc.session_context if pn.state.curdoc else None
     return set(context.session._subscribed_connections) if context is not None else set()
+
+
+def accepts(host: str) -> bool:
+    """Tell whether the server of the present session takes pages of a host, named with its port."""
+    return any(
+        check_allowlist(host, connection._socket.application.websocket_origins)
+        for connection in connections()
+    )
 
 
 def send_without_delay(sockets: set[Any]) -> None:

@@ -70,7 +70,8 @@ export function render({model}) {
     const {leads, predicted, of, counts} = model.poll
     if (predicted === undefined) { return [] }
     const said = `${predicted} of ${of} have predicted.`
-    const mine = leads ? "" : chosen === null ? " Predict, too: the answer comes with the class."
+    const mine = leads ? "" : model.lesson.alone ? " Nobody leads the class at present."
+      : chosen === null ? " Predict, too: the answer comes with the class."
       : " The answer comes with the class."
     const open = leads && !counts.length
       ? [button("Show what they predict", () => tell({name: COUNT}, true))] : []
@@ -90,7 +91,7 @@ export function render({model}) {
     const text = paragraphs(lesson.text)
     const question = make("p", {className: "question"}, lesson.question)
     if (lesson.choice === undefined) {
-      const ends = lesson.follows ? [] : [skip(), leave()]
+      const ends = !lesson.follows ? [skip(), leave()] : lesson.alone ? [skip()] : []
       const asked = [question, choices(lesson), ...polled(lesson), ...ends]
       return is_strip() ? [...heads, ...asked, folded(text)] : [...heads, ...text, ...asked]
     }

@@ -135,6 +135,16 @@ export function render({model, view}) {
       tell("painted", number)
     })))
   })
+  // A page that is loaded again leads the class that it led; a link to it does not.
+  const LED = "slipfront-class"
+  model.on("leads", () => {
+    try { sessionStorage.setItem(LED, model.leads) } catch {}
+  })
+  model.on("recalls", () => {
+    let led = ""
+    try { led = sessionStorage.getItem(LED) } catch {}
+    if (led) { tell("leads", led) }
+  })
   if (window.innerWidth < 640) { model.phone = true }
   if (window.innerWidth < 900) { model.narrow = true }
   // The address bar follows, so that a reload comes back; browsers refuse to do it very often.

@@ -25,6 +25,8 @@ class Pulse(Plain):
     query = param.String(default="", doc="What an address has to say to come back to this.")
     copy = param.Integer(default=0, doc="Counts how often the address was to be copied.")
     copied = param.Integer(default=0, doc="The last of them that was; negative if it could not be.")
+    leads = param.String(default="", doc="What leads a class again after the page was loaded anew.")
+    recalls = param.Boolean(default=False, doc="Whether the browser is to say what it knows of it.")
     heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 
     _esm = "pulse.js"
@@ -33,10 +35,11 @@ class Pulse(Plain):
         """Send a picture, as `app.worker.block` packs it; once painted, its number comes back."""
         self._send_msg([number, block])
 
-    def on(self, kind: str, does: Callable[[int], None]) -> None:
-        """Have something done with the number of a message: of a picture "painted", or of a "beat".
+    def on(self, kind: str, does: Callable[[Any], None]) -> None:
+        """Have something done with what a message tells.
 
-        A beat counts signs of life; a negative one asks for all of a picture.
+        It is the number of a picture that is "painted", or of a "beat", which counts signs of life,
+        and if it is negative asks for all of a picture; or it is what "leads" a class again.
         """
 
         def hear(message: Any) -> None:

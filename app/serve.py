@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
+from html import escape
 from typing import Any
 
 import panel as pn
@@ -36,6 +37,12 @@ FULL = (
     "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
     "This page tries again by itself.</p>"
 )
+NO_CLASS = (
+    "<h2>There is no class {}</h2><p>It has ended, or a letter is wrong: ask for its code.</p>"
+    "<form><label>Code of the class <input name=class required size=6 maxlength=12 "
+    "autocomplete=off autocapitalize=characters autofocus></label> <button>Follow</button></form>"
+    "<p><a href='?'>Go on by myself</a></p>"
+)
 TRY_AGAIN = 20
 """Seconds after which a page that found the server full asks again."""
 
@@ -48,9 +55,11 @@ def open_page() -> Page:
     document = pn.state.curdoc
     assert document is not None
     query = pn.state.location.search if pn.state.location else ""
+    room, missing = class_from_query(query)
+    if missing:
+        return _said(NO_CLASS.format(escape(missing)), "missing")
     settings, complaint = settings_from_query(query)
     sight, more = sight_from_query(query)
-    room, most = class_from_query(query)
     twin, refused = twin_from_query(query, settings)
     session = Session(PAGES, shared_bench(), room.settings if room else settings)
     if room is not None:
@@ -61,7 +70,7 @@ def open_page() -> Page:
     session.watch(phase=sight.instant)
     dashboard = Dashboard(
         session,
-        complaint=" ".join(filter(None, (complaint, more, most, refused))),
+        complaint=" ".join(filter(None, (complaint, more, refused))),
         sight=sight,
         question=question_from_query(query),
         on_phone=is_phone(pn.state.headers),
@@ -111,7 +120,12 @@ def _end(dashboard: Dashboard, document: Document, _context: Any) -> None:
 def _full() -> Page:
     """Say that no page can be opened now, and try again."""
     again = f'<meta http-equiv="refresh" content="{TRY_AGAIN}">'
-    return Page(title="Slipfront", main=[pn.pane.HTML(FULL + again, css_classes=["full"])])
+    return _said(FULL + again, "full")
+
+
+def _said(html: str, role: str) -> Page:
+    """Say something on a page of its own."""
+    return Page(title="Slipfront", main=[pn.pane.HTML(html, css_classes=[role])])
 
 
 def _configure() -> None:

@@ -212,7 +212,7 @@ class Session:
     def close(self) -> None:
         """Leave: the process of the run ends, and so do the reports."""
         self.keeper.close()
-        self.attendance.end()
+        self.attendance.close()
         self._pages.remove(self)
         for one in self._asked:
             one.cancel()

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import param
 
-from app.classroom import Room
+from app.classroom import Poll, Room
 from app.form import ENDS, STYLE
 from app.innards import Plain
 from app.lesson import LESSONS, NO_CHOICE, OFFERED, content, readings
@@ -131,6 +131,7 @@ class Teaching:
         self._changed = changed
         self._choice: int | None = None
         self._room: Room | None = None
+        self._is_left = False
         self.lesson: Lesson | None = None
         self.view = LessonPane(
             name="lesson",
@@ -190,8 +191,10 @@ class Teaching:
             attendance.leads.ask(self.name, is_answered=not self.asks)
         elif attendance.follows is not None:
             self._attend(attendance.follows)
-        if self._room is not attendance.follows:
-            self._room = attendance.follows
+        room = attendance.follows
+        is_left = room is not None and room.is_alone
+        if (self._room, self._is_left) != (room, is_left):
+            self._room, self._is_left = room, is_left
             self._tell()
         self.view.poll = self._polled()
 
@@ -225,22 +228,33 @@ class Teaching:
         self._changed()
 
     def _in_class(self) -> dict[str, Any]:
-        """Say what else there is of a lesson that is followed: its ends are the leader's."""
+        """Say what else there is of a lesson that is followed: its ends are the leader's.
+
+        Whoever was left alone with a question may see the answer.
+        """
         if self._session.attendance.follows is None:
             return {}
-        return {"follows": True, "chosen": self._choice}
+        return {"follows": True, "chosen": self._choice, "alone": self._is_left}
 
     def _hear(self, name: str, value: Any, hand: bool, count: float) -> None:
         poll = self._session.attendance.poll
         if name == COUNT and poll is not None:
             poll.is_open = True
         elif name == CHOICE and self.asks:
-            if poll is not None and self._waits:
-                poll.vote(self, value)
-            self._choice = value
-            self._tell()
+            self._predict(value, poll)
         elif name not in (CHOICE, COUNT):
             self._sidebar.hear(name, value, hand, count)
+
+    def _predict(self, choice: int, poll: Poll | None) -> None:
+        """Take what was predicted; whoever was left alone by a class goes on without it."""
+        if self._waits and self._is_left:
+            self._session.start(self._session.settings.replace())
+            self._choice = choice if self._choice is None or choice != NO_CHOICE else self._choice
+        else:
+            if poll is not None and self._waits:
+                poll.vote(self, choice)
+            self._choice = choice
+        self._tell()
 
     def _show(self) -> None:
         """Show on the lesson's controls what those of the sidebar show."""

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import panel as pn
 import pytest
 from lone_link import LoneLink
 
+from app import banner
 from app.address import class_from_query, query_of
 from app.classroom import ROOMS, Room, Rooms, Seat
+from app.dashboard import Dashboard
+from app.lesson import LESSONS, NO_CHOICE
 from app.pages import Pages
 from app.session import Session
+from app.teaching import CHOICE
 from app.worker.bench import Bench
 from app.worker.orders import Ready, Run
 from app.worker.reports import Facts, Picture, Report
@@ -96,8 +101,10 @@ def pages() -> Iterator[tuple[Session, LoneLink, Session, LoneLink]]:
     follower.attendance.follow(room)
     follower.start(room.settings)
     yield leader, links[0], follower, links[1]
+    leader.attendance.end()
     for session in (leader, follower):
         session.close()
+    room.end()
     assert ROOMS.find(room.code) is None
 
 
@@ -149,11 +156,92 @@ def test_the_address_of_a_follower_names_its_class_alone(pages: Two) -> None:
     query = query_of(STEEPER, None, room)
     assert query == f"?class={room.code}"
     assert class_from_query(query) == (room, "")
+    leader.attendance.end()
+    assert class_from_query(query) == (None, room.code)
+    assert class_from_query("?class=") == class_from_query("?scene=bar") == (None, "")
+
+
+def test_a_class_waits_some_minutes_for_its_leader_who_leads_on_by_its_key(
+    pages: Two, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    leader, *_ = pages
+    room, ticket = leader.attendance.leads, leader.attendance.ticket
+    assert room is not None
+    code, _, key = ticket.partition(" ")
+    assert (code, room.is_alone) == (room.code, False)
     leader.close()
-    found, complaint = class_from_query(query)
-    assert found is None
-    assert room.code in complaint
-    assert class_from_query("?scene=bar") == (None, "")
+    assert room.is_alone
+    assert ROOMS.find(code) is room
+    again = Session(Pages(1), Bench(), BAR, LoneLink().hire)
+    for wrong in ("", code, f"{code} {key[:-1]}", f"{code} é"):
+        assert not again.attendance.resume(wrong)
+    assert again.attendance.resume(ticket)
+    assert (again.attendance.leads, room.is_alone, room.present) == (room, False, 1)
+    leader.close()
+    assert again.attendance.leads is room, "the page from before ends nothing"
+    again.close()
+    monkeypatch.setattr("app.classroom.KEPT", -1.0)
+    assert room.is_over
+    assert ROOMS.find(code) is None
+    assert not again.attendance.resume(ticket)
+
+
+def test_a_page_whose_class_was_taken_over_leads_no_more(pages: Two) -> None:
+    leader, link, follower, _ = pages
+    room, ticket = leader.attendance.leads, leader.attendance.ticket
+    other = Session(Pages(1), Bench(), BAR, LoneLink().hire)
+    other.attendance.resume(ticket)
+    assert (leader.attendance.leads, leader.attendance.ticket) == (None, "")
+    assert other.attendance.leads is room
+    follower.ask()
+    link.say(picture(4))
+    leader.collect()
+    assert follower.collect() == []
+    other.attendance.end()
+    other.close()
+
+
+def test_whoever_is_left_alone_with_a_question_may_see_the_answer(pages: Two) -> None:
+    pn.extension(notifications=True)
+    leader, _, follower, own = pages
+    room = leader.attendance.leads
+    assert room is not None
+    room.settings = LESSONS["best-k"].settings
+    room.ask("best-k", is_answered=False)
+    dashboard = Dashboard(follower)
+    teaching = dashboard._teaching
+    teaching.catch_up()
+    assert (teaching.view.lesson["follows"], teaching.view.lesson["alone"]) == (True, False)
+    teaching._hear(CHOICE, 1, False, 1.0)
+    assert teaching.asks
+    leader.close()
+    teaching.catch_up()
+    assert teaching.view.lesson["alone"]
+    teaching._hear(CHOICE, NO_CHOICE, False, 2.0)
+    assert (teaching.asks, teaching.view.lesson["choice"]) == (False, 1)
+    assert follower.attendance.follows is None
+    assert own.hired == 1
+    assert room.poll is not None
+    assert room.poll.counts(3) == [0, 1, 0]
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1"])
+def test_a_class_on_localhost_is_given_the_name_of_the_machine_or_told_how(
+    monkeypatch: pytest.MonkeyPatch, host: str
+) -> None:
+    monkeypatch.setattr(banner, "_here", lambda: f"http://{host}:5006/app?scene=block#x")
+    monkeypatch.setattr(banner, "names", lambda: ("lab-pc", "10.0.0.7"))
+    taken: list[str] = []
+    monkeypatch.setattr(banner, "accepts", taken.__contains__)
+    assert banner.address_for_others() == ""
+    told = banner._picture_of("ABCD")
+    assert "<svg" not in told
+    assert "BOKEH_ALLOW_WS_ORIGIN=lab-pc:5006" in told
+    taken.append("10.0.0.7:5006")
+    assert banner.address_for_others() == "http://10.0.0.7:5006/app"
+    assert "http://10.0.0.7:5006/app?class=ABCD" in banner._picture_of("ABCD")
+    monkeypatch.setattr(banner, "_here", lambda: "https://lab.example.org/app?scene=block")
+    assert "https://lab.example.org/app?class=ABCD" in banner._picture_of("ABCD")
 
 
 def test_a_poll_counts_the_last_prediction_of_everybody_and_ends_with_its_lesson() -> None:

@@ -50,9 +50,8 @@ def test_a_class_predicts_before_it_sees_and_its_counts_open_when_the_lecturer_a
     leader.get_by_role("button", name="Open drawer").click()
     press(leader, "Class")
     code = code_of(leader)
-    leader.get_by_text("QR code").click()
-    expect(leader.locator(".code svg")).to_be_visible()
-    expect(leader.get_by_text(f"/app?class={code}")).to_be_visible()
+    expect(leader.locator(".code")).to_contain_text("Others cannot open localhost")
+    expect(leader.locator(".code svg")).to_have_count(0)
     students = [open_page(f"?class={code}", width=390, height=844) for _ in range(2)]
     choices = [one.get_by_role("group", name="Your prediction") for one in (leader, *students)]
     first = choices[0].get_by_role("button").first.inner_text()
@@ -78,6 +77,32 @@ def test_a_class_predicts_before_it_sees_and_its_counts_open_when_the_lecturer_a
     expect(status(students[0])).to_contain_text("iteration")
 
 
-def test_a_class_that_is_not_there_is_told(open_page: Visit) -> None:
-    page = open_page("?class=NOPE")
-    expect(status(page)).to_contain_text("there is no class NOPE")
+def test_a_leader_who_loads_the_page_again_leads_on(open_page: Visit) -> None:
+    leader = open_page(f"?{ENDLESS}")
+    expect(status(leader)).to_contain_text("iteration")
+    press(leader, "Class")
+    code = code_of(leader)
+    follower = open_page(f"?class={code}")
+    expect(leader.locator(".class").first).to_contain_text("1 follows")
+    leader.reload()
+    assert code_of(leader) == code
+    expect(leader.locator(".class").first).to_contain_text("1 follows")
+    slider(leader, "Substructures").press("ArrowRight")
+    for page in (leader, follower):
+        expect(status(page)).to_contain_text("11 substructures")
+    press(leader, "End the class")
+    expect(follower.locator(".class").first).to_contain_text("has ended")
+
+
+def test_a_class_that_is_not_there_is_told_with_a_field_for_another(open_page: Visit) -> None:
+    leader = open_page(f"?{ENDLESS}")
+    expect(status(leader)).to_contain_text("iteration")
+    press(leader, "Class")
+    code = code_of(leader)
+    page = open_page("?class=%3Cb%3ENOPE")
+    expect(page.get_by_role("heading", name="There is no class <b>NOPE")).to_be_visible()
+    expect(page.locator(".status")).to_have_count(0)
+    page.get_by_label("Code of the class").fill(code.lower())
+    page.get_by_label("Code of the class").press("Enter")
+    expect(page.locator(".class").first).to_contain_text(f"You follow class {code}")
+    press(leader, "End the class")

@@ -62,6 +62,9 @@ def test_a_number_is_typed_refused_in_words_and_brought_back_by_a_double_click(
     typed.press("Enter")
     expect(page.get_by_text("Substructures cannot be “many”").first).to_be_visible()
     expect(typed).to_have_value("4")
+    typed.fill("5")
+    typed.press("Enter")
+    expect(page.get_by_text("Substructures cannot be “many”")).to_have_count(0, timeout=6000)
     factor = field(page, "Factor on k")
     factor.fill("2e-3")
     factor.press("Enter")
@@ -69,7 +72,7 @@ def test_a_number_is_typed_refused_in_words_and_brought_back_by_a_double_click(
     slider(page, "Factor on k").dblclick()
     expect(factor).to_have_value("1")
     slider(page, "Substructures").press("Delete")
-    expect(page.get_by_text("Substructures cannot be 10").first).to_be_visible()
+    expect(typed).to_have_value("10")
 
 
 def test_keys_are_listed_step_through_time_and_play_it_to_its_end(open_page: Visit) -> None:
