@@ -62,9 +62,9 @@ export function render({model}) {
     if (at >= 0) { model.send_msg({kind: "place", value: along.data.x[at]}) }
   }
   // What a screen reader says of a plot beside its name: what is drawn, and of which moment.
-  const describe = (element) => {
-    const keys = [...element.querySelectorAll(".key")].map((key) => key.textContent)
-    element.ariaDescription = `${keys.join(", ")}; ${model.caption}`
+  const describe = (element, slug) => {
+    const said = model.said.find(([of]) => of === slug)?.[1] ?? ""
+    element.ariaDescription = `${said} ${model.caption}`.trim()
   }
   const make = (slug) => {
     const {json, name, chooses} = figures[slug]
@@ -80,10 +80,10 @@ export function render({model}) {
     const words = made.get_model_by_name(`${slug}.title`)
     const write = () => {
       title.innerHTML = words.text
-      describe(element)
     }
     words.properties.text.change.connect(write)
     write()
+    describe(element, slug)
     const [bodies, held, ...parts] = ["bodies", "handles", "along", "contacts"].map((one) =>
       made.get_model_by_name(`${slug}.${one}`))
     const choose = chooses ? listen(plot, chooses, bodies) : null
@@ -135,6 +135,7 @@ export function render({model}) {
     }
     index.find_one_by_id(plot.id)?.invalidate_layout()
   }
+  const tell_all = () => cards.forEach(({element}, slug) => describe(element, slug))
   const restyle = () => requestAnimationFrame(() => cards.forEach(dress))
   const watcher = new MutationObserver(restyle)
   watcher.observe(document.documentElement, {attributes: true, attributeFilter: ["data-theme", "data-built"]})
@@ -142,8 +143,9 @@ export function render({model}) {
   model.on("magnified", restyle)
   model.on("caption", () => {
     pictured()
-    cards.forEach(({element}) => describe(element))
+    tell_all()
   })
+  model.on("said", tell_all)
   model.on("remove", () => {
     watcher.disconnect()
     for (const {made} of cards.values()) { made.clear() }

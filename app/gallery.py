@@ -41,6 +41,8 @@ class Gallery(Plain):
         How much larger the type of plots is than it usually is.
     sliders
         What the slider of every setting is that may be dragged in a picture, by its name.
+    said
+        Slug of every plot, and a sentence of what it shows; pictures bring it.
     caption
         Which run and moment is seen; pictures bring it.
     """
@@ -49,6 +51,7 @@ class Gallery(Plain):
     shown = param.List(default=[])
     sliders = param.Dict(default={})
     magnified = param.Number(default=1.0)
+    said = param.List(default=[])
     caption = param.String(default="")
 
     _esm = script("values.js", "handles.js", "gallery.js")

@@ -1,7 +1,10 @@
 // What keeps a key to itself: letters choose in an open list, space and arrows move what has the focus.
 const LISTS = "[role=option], [role=menuitem], [role=listbox], [role=menu], select"
 const PRESSED = LISTS + ", button, summary, a, input:not([type=range]), [role=combobox]"
-const MOVED = LISTS + ", input, [role=combobox], [role=slider], [role=radiogroup]"
+const MOVED = LISTS + ", input, [role=combobox], [role=slider], [role=radiogroup], [role=group]"
+const TAB = "[role=group] > button"
+const SKIP = `position: fixed; left: 8px; top: -99px; z-index: 2000; padding: 8px 16px;
+  border-radius: 4px; color: #fff; background: #0b3d66; font: 500 16px sans-serif`
 
 export function render({model}) {
   const dialog = document.createElement("dialog")
@@ -25,6 +28,33 @@ export function render({model}) {
   const button = document.createElement("button")
   Object.assign(button, {textContent: "?", title: "Keys and words (?).", ariaLabel: "Keys and words"})
   button.onclick = open
+  // Whoever has no mouse comes to the run without passing all settings.
+  const inside = (node, wanted) => {
+    for (const one of node.querySelectorAll("*")) {
+      const found = one.matches(wanted) ? one : one.shadowRoot && inside(one.shadowRoot, wanted)
+      if (found) { return found }
+    }
+    return null
+  }
+  const skip = document.createElement("a")
+  Object.assign(skip, {href: "#", textContent: "Go to the run"})
+  skip.style = SKIP
+  skip.onfocus = () => { skip.style.top = "8px" }
+  skip.onblur = () => { skip.style.top = "-99px" }
+  skip.onclick = (event) => {
+    event.preventDefault()
+    const row = inside(document, ".transport"), first = row && inside(row.shadowRoot ?? row, "button")
+    const run = first?.checkVisibility() ? first : inside(document, ".card")
+    run?.focus()
+  }
+  document.body.prepend(skip)
+  // In a row of choices arrows go from one to the next.
+  const go_on = (chosen, key, event) => {
+    const all = [...chosen.parentNode.children], by = {ArrowRight: 1, ArrowLeft: -1}[key]
+    if (!by) { return }
+    event.preventDefault()
+    all[(all.indexOf(chosen) + by + all.length) % all.length].focus()
+  }
   const names = new Set([...model.keys.map(([name]) => name), ...model.own])
   const press = (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !model.hears) { return }
@@ -33,6 +63,7 @@ export function render({model}) {
     const typed = event.composedPath()[0]
     const writes = typed.tagName === "INPUT" && !["range", "checkbox", "radio"].includes(typed.type)
     if (writes || typed.tagName === "TEXTAREA" || typed.isContentEditable) { return }
+    if (key.startsWith("Arrow") && typed.matches?.(TAB)) { return go_on(typed, key, event) }
     const keeps = key.startsWith("Arrow") ? MOVED : key === " " ? PRESSED : LISTS
     if (typed.closest && typed.closest(keeps) || dialog.open) { return }
     event.preventDefault()
@@ -44,6 +75,7 @@ export function render({model}) {
   document.addEventListener("keydown", press)
   model.on("remove", () => {
     close()
+    skip.remove()
     document.removeEventListener("keydown", press)
   })
   const root = document.createElement("div")

@@ -46,6 +46,7 @@ export function render({model}) {
     pointer = event
     if (due || event.composedPath().includes(root)) { return }
     const path = event.composedPath()
+    heed(path)
     due = requestAnimationFrame(() => {
       due = 0;
       [card, figure] = met(path)
@@ -59,6 +60,37 @@ export function render({model}) {
   const watch = () => {
     sizes.disconnect()
     if (card) { sizes.observe(card) }
+  }
+  // What lies under a pointer that rests changes as the page moves; nothing else tells of that.
+  const roots = new WeakSet()
+  const heed = (path) => {
+    for (const one of path.filter((one) => one instanceof ShadowRoot && !roots.has(one))) {
+      roots.add(one)
+      one.addEventListener("scroll", moved, {capture: true, passive: true})
+    }
+  }
+  const under = () => {
+    let one = document.elementFromPoint(pointer.clientX, pointer.clientY)
+    while (one?.shadowRoot?.elementFromPoint(pointer.clientX, pointer.clientY) ?? null) {
+      const inner = one.shadowRoot.elementFromPoint(pointer.clientX, pointer.clientY)
+      if (inner === one) { break }
+      one = inner
+    }
+    const path = []
+    for (; one; one = one.parentNode ?? one.host) { path.push(one) }
+    return path
+  }
+  const moved = () => {
+    if (due || !pointer) { return }
+    due = requestAnimationFrame(() => {
+      due = 0
+      const path = under()
+      if (path.includes(root)) { return }
+      [card, figure] = met(path)
+      watch()
+      put()
+      say()
+    })
   }
   const focus = (event) => {
     if (event.composedPath().includes(root)) { return }

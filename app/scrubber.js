@@ -15,7 +15,7 @@ export function render({model}) {
     button.title = button.ariaLabel = model.plays
     range.ariaLabel = model.label
     label.firstChild.textContent = model.label + ": "
-    text.textContent = model.text
+    text.textContent = range.ariaValueText = model.text
     range.min = model.start
     range.max = model.end
     if (!held) { range.value = model.shown }

@@ -33,7 +33,11 @@ TEMPLATE = """
     const uncover = () => {
       const [page] = document.querySelectorAll(".bk-panel-models-esm-ReactComponent")
       const built = page?.shadowRoot?.querySelector(`.mui-${root.dataset.theme} .main`)
-      if (built) { root.dataset.built = "" } else { requestAnimationFrame(uncover) }
+      if (built) {
+        root.dataset.built = ""
+        // Its link leads to a page of its own.
+        page.shadowRoot.querySelector("img.logo")?.setAttribute("alt", "A fresh page of Slipfront")
+      } else { requestAnimationFrame(uncover) }
     }
     uncover()
   })()

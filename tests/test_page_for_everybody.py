@@ -188,3 +188,38 @@ def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_
     page.get_by_role("button", name="Toggle theme").click()
     page.get_by_role("button", name="Toggle theme").click()
     expect(page).to_have_url(re.compile("^(?!.*theme=)"))
+
+
+def test_whoever_has_no_mouse_is_soon_at_the_run_and_is_told_what_plots_show(
+    open_page: Visit,
+) -> None:
+    page = settled(open_page)
+    page.keyboard.press("Tab")
+    expect(page.get_by_role("link", name="Go to the run")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="Run or pause")).to_be_focused()
+    instant = page.get_by_role("slider", name="Instant", exact=True)
+    expect(instant).to_have_attribute("aria-valuetext", "t = 0.8 s")
+    live = page.get_by_role("button", name="Live", exact=True)
+    live.focus()
+    live.press("ArrowRight")
+    expect(page.get_by_role("button", name="What if")).to_be_focused()
+    expect(instant).to_have_attribute("aria-valuetext", "t = 0.8 s")
+    said = page.get_by_role("figure", name="Stick and slip").get_attribute("aria-description")
+    assert said is not None
+    assert re.search(r"stick \d+ %.* t = 0\.8 s, iteration \d+$", said), said
+
+
+def test_the_value_under_a_pointer_that_rests_is_that_of_the_plot_that_came_there(
+    open_page: Visit,
+) -> None:
+    page = settled(open_page)
+    first, later = card(page, "Friction force"), card(page, "Hysteresis loop")
+    box = first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    value = page.locator("output").filter(has_text="N/m")
+    expect(value).to_be_visible()
+    for _ in range(10):
+        page.mouse.wheel(0.0, 60.0)
+    expect(value).to_have_count(0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +16,7 @@ from app.views.colors import ORANGE
 from app.views.drawing import Scene
 from app.views.scales import decades
 from app.worker.recording import COLUMNS
+from app.worker.telling import told
 from solver.scenes import CATALOGUE
 
 
@@ -127,3 +129,31 @@ def test_the_same_scene_is_drawn_the_same_again() -> None:
 def test_views_have_names_of_their_own_and_all_are_looked_at() -> None:
     assert len({view.slug for view in VIEWS}) == len(VIEWS)
     assert set(ALL.views) == {view.name for view in VIEWS}
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_every_plot_is_told_in_a_sentence_of_numbers(scene: str) -> None:
+    whole = looked_at(scene)
+    for view in fitting(whole.run.settings):
+        drawing = view.draw(whole, None)
+        assert drawing is not None
+        said = told(view, drawing)
+        assert said.endswith("."), view.name
+        assert re.search(r"\d", said), said
+
+
+def test_what_is_told_of_a_plot_is_what_it_shows() -> None:
+    whole = looked_at("bar")
+    fields, history = whole.frame.fields, whole.run.history
+    force = fields.friction[:, whole.instant] / 1e3
+    said = {
+        view.name: told(view, drawing)
+        for view in fitting(whole.run.settings)
+        if (drawing := view.draw(whole, None)) is not None
+    }
+    assert f"LATIN from {force.min() + 0.0:.3g} to {force.max():.3g};" in said["Friction force"]
+    share = 100.0 * np.mean(fields.status == 0)
+    assert f"stick {share:.0f} %" in said["Stick and slip"]
+    errors = history.column("error_force")
+    assert f"force error from {errors[0]:.2g} to {errors[-1]:.2g}." in said["Convergence"]
+    assert "F = " in said["Scene"]

@@ -18,6 +18,7 @@ from app.worker.block import Attributes, Packer, Quads
 from app.worker.readings import values
 from app.worker.reports import Facts
 from app.worker.shown import Look
+from app.worker.telling import told
 from solver.settings import Settings
 
 TAKE_AWAY, PLOTS = "take-away", "plots"
@@ -35,15 +36,17 @@ class Easel:
 
     def paint(self, scene: Scene, words: Mapping[str, str], facts: Facts) -> bytes:
         """Draw every view that is seen; give what has changed of the page."""
-        seen_now = {"caption": caption(scene)}
-        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, PLOTS: seen_now, **sliders(facts)}
+        seen_now, said = {"caption": caption(scene)}, []
+        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, **sliders(facts)}
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
         for view in seen(scene.run.settings, scene.look):
             drawing = view.draw(scene, self._kept.get(view.slug))
             if drawing is not None:
                 self._kept[view.slug] = drawing.kept
+                said.append([view.slug, told(view, drawing)])
                 models.update(parts(view, marked(view, drawing, scene.look.place)))
+        models[PLOTS] = {"said": said, **seen_now}
         return self.say(words, models)
 
     def say(
