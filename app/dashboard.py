@@ -12,6 +12,7 @@ from app.banner import Banner
 from app.gallery import gallery
 from app.keys import Keys
 from app.looks import Looks
+from app.notes import Notes
 from app.page_link import PageLink
 from app.panes import column, page, text
 from app.phone import Phone
@@ -34,8 +35,6 @@ FIRST_ROW = 3
 """Plots that a projector, or a frame of a course page, has room for."""
 CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
 """Plots that show the scene at work, and those that do not yet."""
-TOLD_FOR = 8000
-"""Milliseconds for which something is told."""
 LOST_AFTER = 2.0
 """Seconds after which a picture that was not acknowledged is taken for lost."""
 REST = 0.2
@@ -80,7 +79,7 @@ class Dashboard:
         self._sent = self._painted = 0
         self._sent_at = 0.0
         self._is_dimmed = False
-        self._refusal: Any = None
+        self._notes = Notes()
         self._painted_scene = session.settings.scene
         self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
         self._presence = Presence(session, self.pulse)
@@ -92,7 +91,12 @@ class Dashboard:
         self._gallery = gallery(chosen)
         self._banner = Banner(session, self._follow)
         self._sidebar = Sidebar(
-            session, self._arrange, self.complain, self.tell, lambda: self._link.copy(), self._teach
+            session,
+            self._arrange,
+            self._notes.complain,
+            self._notes.tell,
+            lambda: self._link.copy(),
+            self._teach,
         )
         self._teaching = Teaching(session, self._sidebar, self._on_lesson)
         self._saver = Saver(session)
@@ -136,7 +140,7 @@ class Dashboard:
         self._keys.hears = self._teaching.view.recalls = self.pulse.recalls = True
         if self._stage.view == EMBED and self.session.look.complaint:
             # There is no status line to say it.
-            self.complain(self.session.look.complaint)
+            self._notes.complain(self.session.look.complaint)
         self._tabs.bar.value = self._sight.tab
 
     def _begin(self, iteration: int) -> None:
@@ -165,19 +169,6 @@ class Dashboard:
             self._sent_at = time.monotonic()
             self.session.ask(afresh=True)
         self._link.follow()
-
-    def complain(self, text: str) -> None:
-        """Tell the user what was refused and why; without words, that nothing is any more."""
-        if self._refusal is not None:
-            self._refusal.destroy()
-        self._refusal = None
-        if text and pn.state.notifications is not None:
-            self._refusal = pn.state.notifications.error(text, duration=TOLD_FOR)
-
-    def tell(self, text: str) -> None:
-        """Tell the user what was done."""
-        if pn.state.notifications is not None:
-            pn.state.notifications.success(text, duration=TOLD_FOR)
 
     def _listen(self) -> None:
         self.pulse.on("painted", self._on_painted)

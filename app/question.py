@@ -11,6 +11,7 @@ from urllib.parse import parse_qsl
 import param
 
 from app.form import item_of
+from app.refusals import refused, sentence
 from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError, about
 from solver.settings import Settings
@@ -60,6 +61,25 @@ class Span:
         end = ":log" if self.spacing == DECADES else ""
         return f"{self.name}={self.low}:{self.high}:{self.count}{end}".replace(" ", "")
 
+    def refusal(self, settings: Settings) -> str:
+        """Say what of its fields cannot be run, or nothing."""
+        listed = self.spacing == LISTED
+        boxes = {} if listed else {"from": self.low, "to": self.high, "values": self.count}
+        for box, text in boxes.items():
+            try:
+                float(text)
+            except ValueError:
+                return f"“{text}” under “{box}” is no number." if text else f"Fill in “{box}”."
+        if listed and not self.listed.strip():
+            return "Choose at least one value."
+        try:
+            axis_of(settings, self.text)
+        except SettingError as refusal:
+            if refusal.value == self.text.partition("=")[2]:
+                return sentence(refusal.remedy)
+            return refused(refusal, settings, refusal.name, refusal.value)
+        return ""
+
 
 @dataclass(frozen=True)
 class Question:
@@ -89,21 +109,22 @@ class Question:
 
     def refusals(self, settings: Settings) -> dict[str, str]:
         """Say what of it cannot be run, by the place of a setting, "of", or else "all"."""
-        found = {}
-        for place, span in enumerate(self.spans):
-            try:
-                axis_of(settings, span.text)
-            except SettingError as refusal:
-                found[str(place)] = str(refusal)
+        found = {
+            str(place): words
+            for place, span in enumerate(self.spans)
+            if (words := span.refusal(settings))
+        }
         try:
             reading(self.of)
         except SettingError as refusal:
-            found[OF] = str(refusal)
+            _, _, number = refusal.allowed.partition("@ and ")
+            found[OF] = f"Beside it stands {number}." if number else sentence(refusal.remedy)
         if not found:
             try:
                 self.plan(settings)
             except SettingError as refusal:
-                found["all"] = str(refusal)
+                known = refusal.name in settings.definitions()
+                found["all"] = refused(refusal, settings) if known else sentence(refusal.remedy)
         return found
 
     def pairs(self) -> list[tuple[str, str]]:

@@ -42,6 +42,11 @@ def refused(refusal: SettingError, settings: Settings, moved: str = "", value: A
     return f"{own} while {title} is {written(refusal.value)}. Allowed for this: {limits}; {remedy}."
 
 
+def sentence(remedy: str) -> str:
+    """Give a remedy by itself."""
+    return f"{remedy[:1].upper()}{remedy[1:]}."
+
+
 def allowed_here(definition: Parameter) -> str:
     """Describe which values a setting takes, as its control offers them."""
     if isinstance(definition, Curve):
