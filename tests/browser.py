@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, Playwright, ViewportSize, sync_playwright
+from processes import PATIENCE
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -112,7 +113,7 @@ class Server:
                 preexec_fn=_heed_interrupts,
             )
 
-    def wait(self, seconds: float = 60.0) -> None:
+    def wait(self, seconds: float = PATIENCE) -> None:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
@@ -144,11 +145,7 @@ class Server:
                     found.append(int(entry.name))
         return found
 
-    def interrupt(self) -> None:
-        """Have it stop, as by Ctrl-C."""
-        os.kill(self.pid, signal.SIGINT)
-
     def stop(self, number: int = signal.SIGTERM) -> None:
         if self._process.poll() is None:
             os.kill(self._process.pid, number)
-            self._process.wait(20)
+            self._process.wait(PATIENCE)

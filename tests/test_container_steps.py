@@ -21,6 +21,7 @@ from pathlib import Path
 import pytest
 import yaml
 from packaging.requirements import Requirement
+from processes import PATIENCE
 
 from app.pages import VARIABLE
 
@@ -125,7 +126,7 @@ def test_a_proxy_sends_every_browser_to_one_of_several_servers():
 
 def handshake(port, origin):
     """Give the answer to a page of some origin that asks for a websocket."""
-    asked = http.client.HTTPConnection("127.0.0.1", int(port), timeout=20)
+    asked = http.client.HTTPConnection("127.0.0.1", int(port), timeout=PATIENCE)
     with closing(asked):
         asked.request(
             "GET",
@@ -158,7 +159,7 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
             [program, *command[1:]], cwd=folder, env=variables, stdout=log, stderr=log
         )
     try:
-        end = time.monotonic() + 60
+        end = time.monotonic() + PATIENCE
         while subprocess.run([python, *check[1:]], capture_output=True, check=False).returncode:
             assert time.monotonic() < end, (tmp_path / "log").read_text()
             assert server.poll() is None, (tmp_path / "log").read_text()
@@ -167,4 +168,4 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
         assert handshake(other, "http://elsewhere.example") == 403
     finally:
         server.terminate()
-        server.wait(20)
+        server.wait(PATIENCE)

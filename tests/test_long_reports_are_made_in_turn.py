@@ -86,10 +86,10 @@ def write_and_sleep(folder: Path) -> None:
 
 def test_the_executor_is_one_as_the_library_has_them(bench: Bench) -> None:
     results: list[Future[int]] = [bench.submit(pow, 2, power) for power in (3, 4)]
-    assert [one.result(timeout=60.0) for one in results] == [8, 16]
+    assert [one.result(timeout=PATIENCE) for one in results] == [8, 16]
     assert list(bench.map(abs, [-1, 2])) == [1, 2]
     with pytest.raises(ValueError, match="invalid literal"):
-        bench.submit(int, "no number").result(timeout=60.0)
+        bench.submit(int, "no number").result(timeout=PATIENCE)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import logging
 import pytest
 from bokeh.document import Document
 from bokeh.server.server import Server
-from web_pages import WebPage, run_apart, serve_pages, until
+from web_pages import WebPage, give_up_pages, run_apart, serve_pages, until
 
 from app import serve
 from app.dashboard import Dashboard
@@ -37,6 +37,7 @@ async def visit(server: Server, address: str) -> None:
     for page in pages:
         page.close()
     await asyncio.gather(*lives)
+    give_up_pages(server)
     await until(lambda: not server.get_sessions("/app"))
     await until(lambda: len(serve.PAGES) == 0)
 

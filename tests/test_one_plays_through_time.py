@@ -57,6 +57,16 @@ def test_it_goes_on_from_the_chosen_instant_to_the_end_and_then_begins_again(
     assert phase(transport) == 0.0
 
 
+def test_another_press_stops_it(transport: Transport, clock: Clock) -> None:
+    transport.play()
+    transport.tick()
+    transport.play()
+    clock.now += PLAYED_IN
+    transport.tick()
+    assert phase(transport) == 0.4
+    assert not transport._instant.playing
+
+
 def test_who_chooses_an_instant_stops_it(transport: Transport, clock: Clock) -> None:
     transport.play()
     transport.move_instant(1)

@@ -110,12 +110,6 @@ def test_a_narrow_window_sees_the_run_first_and_has_all_tabs_in_reach(open_page:
     assert 0.0 <= box["x"] <= 390.0 - box["width"]
 
 
-def test_pages_run_side_by_side(open_page: Visit) -> None:
-    pages = [open_page("?method=paper&max_iterations=40") for _ in range(2)]
-    for page in pages:
-        expect(status(page)).to_contain_text("after 40 iterations")
-
-
 def test_settings_are_saved_opened_and_brought_back(open_page: Visit, tmp_path: Path) -> None:
     page = open_page(f"?substructures=5&{ENDLESS}")
     expect(status(page)).to_contain_text("5 substructures")

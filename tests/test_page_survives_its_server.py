@@ -112,7 +112,7 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: 
 
 
 def test_a_page_that_was_given_up_meanwhile_is_made_anew(tmp_path: Path, chrome: Chrome) -> None:
-    short = ("--unused-session-lifetime", "300", "--check-unused-sessions", "100")
+    short = ("--unused-session-lifetime", "3000", "--check-unused-sessions", "100")
     with behind_a_network(tmp_path / "log", chrome, *short) as (proxy, server, page):
         with_page = len(server.processes())
         proxy.cut()

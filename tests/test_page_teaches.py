@@ -81,24 +81,3 @@ def test_lessons_are_offered_until_one_has_seen_them_and_stay_in_the_sidebar(
     expect(slider(page, "Friction coefficient")).not_to_be_visible()
     expect(value(page, "Length over which a broken wire regains its force")).to_have_text("0.2 m")
     expect(page.get_by_text("New here?")).to_have_count(0)
-
-
-def test_a_lesson_that_there_is_not_is_told(open_page: Visit) -> None:
-    page = open_page("?lesson=luck")
-    expect(status(page)).to_contain_text('lesson = "luck" is refused; allowed: how-fast-how-big')
-
-
-def test_one_lesson_leads_to_the_next_and_each_shows_its_views_and_controls(
-    open_page: Visit,
-) -> None:
-    first, *others = LESSONS.values()
-    page = open_page(f"?lesson={first.name}")
-    for one in (first, *others):
-        expect(lesson(page)).to_contain_text(one.question)
-        press(page, "Show me")
-        expect(page.locator(".card")).to_have_count(len(one.views))
-        expect(lesson(page).locator(".control:visible")).to_have_count(len(one.controls))
-        following = page.get_by_role("button", name="Next: ")
-        if one is not others[-1]:
-            following.click()
-    expect(following).to_have_count(0)

@@ -21,7 +21,7 @@ from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
-FEW = settings(RANDOM, max_examples=int(RUNS or 30))
+FEW = settings(RANDOM, max_examples=int(RUNS or 15))
 SIZES = {
     "strand": {"elements": (2, 12), "wires": (2, 5), "instants": (1, 10)},
     "block": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},

@@ -5,18 +5,17 @@ from __future__ import annotations
 import asyncio
 import json
 import os
-import re
+import signal
 import time
 import urllib.request
 from pathlib import Path
 
-from browser import Chrome, Server
-from pages import open_report, press, status
-from playwright.sync_api import expect
+import pytest
+from browser import Server
 from processes import wait_for
 from web_pages import WebPage, run_apart, until
 
-SHORT = ("--unused-session-lifetime", "500", "--check-unused-sessions", "200")
+SHORT = ("--unused-session-lifetime", "3000", "--check-unused-sessions", "200")
 """Options of a server that gives up a page soon after it was closed."""
 AT_REST = 0.2
 """Of a processor, far above what a page takes that waits (0.01 to 0.03), and far below one that is
@@ -75,36 +74,19 @@ def test_a_page_at_rest_takes_next_to_nothing_and_one_asked_for_or_closed_nothin
         server.stop()
 
 
-def test_a_server_has_a_worker_at_hand_and_leaves_neither_it_nor_a_study_behind(
-    tmp_path: Path, chrome: Chrome
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_server_starts_without_a_complaint_and_leaves_no_worker_at_hand_or_of_its_pages(
+    tmp_path: Path, number: signal.Signals
 ) -> None:
-    server = Server(tmp_path / "log")
-    try:
-        server.wait()
-        assert len(server.processes()) > 1
-        page = chrome.new_page()
-        page.goto(server.address)
-        expect(status(page)).to_contain_text("iteration")
-        for word in ("Error", "WARNING", "Traceback"):
-            assert word not in server.log, server.log
-        open_report(page, "Study")
-        page.get_by_text("Growth with the size").click()
-        press(page, "Start")
-        expect(page.get_by_text(re.compile("Errors of LATIN")).first).to_be_visible()
-    finally:
-        server.stop()
-    chrome.leave(page)
-    wait_for(lambda: server.processes() == [])
-
-
-def test_a_server_that_is_interrupted_leaves_no_worker_of_its_pages(tmp_path: Path) -> None:
     async def visit() -> None:
-        pages = [WebPage(server.address) for _ in range(3)]
+        pages = [WebPage(server.address) for _ in range(2)]
         for page in pages:
             await page.open()
         lives = [asyncio.create_task(page.live()) for page in pages]
         await until(lambda: all(page.times for page in pages))
-        server.interrupt()
+        for word in ("Error", "WARNING", "Traceback"):
+            assert word not in server.log, server.log
+        os.kill(server.pid, number)
         await asyncio.gather(*lives)
         for page in pages:
             page.close()
@@ -112,6 +94,7 @@ def test_a_server_that_is_interrupted_leaves_no_worker_of_its_pages(tmp_path: Pa
     server = Server(tmp_path / "log")
     try:
         server.wait()
+        assert len(server.processes()) > 1
         run_apart(visit())
         wait_for(lambda: server.processes() == [])
         assert "Traceback" not in server.log, server.log

@@ -193,8 +193,7 @@ def test_without_matplotlib_the_tables_are_written_and_one_line_says_so(
 def test_absent_solvers_are_named(monkeypatch, tmp_path, capsys):
     nowhere = replace(PEERS[0], module="no_such_module")
     monkeypatch.setattr("solver.study.error_against_time.PEERS", (nowhere,))
-    words = [*TINY, "--out", str(tmp_path)]
-    assert main(words) == 0
+    assert main(["study", "bar", *BRIEF, "--out", str(tmp_path)]) == 0
     assert "Not installed, so absent: PIQP." in capsys.readouterr().out
 
 

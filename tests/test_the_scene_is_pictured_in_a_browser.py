@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pages import Visit, at_rest, card, status
 from playwright.sync_api import Page, expect
+from processes import PATIENCE
 
 MODEL = """const model = (name) =>
   Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)"""
@@ -50,7 +51,7 @@ def test_the_load_arrow_is_dragged_and_the_run_follows(open_page: Visit) -> None
     page.mouse.down()
     peak = page.get_by_role("slider", name="Peak load (N)")
     # A hand that is held still is taken for one that has let go.
-    for step in range(100):
+    for step in range(round(PATIENCE / 0.05)):
         page.mouse.move(middle - 20 - 10 * (step % 3), height)
         page.wait_for_timeout(50)
         if page.get_by_text("follows the slider").is_visible():
@@ -114,6 +115,7 @@ def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away
     # Arrows of the pressure end there: who does not drag them taps on the bar.
     page.mouse.click(*at_rest(page, MIDDLE))
     page.wait_for_function(shown)
+    # Two taps that follow at once would be a double one.
     page.wait_for_timeout(400)
     page.mouse.click(*at_rest(page, MIDDLE))
     page.wait_for_function(f"() => !({shown})()")

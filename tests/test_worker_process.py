@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from direct_runs import direct
+from processes import PATIENCE
 from studios import ALL, Shown
 from worker_line import SHORT, STALLING, Line
 
@@ -24,7 +25,6 @@ from solver.latin import Ending, Iterate, Record
 from solver.reference.closed_form import closed_form
 from solver.scenes.bar import BarSettings, bar
 
-PATIENCE = 60.0
 SLOW_TO_SET_UP = {"elements": 5000, "instants": 2001, "substructures": 500}
 LONG_REFERENCE = {"elements": 300, "instants": 4000, "load": "random"}
 

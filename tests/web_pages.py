@@ -26,7 +26,7 @@ READY = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
 
 
 def serve_pages() -> Server:
-    """Serve pages from this process, each given up soon after it was closed."""
+    """Serve pages from this process."""
     pn.extension(notifications=True)
     stay_on_loop()
     served: Server = get_server(
@@ -34,10 +34,17 @@ def serve_pages() -> Server:
         port=0,
         show=False,
         start=True,
-        unused_session_lifetime_milliseconds=2500,
-        check_unused_sessions_milliseconds=500,
+        # Not given up by the clock: a page may be slow to connect.
+        unused_session_lifetime_milliseconds=600_000,
+        check_unused_sessions_milliseconds=200,
     )
     return served
+
+
+def give_up_pages(server: Server) -> None:
+    """Have a server give up its pages as soon as they are closed."""
+    for session in server.get_sessions("/app"):
+        session.request_expiration()
 
 
 class WebPage:
