@@ -116,12 +116,13 @@ def stay_on_loop() -> None:
 
 def ignore_the_lost() -> None:
     """Have no messages heeded of pages that were given up: a server that ends still reads them."""
-    handle: Any = ProtocolHandler.handle
+    handlers: Any = ProtocolHandler
+    handle = handlers.handle
 
     async def heed(handler: ProtocolHandler, message: Any, connection: Any) -> Any:
         return await handle(handler, message, connection) if connection._session else None
 
-    ProtocolHandler.handle = heed  # type: ignore[method-assign]
+    handlers.handle = heed
 
 
 def ignore_business(page: Any) -> None:

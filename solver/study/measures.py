@@ -105,7 +105,7 @@ def peak_pressing(run: FinishedRun, at: float | None) -> float:
         for name in run.problem.rubbing
         if (normal := run.iterate.contact(name).normal_force) is not None
     ]
-    return float(sum(one.sum(axis=0) for one in pressing).max()) if pressing else math.nan
+    return float(np.concatenate(pressing).sum(axis=0).max()) if pressing else math.nan
 
 
 def holding_friction(run: FinishedRun, at: float | None) -> float:
