@@ -7,7 +7,7 @@ from typing import Any
 
 import panel as pn
 
-from app.address import TABS, Sight
+from app.address import TABS, Sight, sight_from_query
 from app.banner import Banner
 from app.gallery import gallery
 from app.keys import Keys
@@ -142,6 +142,7 @@ class Dashboard:
             # There is no status line to say it.
             self._notes.complain(self.session.look.complaint)
         self._tabs.bar.value = self._sight.tab
+        self._link.follow(replaces=True)
 
     def _begin(self, iteration: int) -> None:
         """Start the run, to go on or to wait at an iteration; in a class, as that is."""
@@ -173,6 +174,7 @@ class Dashboard:
     def _listen(self) -> None:
         self.pulse.on("painted", self._on_painted)
         self.pulse.on("leads", self._lead_again)
+        self.pulse.on("went", self._go_to)
         self.pulse.param.watch(lambda event: self._on_narrow(), "narrow")
         does = {**self.transport.keys(), "p": self._present}
         self._keys.on_msg(lambda message: does[message.data]())
@@ -249,6 +251,16 @@ class Dashboard:
         attendance = self.session.attendance
         if attendance.follows is None and attendance.resume(ticket):
             self.session.ask(afresh=True)
+
+    def _go_to(self, query: str) -> None:
+        """Show what the browser has gone back to, or on to; what was asked for is kept."""
+        if self.session.attendance.follows is None:
+            lesson = self._link.restore(query)
+            if lesson != self._teaching.name:
+                self._teaching.take(lesson)
+        self._tabs.bar.value = sight_from_query(query)[0].tab
+        self._follow()
+        self._link.follow(replaces=True)
 
     def _on_painted(self, number: int) -> None:
         self._painted = number

@@ -6,7 +6,15 @@ from typing import Any
 
 import panel as pn
 
-from app.address import PACES, Sight, left_out, query_of
+from app.address import (
+    PACES,
+    Sight,
+    left_out,
+    query_of,
+    settings_from_query,
+    sight_from_query,
+    twin_from_query,
+)
 from app.classroom import Room
 from app.pulse import Pulse
 from app.question import Question
@@ -61,10 +69,36 @@ class PageLink:
         self._stood: Standing | None = None
         pulse.param.watch(lambda event: self._tell(is_done=event.new > 0), "copied")
 
-    def follow(self) -> None:
-        """Have the address say where the page stands."""
-        if self._stood != (stands := self._stands()):
-            self._stood, self._pulse.query = stands, query_of(*stands)
+    def follow(self, *, replaces: bool = False) -> None:
+        """Have the address say where the page stands; another tab is one to come back from.
+
+        One that was not chosen, but is where the page begins or has come back to, `replaces`.
+        """
+        stands, stood = self._stands(), self._stood
+        if stands == stood:
+            return
+        is_new = stood is not None and stands[1].tab != stood[1].tab and not replaces
+        entries = self._pulse.entries + is_new
+        self._stood = stands
+        self._pulse.param.update(query=query_of(*stands), entries=entries)
+
+    def restore(self, query: str) -> str:
+        """Give the session what an address says; give the name of its lesson."""
+        session, wanted = self._session, self._session.wanted
+        settings, _ = settings_from_query(query)
+        if settings.scene == wanted.scene:
+            # What an address has no room for is as it is.
+            kept = {name: getattr(wanted, name) for name in left_out(wanted)}
+            settings = settings.replace(**kept)
+        twin, _ = twin_from_query(query, settings)
+        sight, _ = sight_from_query(query)
+        if (twin and twin.values()) != (session.twin and session.twin.values()):
+            session.twin = twin
+            session.start(settings)
+        else:
+            session.adopt(settings)
+        session.watch(phase=sight.instant)
+        return sight.lesson
 
     def copy(self) -> None:
         """Copy the link; the page says so once it is done."""

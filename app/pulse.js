@@ -152,8 +152,12 @@ export function render({model, view}) {
   const {dataset} = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)")
   const address = () => dataset.theme === (dark.matches ? "dark" : "light")
     ? model.query : `${model.query}&theme=${dataset.theme}`
-  let due = 0
-  const follow = () => { if (model.query) { history.replaceState(null, "", address()) } }
+  let due = 0, isNew = false
+  const follow = () => {
+    if (!model.query) { return }
+    history[isNew ? "pushState" : "replaceState"](null, "", address())
+    isNew = false
+  }
   const follow_soon = () => {
     clearTimeout(due)
     due = setTimeout(follow, 300)
@@ -161,6 +165,16 @@ export function render({model, view}) {
   const themes = new MutationObserver(follow_soon)
   themes.observe(document.documentElement, {attributeFilter: ["data-theme"]})
   model.on("query", follow_soon)
+  model.on("entries", () => {
+    isNew = true
+    follow_soon()
+  })
+  const went = () => {
+    clearTimeout(due)
+    isNew = false
+    tell("went", location.search)
+  }
+  window.addEventListener("popstate", went)
   model.on("copy", () => {
     follow()
     const count = model.copy, wrote = navigator.clipboard?.writeText(location.href)
@@ -175,6 +189,7 @@ export function render({model, view}) {
     clearInterval(timer)
     clearTimeout(due)
     themes.disconnect()
+    window.removeEventListener("popstate", went)
     document.removeEventListener("visibilitychange", look)
   })
   look()

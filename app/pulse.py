@@ -23,6 +23,7 @@ class Pulse(Plain):
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
     query = param.String(default="", doc="What an address has to say to come back to this.")
+    entries = param.Integer(default=0, doc="Counts the tabs that one can go back from.")
     copy = param.Integer(default=0, doc="Counts how often the address was to be copied.")
     copied = param.Integer(default=0, doc="The last of them that was; negative if it could not be.")
     leads = param.String(default="", doc="What leads a class again after the page was loaded anew.")
@@ -39,7 +40,8 @@ class Pulse(Plain):
         """Have something done with what a message tells.
 
         It is the number of a picture that is "painted", or of a "beat", which counts signs of life,
-        and if it is negative asks for all of a picture; or it is what "leads" a class again.
+        and if it is negative asks for all of a picture; or it is what "leads" a class again,
+        or the address to which one "went" in the browser's history.
         """
 
         def hear(message: Any) -> None:

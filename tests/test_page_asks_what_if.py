@@ -118,3 +118,23 @@ def test_the_tab_is_accessible_and_needs_no_scrolling(open_page: Visit) -> None:
     box = chart(page).bounding_box()
     assert box is not None
     assert box["y"] + box["height"] <= 720
+
+
+def test_back_from_a_run_of_a_chart_shows_the_chart(open_page: Visit) -> None:
+    page = open_page(CURVE)
+    expect(parts(page, "answer")).to_have_count(5)
+    expect(page).to_have_url(re.compile("vary=peak%3D"))
+    before = page.url
+    chart = page.locator(".place")
+    chart.focus()
+    chart.press("ArrowRight")
+    chart.press("Enter")
+    expect(status(page)).to_be_visible()
+    expect(page).not_to_have_url(re.compile("tab="))
+    opened = page.url
+    page.go_back()
+    expect(page).to_have_url(before)
+    expect(parts(page, "answer")).to_have_count(5)
+    page.go_forward()
+    expect(status(page)).to_be_visible()
+    expect(page).to_have_url(opened)
