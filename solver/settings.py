@@ -240,8 +240,8 @@ class Settings(Checked):
         0.01,
         (1e-12, 1.0),
         (1e-6, 0.1),
-        "The run ends when the contact force is estimated to be wrong by less than this share of "
-        "it; 0.01 is 1 %.",
+        "The run ends when friction, and pressure where it is not known, are each estimated to be "
+        "wrong by less than this share; 0.01 is 1 %.",
         group="Stop",
         title="Accuracy",
         logarithmic=True,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from solver.discrete import Problem
@@ -9,7 +12,9 @@ from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.reference.fingerprint import fingerprint
+from solver.reference.states import rules_of
 from solver.scenes import CATALOGUE, discretise
+from solver.scenes.block import BlockSettings
 from solver.scenes.method import method_of
 
 ACCURACY = 0.01
@@ -56,6 +61,35 @@ def distances():
         return found[key]
 
     return distance
+
+
+@pytest.mark.parametrize("friction", [0.02, 0.05])
+@pytest.mark.parametrize("finish", ["none", "status"])
+def test_friction_does_not_hide_behind_a_large_pressure(finish, friction):
+    values = {"accuracy": 1e-3, "elements": 24, "elements_up": 12, "instants": 41}
+    settings = BlockSettings.checked({**values, "finish": finish, "friction": friction})
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    solution = solve(problem, method_of(settings), watch=False)
+    normal = rules_of(problem).normal
+    for kind in (normal, ~normal):
+        exact = reference.contact_force[kind]
+        off = np.linalg.norm(solution.iterate.contact_force[kind] - exact)
+        assert off < 1e-3 * np.linalg.norm(exact)
+
+
+@pytest.mark.parametrize(("size", "error"), [(0.1, 0.5), (1e-3, 0.05), (0.0, 0.0)])
+def test_an_error_is_that_of_friction_and_one_of_next_to_nothing_counts_beside_the_pressure(
+    size, error
+):
+    problem = discretise(BlockSettings.checked({"elements": 4, "elements_up": 2, "instants": 5}))
+    normal = rules_of(problem).normal[:, None]
+    exact = np.where(normal, 1.0, size) * np.ones(problem.n_instants)
+    wrong = np.where(normal, 1.0, 1.5 * size) * np.ones(problem.n_instants)
+    nowhere = np.zeros((problem.n_dofs, problem.n_instants))
+    distance = distance_to(SimpleNamespace(displacement=nowhere, contact_force=exact), problem)
+    fields = SimpleNamespace(displacement=nowhere, contact_force=wrong)
+    assert distance.of_friction_force(fields) == pytest.approx(error, rel=1e-2)
 
 
 @pytest.mark.parametrize(("scene", "values"), RUNS, ids=str)

@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
@@ -185,6 +186,14 @@ class Problem:
         """Rows of all components of the bodies above at interfaces with friction."""
         parts = [one.above for law in self.rubbing.values() for one in law.components]
         return as_slice(np.unique(np.concatenate(parts)))
+
+    @cached_property
+    def rubbing_is_normal(self) -> NDArray[np.bool_]:
+        """Which of these rows are along the normal of their interface."""
+        rows = np.arange(self.n_rows)[self.rubbing_rows]
+        laws = self.rubbing.values()
+        normal = [law.normal.above for law in laws if law.normal is not None]
+        return np.isin(rows, np.concatenate([np.zeros(0, dtype=np.intp), *normal]))
 
     @cached_property
     def friction(self) -> Friction:

@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import ROUNDING, Array
 from solver.latin.iterate import Iterate
-from solver.reference.distance import VANISHING
+from solver.reference.distance import LEAST_SHARE, VANISHING
 
 LOOK_BACK = 0.7
 """A change of the contact force is that since the iterate at this share of the iterations."""
@@ -64,9 +64,7 @@ class ForceChanges:
         before = _at(self._past, LOOK_BACK * number)
         self.last = math.nan
         if before is not None:
-            size = max(float(np.linalg.norm(force)), self._least)
-            change = float(np.linalg.norm(force - before.force))
-            self.last = change / size if size > 0.0 else 0.0
+            self.last = _share(iterate, force - before.force, force, self._least)
         if not self._past or number >= SPACING * self._past[-1].number:
             now = _Past(number, force, self.last)
             self._past = [*_still_needed(self._past, number), now]
@@ -108,6 +106,24 @@ def _ratio(part: float, whole: float) -> float:
     if part == 0.0:
         return 0.0
     return part / whole if whole != 0.0 else math.inf
+
+
+def _share(iterate: Iterate, change: Array, force: Array, least: float) -> float:
+    """Give the relative change of the friction, or of the pressure if that is larger.
+
+    Relative to what `solver.reference.distance` divides an error by.
+    """
+    n_instants, normal = iterate.problem.n_instants, iterate.problem.rubbing_is_normal
+    changes, squares = (
+        np.einsum("ij,ij->j", one, one)
+        for one in (part.reshape(n_instants, -1) for part in (change, force))
+    )
+    least = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
+    found = 0.0
+    for kind in (normal, ~normal):
+        size = max(math.sqrt(float(squares[kind].sum())), least)
+        found = max(found, math.sqrt(float(changes[kind].sum())) / size if size > 0.0 else 0.0)
+    return found
 
 
 def _least(iterate: Iterate) -> float:

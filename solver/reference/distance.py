@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import truediv
 from typing import Protocol
 
 import numpy as np
@@ -18,6 +19,12 @@ from solver.reference.states import rules_of
 
 VANISHING = 1e-8
 """Share of the load and of all that friction could carry below which contact forces vanish."""
+
+
+LEAST_SHARE = 0.01
+"""Share of pressure and friction together that each of them counts as, at least. Friction hides
+behind a pressure of a hundred times its size if both are measured by one norm; and a friction that
+is next to nothing beside the pressure that it comes from has no digits that a run could find."""
 
 
 class Fields(Protocol):
@@ -52,6 +59,8 @@ class Distance:
         Friction forces that are allowed without any pressure, shape (n_forces,), N.
     dofs
         Degrees of freedom at interfaces, shape (n,).
+    normal
+        Which of the forces are pressures that follow from the solution, shape (n_forces,).
     determinate
         Where the contact force is, shape (n_forces, n_instants); a point that is held still by
         a support shares its force with that support in any way.
@@ -71,6 +80,7 @@ class Distance:
         load: Array,
         bound: Array,
         dofs: Indices,
+        normal: NDArray[np.bool_],
         determinate: NDArray[np.bool_],
         held: NDArray[np.bool_],
     ) -> None:
@@ -85,6 +95,9 @@ class Distance:
         # Without a known bound it is the load alone that contact forces can vanish beside.
         vanishes = force_size <= VANISHING * (min(load_size, allowed) or load_size)
         self.force_size = (load_size if vanishes else force_size) or 1.0
+        self._kinds = [kind for kind in (normal, ~normal) if kind.any()]
+        least = self.force_size if vanishes else LEAST_SHARE * self.force_size
+        self._sizes = [max(self._norm(self._force[kind]), least) for kind in self._kinds]
 
     def of_displacement(self, fields: Fields) -> float:
         """Give the relative error of the displacement."""
@@ -92,9 +105,13 @@ class Distance:
         return self._norm(difference) / self._displacement_size
 
     def of_friction_force(self, fields: Fields) -> float:
-        """Give the relative error of the contact forces: friction, and pressure if unknown."""
-        force = fields.contact_force * self._determinate
-        return self._norm(force - self._force) / self.force_size
+        """Give the relative error of the contact forces: of friction, or of pressure if larger.
+
+        Each relative to its own norm; to `LEAST_SHARE` of both together where that is more.
+        """
+        difference = fields.contact_force * self._determinate - self._force
+        errors = (self._norm(difference[kind]) for kind in self._kinds)
+        return max(map(truediv, errors, self._sizes), default=0.0)
 
     def _norm(self, field: Array) -> float:
         largest = float(np.abs(field).max(initial=0.0))
@@ -127,6 +144,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
         load * problem.scales.force,
         rules_of(problem).bound * problem.scales.force,
         np.unique(problem.row_dofs),
+        rules_of(problem).normal,
         determinate_forces(problem),
         held_instants(problem, reference.contact_force),
     )

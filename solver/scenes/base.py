@@ -33,7 +33,8 @@ class SceneSettings(Settings):
         100.0,
         (1e-3, 1e9),
         (1.0, 1e4),
-        "Stiffness of that spring, as a multiple of E S / L² along a rod, or E / L in the plane.",
+        "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
+        "mean S of its elements, or of E / L in the plane.",
         group="Contact",
         title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",
