@@ -282,7 +282,7 @@ class Dashboard:
         view = [self._stage.view] if self._stage.is_bare else []
         self._live.css_classes = ["live", *view, *laid_out]
         self._stage.magnify(has_lesson=bool(lesson))
-        self._teaching.view.is_strip = self._stage.view == PRESENT
+        self._teaching.view.is_strip = self._keys.presents = self._stage.view == PRESENT
         self._phone.dress(is_bare=self._stage.is_bare)
 
     def _on_lesson(self) -> None:

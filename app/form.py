@@ -30,7 +30,7 @@ label { display: block; }
 .typed { display: flex; align-items: baseline; justify-content: space-between; gap: 8px; }
 summary { margin-top: 14px; cursor: pointer; }
 input[type=range] { display: block; width: 100%; margin: 4px 0 8px; cursor: pointer; }
-input { accent-color: #1976d2; }
+input { accent-color: var(--accent); }
 select { display: block; width: 100%; margin-top: 2px; }
 select, td input, .number, button { box-sizing: border-box; font: inherit; color: inherit;
   background: transparent; border-radius: 4px;

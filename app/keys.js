@@ -55,6 +55,13 @@ export function render({model}) {
     event.preventDefault()
     all[(all.indexOf(chosen) + by + all.length) % all.length].focus()
   }
+  const leave = document.createElement("button")
+  const out = "Leave the presenter's view (p)."
+  Object.assign(leave, {textContent: "✕", title: out, ariaLabel: out})
+  leave.onclick = () => model.send_msg("p")
+  const show = () => { leave.hidden = !model.presents }
+  model.on("presents", show)
+  show()
   const names = new Set([...model.keys.map(([name]) => name), ...model.own])
   const press = (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || !model.hears) { return }
@@ -79,6 +86,7 @@ export function render({model}) {
     document.removeEventListener("keydown", press)
   })
   const root = document.createElement("div")
-  root.append(button, dialog)
+  root.className = "corner"
+  root.append(button, leave, dialog)
   return root
 }

@@ -32,6 +32,7 @@ STYLE = """
 button { font: inherit; color: inherit; background: transparent; cursor: pointer;
   width: 28px; height: 28px; border-radius: 14px;
   border: 1px solid color-mix(in srgb, currentColor 45%, transparent); }
+.corner { display: flex; flex-direction: var(--stacked, row); gap: 8px; }
 dialog { border: 0; border-radius: 8px; padding: 16px 24px 20px; font-size: 17px; line-height: 1.7;
   color: var(--mui-palette-text-primary); background: var(--mui-palette-background-paper);
   box-shadow: 0 8px 40px rgba(0, 0, 0, 0.5); }
@@ -60,12 +61,15 @@ class Keys(Plain):
         Those that the browser follows by itself; plots hear them as the event "plot-key".
     hears
         Whether keys move the run: while it is looked at, once the page is built.
+    presents
+        Whether there is a way out of the presenter's view to be shown.
     """
 
     keys = param.List(default=[list(key) for key in KEYS])
     terms = param.List(default=[[list(spellings), line] for spellings, line in TERMS.items()])
     own = param.List(default=list(IN_THE_BROWSER))
     hears = param.Boolean(default=False)
+    presents = param.Boolean(default=False)
 
     _esm = script("glossary.js", "keys.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]

@@ -48,7 +48,8 @@ def overlay(panel: Panel) -> hv.Overlay:
         toolbar="above",
         # What scrolls the page must not move what it passes over, until one asks for it.
         active_tools=[],
-        backend_opts={"plot.toolbar.logo": None},
+        # A toolbar that sticks to the axes lies over a title that is as wide as they are.
+        backend_opts={"plot.toolbar.logo": None, "plot.toolbar_sticky": False},
     )
 
 

@@ -5,9 +5,11 @@ export function render({model}) {
   range.type = "range"
   const button = document.createElement("button")
   button.onclick = () => model.send_msg(null)
-  label.append(document.createElement("span"), text, range)
-  const root = document.createElement("div")
-  root.append(button, label)
+  label.append(document.createElement("span"), text)
+  const line = document.createElement("div"), root = document.createElement("div")
+  line.className = "line"
+  line.append(button, range)
+  root.append(label, line)
   const show = () => {
     label.title = model.help
     button.hidden = !model.plays

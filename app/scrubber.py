@@ -17,8 +17,9 @@ from app.innards import Plain
 STYLE = """
 label { display: block; font-size: 15px; line-height: 1.4; white-space: nowrap; }
 output { font-weight: 600; }
-input { display: block; width: 100%; margin: 4px 0; accent-color: #1976d2; cursor: pointer; }
-button { float: right; padding: 0 6px; font: inherit; line-height: 1.3; color: inherit;
+.line { display: flex; align-items: center; gap: 6px; height: 24px; }
+input { flex: 1; min-width: 0; margin: 0; accent-color: var(--accent); cursor: pointer; }
+button { padding: 0 5px; font: inherit; font-size: 13px; line-height: 1.4; color: inherit;
   background: transparent; border-radius: 4px; cursor: pointer;
   border: 1px solid color-mix(in srgb, currentColor 40%, transparent); }
 """

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from studios import ALL, SMALL, Shown, keys
 
-from app.views import convergence, error_time, friction, loop
+from app.views import convergence, deformed, error_time, friction, load_path, loop
 from app.views.catalogue import VIEWS, fitting
 from app.views.colors import ORANGE
 from app.views.drawing import Scene
@@ -157,3 +157,25 @@ def test_what_is_told_of_a_plot_is_what_it_shows() -> None:
     errors = history.column("error_force")
     assert f"force error from {errors[0]:.2g} to {errors[-1]:.2g}." in said["Convergence"]
     assert "F = " in said["Scene"]
+
+
+def test_loads_of_one_symbol_say_where_they_act() -> None:
+    shown = Shown()
+    for ticket, scene in enumerate(("block", "layers"), start=1):
+        shown.run(ticket, scene, SMALL[scene])
+        names = [text.rpartition(", ")[0] for text in keys(load_path.draw(shown.scene(), None))]
+        assert len(set(names)) == len(names) > 1
+
+
+def test_a_picture_has_one_scale_of_stress_wherever_one_came_from() -> None:
+    shown = Shown()
+    shown.run(1, "block", SMALL["block"])
+    scenes = [shown.scene(replace(ALL, phase=phase)) for phase in np.linspace(0.0, 1.0, 13)]
+    afresh = [deformed.draw(scene, None) for scene in scenes]
+    for scene, drawing in zip(scenes, afresh, strict=True):
+        for before in afresh:
+            assert before is not None
+            coming = deformed.draw(scene, before.kept)
+            assert coming is not None
+            assert drawing is not None
+            assert coming.colors == drawing.colors

@@ -42,6 +42,8 @@ class Act:
         Of the values.
     setting
         Name of the setting that scales them, or empty.
+    where
+        On which side, and along which axis, as "top, x".
     """
 
     symbol: str
@@ -51,6 +53,7 @@ class Act:
     values: Array
     unit: str
     setting: str = ""
+    where: str = ""
 
 
 def size_of(data: Rods | Stack) -> tuple[float, float]:
@@ -65,7 +68,9 @@ def acts_on(data: Rods | Stack, settings: Settings) -> list[Act]:
     found = _on_rods(data, settings) if isinstance(data, Rods) else _on_stack(data)
     names = behind(settings)
     return [
-        replace(act, setting=names.get(where, "")) for where, act in found if np.any(act.values)
+        replace(act, setting=names.get(where, ""), where=where.replace(" ", ", "))
+        for where, act in found
+        if np.any(act.values)
     ]
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from app.views.colors import GHOST, GREY
 from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held, round_up
+from app.views.scales import around, decimal_scale, round_up
 from app.worker.portrait import rims
 from app.worker.shown import Mesh
 from solver.arrays import Array
@@ -19,17 +19,20 @@ SHOWN = 0.06
 CIVIDIS = ("#00224e", "#1a386f", "#434e6c", "#61656f", "#7d7c78", "#9b9476", "#bcae6c", "#dfc858")
 
 
-def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | None:
-    """Draw the mesh moved by its magnified displacement."""
+def draw(scene: Scene, kept: float | None) -> Drawing | None:
+    """Draw the mesh moved by its magnified displacement.
+
+    A colour means the same stress wherever one came from: the scale follows from the picture alone.
+    """
     mesh, field = scene.run.stand.mesh, scene.frame.mesh
     if mesh is None or field is None:
         return None
-    old, fit = kept or (None, 1.0)
+    fit = kept or 1.0
     factor = scene.look.magnification
     if factor is None:
         factor = fit = fitting(mesh, field.largest, fit)
     moved = mesh.nodes + np.float32(factor) * field.displacement
-    limits = held(old, float(field.stress.min()), float(field.stress.max()))
+    limits = around(float(field.stress.min()), float(field.stress.max()))
     unit, name = decimal_scale(max(-limits[0], limits[1]), "Pa")
     low, high = (limit / unit for limit in limits)
     reach = round_up(factor * reach_of(scene)) if field.largest > 0.0 else 0.0
@@ -43,7 +46,7 @@ def draw(scene: Scene, kept: tuple[Limits | None, float] | None) -> Drawing | No
             *ghosts,
         ),
         curves=[Curve(one[:, 0], one[:, 1], GHOST, 1.5) for one in outlines],
-        kept=(limits, fit),
+        kept=fit,
     )
 
 

@@ -33,25 +33,33 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
     y = Axis(min(low, 0.0) - room, max(high, 0.0) + room, label=f"Load ({unit})")
     curves = [across([0.0], x, color=GREY, alpha=0.4, width=1)]
     keys = []
-    for (symbol, own, _), values, peak, color in zip(paths, shown, peaks, COLORS, strict=False):
+    for (name, own, _), values, peak, color in zip(paths, shown, peaks, COLORS, strict=False):
         curves.append(Curve(data.instants, values, color))
-        size, name = decimal_scale(peak, own)
-        keys.append(Key(color, "line", f"{symbol}, {peak / size:.3g} {name}"))
+        size, prefixed = decimal_scale(peak, own)
+        keys.append(Key(color, "line", f"{name}, {peak / size:.3g} {prefixed}"))
     curves.append(upright([time], y, color=VERMILION, width=2))
     now = [np.interp(time, data.instants, one) for one in shown[: len(COLORS)]]
     return Drawing(x, y, curves, [Marks([time] * len(now), now, VERMILION)], keys=keys)
 
 
 def _paths(scene: Scene) -> list[tuple[str, str, Array]]:
-    """Give the loads that change, with symbol and unit; or all, if none does."""
+    """Give the loads that change, with name and unit; or all, if none does.
+
+    Those of one symbol say where they act, too.
+    """
     data = scene.run.stand.portrait.data
     found = [
-        (act.symbol, act.unit, np.atleast_2d(act.values)[-1])
+        (act.symbol, act.where, act.unit, np.atleast_2d(act.values)[-1])
         for act in acts_on(data, scene.run.settings)
     ]
     if isinstance(data, Stack) and data.tilt is not None:
-        found.insert(0, ("θ", "°", np.degrees(data.tilt)))
-    return [path for path in found if np.ptp(path[2]) > 0.0] or found
+        found.insert(0, ("θ", "", "°", np.degrees(data.tilt)))
+    shown = [path for path in found if np.ptp(path[-1]) > 0.0] or found
+    symbols = [symbol for symbol, *_ in shown]
+    return [
+        (symbol if symbols.count(symbol) == 1 else f"{symbol} ({where})", unit, values)
+        for symbol, where, unit, values in shown
+    ]
 
 
 VIEW = View(

@@ -68,6 +68,14 @@ def held(old: Limits | None, low: float, high: float) -> Limits:
     return float(np.floor(ROOM * low / step) * step), float(np.ceil(ROOM * high / step) * step)
 
 
+def around(low: float, high: float) -> Limits:
+    """Give limits around values and zero that follow from these alone, and move seldom."""
+    below, above = max(-low, 0.0), max(high, 0.0)
+    if not np.isfinite(below + above):
+        return 0.0, 1.0
+    return -round_up(below) if below else 0.0, round_up(above) if above or not below else 0.0
+
+
 def across(places: Sequence[float], axis: Axis, **style: Any) -> Curve:
     """Give lines over the whole width of a plot at some heights, as one curve."""
     return _rules(places, axis, upright=False, **style)
