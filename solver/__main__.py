@@ -1,4 +1,4 @@
-"""The command line: `python -m solver`."""
+"""The command line: `python -m solver`, or `slipfront` where it is installed."""
 
 import os
 import sys
@@ -8,4 +8,5 @@ for _threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from solver.cli import main  # noqa: E402  # the matrices are small: one thread is fastest
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -10,6 +10,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +41,11 @@ from solver.sweep_command import add_sweep
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; give the exit code: 0 converged, 1 stopped otherwise, 2 refused input."""
-    chosen = _parser().parse_args(arguments)
+    parser = _parser()
+    chosen, options = parser.parse_known_args(arguments)
+    if options and not hasattr(chosen, "passed_on"):
+        parser.error(f"unrecognized arguments: {' '.join(options)}")
+    chosen.passed_on = options
     code = 0
     try:
         code = chosen.command(chosen)
@@ -62,7 +67,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m solver", description=__doc__)
+    is_installed = Path(sys.argv[0]).stem == "slipfront"
+    prog = "slipfront" if is_installed else "python -m solver"
+    parser = argparse.ArgumentParser(prog=prog, description=__doc__)
     commands = parser.add_subparsers(required=True)
     run = commands.add_parser("run", help="run one scene to its stop rule")
     run.add_argument("scene", help="a name of the catalogue, or a saved settings file (.toml)")
@@ -84,6 +91,9 @@ def _parser() -> argparse.ArgumentParser:
     add_reports(commands)
     add_sweep(commands)
     add_lesson(commands)
+    for further in entry_points(group="slipfront.commands"):
+        with contextlib.suppress(ImportError):  # the engine may be there alone
+            further.load()(commands)
     return parser
 
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -90,9 +90,16 @@ class Chrome:
 
 
 class Server:
-    """`panel serve app` in a process group of its own."""
+    """`panel serve app` in a process group of its own, or another command that serves the page."""
 
-    def __init__(self, log: Path, port: int = 0, *options: str) -> None:
+    def __init__(
+        self,
+        log: Path,
+        port: int = 0,
+        *options: str,
+        serves: Sequence[str] = (),
+        place: Path = ROOT,
+    ) -> None:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = port or free.getsockname()[1]
@@ -102,11 +109,12 @@ class Server:
         self._log = log
         # The script, as a user calls it: `python -m panel` finds modules that it does not.
         panel = str(Path(sys.executable).with_name("panel"))
-        command = [panel, "serve", "app", "--port", str(port), "--liveness", *options]
+        serves = serves or (panel, "serve", "app")
+        command = [*serves, "--port", str(port), "--liveness", *options]
         with log.open("w") as output:
             self._process = subprocess.Popen(
                 command,
-                cwd=ROOT,
+                cwd=place,
                 stdout=output,
                 stderr=output,
                 start_new_session=True,
