@@ -13,8 +13,8 @@ from solver.definitions import SettingError
 from solver.disk import write
 from solver.files import settings_from_command
 from solver.report_commands import writing
-from solver.study.executors import FORMS, opened
-from solver.study.pool import GoneError
+from solver.running.executors import FORMS, opened
+from solver.running.pool import GoneError
 from solver.study.sweep import Plan, Row, VersionsDifferError, patience, plan_of, sweep
 from solver.study.sweep.adaptive import Chooser, sweep_adaptively
 from solver.study.sweep.growth import growth

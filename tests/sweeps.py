@@ -6,8 +6,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
+from solver.running.pool import Pool
 from solver.scenes import CATALOGUE
-from solver.study.pool import Pool
 from solver.study.sweep import Plan, Row, plan_of, sweep
 
 TINY = {"elements": 20, "instants": 21, "substructures": 2}

@@ -27,6 +27,7 @@ LAYERS = [
     ["loads"],
     ["scenes"],
     ["files"],
+    ["running"],
     ["study"],
     ["lessons", "report_commands"],
     ["sweep_command"],

@@ -26,8 +26,8 @@ from app.session import Session
 from app.worker.bench import Bench
 from app.worker.desk import PROGRESS, SECTIONS, Desk, files, said
 from app.worker.orders import Pace
+from solver.running.executors import VARIABLE
 from solver.scenes.bar import BarSettings
-from solver.study.executors import VARIABLE
 
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 

@@ -30,8 +30,8 @@ from app.worker.link import Link
 from app.worker.orders import Run, Seek, Step
 from app.worker.reports import Died, Facts, Picture, Report
 from app.worker.words import REPLAYED
+from solver.running import seats
 from solver.scenes.bar import BarSettings
-from solver.study import seats
 
 BROKEN: list[list[Report]] = [
     [Picture(1, Facts(is_broken=True), b"")],
@@ -169,7 +169,7 @@ def test_a_death_is_told_and_a_run_that_is_given_up_does_not_run(
     assert not session.goes_on
 
 
-def no_fork_server(*arguments: Any) -> Any:
+def no_fork_server(*arguments: Any, **options: Any) -> Any:
     raise EOFError
 
 

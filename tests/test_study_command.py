@@ -16,13 +16,13 @@ from solver import report_commands
 from solver.cli import main
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
+from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.study import peers
 from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
 from solver.study.figure_data import HUES
 from solver.study.growth import Growth, Size, growth
-from solver.study.machine import LIMITS
 from solver.study.peers import PEERS, PeerError, solve_by_peer
 from solver.study.study_panels import error_panels
 from solver.study.study_report import growth_table, table, winners

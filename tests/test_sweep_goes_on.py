@@ -18,10 +18,10 @@ from solver.latin.status_step import states_of
 from solver.latin.step_cost import Costs
 from solver.laws import OPEN
 from solver.reference.choice import incremental_solver, reference_of
+from solver.running.executors import Processes, opened
+from solver.running.pool import EndedError, OverdueError
 from solver.scenes import CATALOGUE, discretise
-from solver.study.executors import Processes, opened
 from solver.study.finished import finished_run
-from solver.study.pool import EndedError, OverdueError
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 from solver.study.sweep.nearest import KEPT, Nearest

@@ -17,9 +17,9 @@ from sweeps import rows_of, tiny
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.study.cluster import Caller
-from solver.study.executors import opened
-from solver.study.pool import Pool
+from solver.running.cluster import Caller
+from solver.running.executors import opened
+from solver.running.pool import Pool
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 
@@ -156,7 +156,7 @@ def test_workers_of_other_versions_are_refused(pool: Pool, monkeypatch: pytest.M
 def test_a_cluster_that_does_not_answer_is_refused_in_a_line(
     on: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("solver.study.cluster.PATIENCE", 0.5)
+    monkeypatch.setattr("solver.running.cluster.PATIENCE", 0.5)
     with pytest.raises(SettingError, match="a Dask scheduler that answers") as refusal:
         opened(on).__enter__()
     assert len(str(refusal.value).splitlines()) == 1
@@ -174,6 +174,6 @@ def test_without_distributed_a_cluster_is_refused_in_a_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    monkeypatch.delitem(sys.modules, "solver.study.cluster", raising=False)
+    monkeypatch.delitem(sys.modules, "solver.running.cluster", raising=False)
     with pytest.raises(SettingError, match=r"pip install 'slipfront\[cluster\]'"):
         opened("dask://127.0.0.1:9").__enter__()

@@ -23,10 +23,10 @@ from app.question import (
 from app.session import Session
 from app.whatif import WhatIf, form_of
 from app.worker.bench import Bench
+from solver.running.executors import VARIABLE, Processes
+from solver.running.pool import Pool
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
-from solver.study.executors import VARIABLE, Processes
-from solver.study.pool import Pool
 from solver.study.sweep import Row
 
 DEFAULTS = BarSettings.checked({})

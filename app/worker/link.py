@@ -12,7 +12,7 @@ from queue import SimpleQueue
 from app.worker import process
 from app.worker.orders import Order
 from app.worker.reports import Died, Report
-from solver.study.processes import start_process
+from solver.running.processes import start_process
 
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]
 

@@ -21,10 +21,10 @@ from solver.discrete.problem import Problem
 from solver.latin import judged
 from solver.reference.choice import is_alone, reference_of
 from solver.reference.distance import Distance, distance_to
+from solver.running.machine import machine
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.machine import machine
 from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
 from solver.study.progress import Tell, silent
 

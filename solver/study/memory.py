@@ -16,10 +16,10 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from solver.running.processes import ONE_THREAD
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.finished import finished_run
-from solver.study.processes import ONE_THREAD
 
 STATUS = Path("/proc/self/status")
 TINY: dict[str, dict[str, object]] = {

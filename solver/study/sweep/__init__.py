@@ -18,7 +18,7 @@ where the answer bends, from the rows that are known; a process of a sweep does 
 would take twice as long to start.
 """
 
-from solver.study.executors import opened
+from solver.running.executors import opened
 from solver.study.sweep.drive import sweep
 from solver.study.sweep.plan import Axis, Plan, plan_from_plain, plan_of
 from solver.study.sweep.point import Row, VersionsDifferError, patience, run_point

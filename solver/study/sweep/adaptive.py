@@ -16,7 +16,7 @@ from scipy.spatial import Delaunay
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.study.pool import Pool
+from solver.running.pool import Pool
 from solver.study.sweep.chart import is_wide
 from solver.study.sweep.drive import AHEAD, Course
 from solver.study.sweep.plan import Plan

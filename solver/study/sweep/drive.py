@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass, field
 
-from solver.study.pool import EndedError, OverdueError, Pool
+from solver.running.pool import EndedError, OverdueError, Pool
 from solver.study.sweep.order import snake
 from solver.study.sweep.plan import Plan
 from solver.study.sweep.point import (

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 
+from solver.running.executors import opened
+from solver.running.machine import machine
 from solver.scenes.bar import BarSettings
-from solver.study.executors import opened
-from solver.study.machine import machine
 from solver.study.sweep.drive import sweep
 from solver.study.sweep.plan import plan_of
 

@@ -14,7 +14,7 @@ from distributed import Client
 from distributed.scheduler import KilledWorker
 
 from solver.definitions import SettingError
-from solver.study.pool import EndedError, GoneError, Pool
+from solver.running.pool import EndedError, GoneError, Pool
 
 PATIENCE = 10.0
 """Seconds that a scheduler has to answer."""

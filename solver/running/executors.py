@@ -15,8 +15,8 @@ from functools import partial
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.study.pool import Pool
-from solver.study.seats import Call, Seat
+from solver.running.pool import Pool
+from solver.running.seats import Call, Seat
 
 __all__ = ["FORMS", "VARIABLE", "Pool", "Processes", "executor_of_the_server", "opened"]
 VARIABLE = "SLIPFRONT_EXECUTOR"
@@ -155,7 +155,7 @@ def _open(on: str, limit: float | None, lasting: bool) -> Pool:
 
 def _cluster(on: str) -> Pool:
     try:
-        from solver.study.cluster import Cluster
+        from solver.running.cluster import Cluster
     except ModuleNotFoundError as missing:
         remedy = f"{missing.name} is not here: pip install 'slipfront[cluster]'"
         raise SettingError("--on", on, FORMS, remedy) from None

@@ -13,16 +13,15 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 
-from solver.study.machine import LIMITS
+from solver.running.machine import LIMITS
 
 ONE_THREAD = dict.fromkeys(LIMITS, "1")
-PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "solver.study.sweep.point"]
 
 _starting = threading.Lock()
 
 
 def start_process(
-    main: Callable[..., None], *arguments: object, preloaded: list[str] = PRELOADED
+    main: Callable[..., None], *arguments: object, preloaded: list[str]
 ) -> tuple[BaseProcess, Connection]:
     """Start a process, and give the caller's end of its pipe.
 

@@ -14,8 +14,8 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from solver.study.pool import EndedError, OverdueError
-from solver.study.processes import start_process
+from solver.running.pool import EndedError, OverdueError
+from solver.running.processes import start_process
 
 NICENESS = 10
 """Below everything that somebody waits for, a page's own runs among them."""
@@ -72,7 +72,7 @@ class Seat:
         """
         if self._process is None or self._pipe is None or not self._process.is_alive():
             self.clear()
-            self._process, self._pipe = start_process(obey)
+            self._process, self._pipe = start_process(obey, preloaded=[call.work.func.__module__])
         call.runs_in(self._process)
         try:
             is_sound, found = self._ask(self._pipe, call.work)
