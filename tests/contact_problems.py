@@ -4,7 +4,7 @@ import numpy as np
 
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.stack import Given, Side, Stack, Support
-from solver.laws import Bodies, Component, Dirichlet, Friction
+from solver.laws import Bodies, Component, Contact, Dirichlet, Sliders, Unilateral
 
 COURSES = ("random", "reversal", "open and close", "wander")
 
@@ -53,14 +53,12 @@ def contact(normal, tangent, below, gap, friction):
     count = len(normal)
     points, ones = np.arange(count), np.ones(count)
     below = below or (None, None)
-    return Friction.of_contact(
-        Component(normal, below[0]),
-        Component(tangent, below[1]),
-        friction * ones,
+    return Contact(
+        normal=Unilateral(component=Component(normal, below[0]), gap=gap),
+        tangential=Sliders.of_contact(Component(tangent, below[1]), friction * ones),
         points=points,
         positions=1.0 * points,
         weights=ones,
-        gap=gap,
         around=Bodies(),
     )
 
@@ -101,9 +99,11 @@ def rubbing_strands(rng, strands, points, *, ring=False, instants=8):
     pairs = [(one + 1, one) for one in range(strands - 1)] + [(0, strands - 1)] * ring
     along = np.arange(points)
     laws = {
-        f"strand {above}-{below}": Friction.of_known_bound(
-            Component(points * above + along, points * below + along),
-            rng.uniform(0.0, 0.5, size=points),
+        f"strand {above}-{below}": Contact(
+            tangential=Sliders.of_known_bound(
+                Component(points * above + along, points * below + along),
+                rng.uniform(0.0, 0.5, size=points),
+            ),
             points=along,
             positions=1.0 * along,
             weights=np.ones(points),

@@ -14,7 +14,7 @@ from solver.definitions import SettingError
 from solver.discrete.rest import rigid_slide
 from solver.discrete.stack import Spring
 from solver.latin import Ending, solve
-from solver.laws import Component, SlackSpring
+from solver.laws import Component, Contact, Frictionless, SlackSpring
 from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -105,7 +105,7 @@ def test_without_friction_the_spring_carries_the_whole_weight():
 def test_the_spring_is_stretched_by_what_the_foot_moves_beyond_the_slack(run):
     problem = run.solution.iterate.problem
     law = problem.rubbing["spring"]
-    foot = run.solution.iterate.displacement[problem.row_dofs[law.normal.above[0]]]
+    foot = run.solution.iterate.displacement[problem.row_dofs[law.normal.component.above[0]]]
     stretched = np.maximum(-foot - run.settings.slack, 0.0)
     np.testing.assert_allclose(
         run.force, run.settings.spring * stretched, atol=1e-8 * run.force.max()
@@ -159,22 +159,24 @@ def test_a_rigid_block_slides_no_farther_than_friction_and_spring_let_it():
 @given(st.integers(0, 2**31))
 def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(seed):
     random = np.random.default_rng(seed)
-    law = SlackSpring.of_contact(
-        normal=Component(np.arange(3)),
-        tangent=Component(np.arange(3, 6)),
-        friction=np.zeros(3),
+    spring = SlackSpring(
+        component=Component(np.arange(3)),
+        gap=random.uniform(0.0, 1.0, 3),
+        softness=10.0 ** random.uniform(-2.0, 2.0, 3),
+    )
+    law = Contact(
+        normal=spring,
+        tangential=Frictionless(component=Component(np.arange(3, 6))),
         points=np.arange(3),
         positions=np.arange(3.0),
         weights=np.ones(3),
-        gap=random.uniform(0.0, 1.0, 3),
-        softness=10.0 ** random.uniform(-2.0, 2.0, 3),
     )
     k = 10.0 ** random.uniform(-1.0, 1.0, 6)
     incoming = random.normal(size=(6, 20))
     moved = incoming.copy()
     law.rule(Region(np.arange(6), k, np.arange(20)))(incoming, moved, slice(None))
     force = k[:, None] * (moved - incoming)
-    overlap = np.maximum(-(moved[:3] + law.gap[:, None]), 0.0)
-    np.testing.assert_allclose(force[:3], overlap / law.softness[:, None], atol=1e-12)
+    overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
+    np.testing.assert_allclose(force[:3], overlap / spring.softness[:, None], atol=1e-12)
     assert not force[3:].any()
     assert np.all(law.behaviour(moved, force, 1e-14).violation(1.0) < 1e-10)

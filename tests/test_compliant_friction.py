@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from solver.latin import Ending, iterations, solve
-from solver.laws import Component, Friction
-from solver.laws.compliant import CompliantFriction
+from solver.laws import Compliant, Component, Contact, Sliders, Unilateral
 from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -143,21 +142,23 @@ def test_along_the_search_direction_slider_and_spring_carry_the_same_force(seed,
         "positions": np.arange(pairs, dtype=float),
         "weights": random.uniform(0.5, 2.0, pairs),
     }
-    plain = (
-        Friction.of_contact(normal, tangent, np.full(pairs, 0.4), gap=np.zeros(pairs), **common)
+    sliders = (
+        Sliders.of_contact(tangent, np.full(pairs, 0.4))
         if opens
-        else Friction.of_known_bound(tangent, random.uniform(0.0, 0.5, pairs), **common)
+        else Sliders.of_known_bound(tangent, random.uniform(0.0, 0.5, pairs))
     )
-    law = CompliantFriction.of(plain, stiffness=2.0, length=1.0)
+    along = Compliant(2.0).on(sliders, common["weights"], 1.0)
+    across = Unilateral(component=normal, gap=np.zeros(pairs)) if opens else None
+    law = Contact(tangential=along, normal=across, **common)
     k = 10.0 ** random.uniform(-1.0, 1.0, rows.size)
     incoming = random.normal(size=(rows.size, times))
     moved = incoming.copy()
     law.rule(Region(np.arange(rows.size), k, np.arange(times)))(incoming, moved, slice(None))
     force = k[:, None] * (moved - incoming)
     friction = force[tangent.above]
-    slider = law.slider(moved, force)
-    np.testing.assert_allclose(friction, (slider - tangent.jump(moved)) / law.softness[:, None])
-    bound = law.bound[:, None] + (law.friction[:, None] * force[normal.above] if opens else 0.0)
+    slider = along.slider(moved, force)
+    np.testing.assert_allclose(friction, (slider - tangent.jump(moved)) / along.softness[:, None])
+    bound = along.bound[:, None] + (along.friction[:, None] * force[normal.above] if opens else 0.0)
     assert np.all(np.abs(friction) <= bound + 1e-9)
     slip = np.diff(slider, axis=1, prepend=0.0)
     slips = np.abs(slip) > 1e-9

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.laws import Component, Friction
+from solver.laws import Component, Contact, Sliders, Unilateral
 from solver.laws.interface import Region
 from solver.laws.play import play
 
@@ -23,14 +23,15 @@ def contacts(draw):
     random = np.random.default_rng(seed)
     pairs, times = draw(st.integers(1, 6)), draw(st.integers(1, 12))
     rows = random.permutation(4 * pairs if two_bodies else 2 * pairs).reshape(-1, pairs)
-    law = Friction.of_contact(
-        normal=Component(rows[0], rows[2] if two_bodies else None),
-        tangent=Component(rows[1], rows[3] if two_bodies else None),
+    across, along = (Component(rows[n], rows[n + 2] if two_bodies else None) for n in (0, 1))
+    gap = random.normal(size=pairs) * draw(st.sampled_from([0.0, 0.5]))
+    friction = random.uniform(0.0, draw(st.sampled_from([0.0, 0.3, 10.0])) + 1e-300, pairs)
+    law = Contact(
+        normal=Unilateral(component=across, gap=gap),
+        tangential=Sliders.of_contact(along, friction),
         points=np.arange(pairs),
         positions=np.arange(pairs, dtype=float),
         weights=np.ones(pairs),
-        gap=random.normal(size=pairs) * draw(st.sampled_from([0.0, 0.5])),
-        friction=random.uniform(0.0, draw(st.sampled_from([0.0, 0.3, 10.0])) + 1e-300, pairs),
     )
     k = 10.0 ** random.uniform(-2.0, 2.0, rows.size)
     return law, k, random.normal(size=(rows.size, times))
@@ -49,8 +50,8 @@ def local_stage(law, k, incoming):
 def test_nothing_overlaps_nothing_pulls_and_what_is_open_carries_nothing(case):
     law, k, incoming = case
     moved, force = local_stage(law, k, incoming)
-    opening = law.normal.jump(moved) + law.gap[:, None]
-    pressing = force[law.normal.above]
+    opening = law.normal.opening(moved, force)
+    pressing = force[law.normal.component.above]
     size = np.abs(incoming).max() * k.max()
     assert np.all(pressing >= 0.0)
     assert np.all(opening >= -ROUNDING * np.abs(incoming).max())
@@ -64,7 +65,7 @@ def test_friction_stays_in_the_cone_and_opposes_slip(case):
     moved, force = local_stage(law, k, incoming)
     position = law.tangent.jump(moved)
     slip = np.diff(position, axis=1, prepend=0.0)
-    bound = law.friction[:, None] * force[law.normal.above]
+    bound = law.tangential.friction[:, None] * force[law.normal.component.above]
     held = force[law.tangent.above]
     size = np.abs(incoming).max()
     tight = ROUNDING * size * k.max()
@@ -93,8 +94,12 @@ def test_a_very_stiff_body_below_is_a_rigid_support(opens):
     def law(below):
         normal, tangent = (Component(rows[n], rows[n + 2] if below else None) for n in (0, 1))
         if not opens:
-            return Friction.of_known_bound(tangent, np.full(3, 0.4), **common)
-        return Friction.of_contact(normal, tangent, np.full(3, 0.3), gap=np.full(3, 0.1), **common)
+            return Contact(tangential=Sliders.of_known_bound(tangent, np.full(3, 0.4)), **common)
+        return Contact(
+            normal=Unilateral(component=normal, gap=np.full(3, 0.1)),
+            tangential=Sliders.of_contact(tangent, np.full(3, 0.3)),
+            **common,
+        )
 
     incoming = random.normal(size=(12, 20))
     incoming[6:] = 0.0
@@ -110,9 +115,9 @@ def test_a_very_stiff_body_below_is_a_rigid_support(opens):
 
 def test_the_only_pair_of_friction_between_two_bodies_follows_the_play_operator():
     random = np.random.default_rng(3)
-    law = Friction.of_known_bound(
-        Component(np.array([1]), np.array([0])),
-        np.array([0.7]),
+    along = Component(np.array([1]), np.array([0]))
+    law = Contact(
+        tangential=Sliders.of_known_bound(along, np.array([0.7])),
         points=np.array([0]),
         positions=np.zeros(1),
         weights=np.ones(1),

@@ -39,10 +39,10 @@ def components(of, found):
         fields = found.contact(name)
         slip = np.diff(fields.slip, axis=1, prepend=0.0)
         if law.opens:
-            bound = law.friction[:, None] * fields.normal_force
+            bound = law.tangential.friction[:, None] * fields.normal_force
             yield fields.opening, slip, fields.normal_force, bound, fields.tangential_force
         else:
-            bound = np.broadcast_to(law.bound[:, None], slip.shape)
+            bound = np.broadcast_to(law.tangential.bound[:, None], slip.shape)
             yield None, slip, None, bound, fields.tangential_force
     assert np.isfinite(displacement).all()
 
@@ -80,16 +80,16 @@ def all_solutions(of, before, instant):
             if state == "open":
                 system[[size + tangent, size + normal], [size + tangent, size + normal]] = 1.0
                 continue
-            system[size + normal, normal], right[size + normal] = 1.0, -law.gap[point]
+            system[size + normal, normal], right[size + normal] = 1.0, -law.normal.gap[point]
             if state == "stick":
                 system[size + tangent, tangent], right[size + tangent] = 1.0, before[tangent]
             else:
                 system[size + tangent, size + tangent] = 1.0
-                system[size + tangent, size + normal] = state * law.friction[point]
+                system[size + tangent, size + normal] = state * law.tangential.friction[point]
         displacement, force = np.linalg.solve(system, right).reshape(2, size)
         slip, normal = (displacement - before)[::2], force[1::2]
-        bound = law.friction * normal
-        good = normal.min() >= -1e-12 and (displacement[1::2] + law.gap).min() >= -1e-12
+        bound = law.tangential.friction * normal
+        good = normal.min() >= -1e-12 and (displacement[1::2] + law.normal.gap).min() >= -1e-12
         good &= np.all(np.abs(force[::2]) <= bound + 1e-12)
         if good and np.all(np.abs(force[::2] * slip + bound * np.abs(slip)) <= 1e-12):
             found.append(displacement)
@@ -202,6 +202,12 @@ def test_a_stuck_point_does_not_move_and_a_slipping_one_says_where():
     assert np.all(fields.normal_force[fields.status == 2] == 0.0)
 
 
+def _on(law, rows):
+    """Give friction on what lies below instead of a support."""
+    component = Component(law.tangent.above, rows)
+    return replace(law, tangential=replace(law.tangential, component=component))
+
+
 def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_support():
     of = discretise_rods(
         bar(BarSettings.checked({"method": "paper", "instants": 41, "peak": 1200.0}))
@@ -210,7 +216,7 @@ def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_suppor
     below = substructure(np.eye(size), (of.n_dofs, of.n_rows), None, extra_rows=size)
     interfaces = {
         **of.interfaces,
-        "friction": replace(law, tangent=Component(law.tangent.above, below.rows[:size])),
+        "friction": _on(law, below.rows[:size]),
         "held": Dirichlet(below.rows[size:], np.zeros((size, of.n_instants))),
     }
     positions = np.zeros(of.n_dofs + size)

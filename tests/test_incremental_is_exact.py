@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from solver.discrete.problem import Problem
 from solver.discrete.rods_problem import discretise_rods
-from solver.laws import Neumann
 from solver.reference import incremental as module
 from solver.reference.incremental import Interrupted, Reference, incremental
 from solver.scenes.bar import BarSettings, bar
@@ -54,7 +53,7 @@ def problems(draw: st.DrawFn) -> Problem:
 
 def bounds(of: Problem) -> np.ndarray:
     law = of.friction
-    return np.bincount(law.points, weights=law.bound)[:, None] * of.scales.force
+    return np.bincount(law.points, weights=law.tangential.bound)[:, None] * of.scales.force
 
 
 def assert_coulomb(of: Problem, found: Reference) -> None:
@@ -74,8 +73,8 @@ def assert_equilibrium(of: Problem, found: Reference) -> None:
         stiffness[np.ix_(part.dofs, part.dofs)] += part.elasticity.stiffness.toarray()
         if part.body_force is not None:
             load[part.dofs] += part.body_force
-    for law in of.of_law(Neumann):
-        load[of.row_dofs[law.rows]] += law.force
+    for pulled in of.given_forces:
+        load[of.row_dofs[pulled.rows]] += pulled.values
     displacement = found.displacement / of.scales.displacement
     inner = stiffness @ displacement
     outer = load + found.friction_force / of.scales.force

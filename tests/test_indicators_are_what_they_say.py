@@ -8,7 +8,7 @@ from bars import SMALL, boundary_of, options, sample
 
 from solver.latin import Iterate, solve
 from solver.latin.indicators import behaviour_indicator, latin_indicator
-from solver.laws import Dirichlet, Friction, Neumann
+from solver.laws import Contact, Dirichlet, Neumann
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
@@ -59,13 +59,13 @@ def test_the_behaviour_indicator_vanishes_at_the_reference_and_nowhere_near_it(l
     exact = behaviour_indicator(iterate_of(problem, k, displacement, force))
     assert 0.0 <= exact < 1e-8
     random = np.random.default_rng(5)
-    for kind in (Friction, Dirichlet):
-        (law,) = problem.of_law(kind)
+    for kind in (Contact, Dirichlet):
+        (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
         moved = displacement.copy()
         moved[law.rows] += 1e-3 * displacement.max() * random.normal(size=moved[law.rows].shape)
         assert behaviour_indicator(iterate_of(problem, k, moved, force)) > 1e-6
-    for kind in (Friction, Neumann):
-        (law,) = problem.of_law(kind)
+    for kind in (Contact, Neumann):
+        (law,) = (one for one in problem.interfaces.values() if isinstance(one, kind))
         pulled = force.copy()
         pulled[law.rows] *= 1.01
         assert behaviour_indicator(iterate_of(problem, k, displacement, pulled)) > 1e-6

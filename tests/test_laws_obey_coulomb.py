@@ -239,7 +239,7 @@ def test_the_local_stage_obeys_every_law_along_its_search_direction(seed, substr
     problem = discretise(options)
     k = method_of(options).direction.of(problem)
     incoming = np.random.default_rng(seed).normal(size=(problem.n_rows, problem.n_instants))
-    incoming *= problem.friction.bound.max() / k.min()
+    incoming *= problem.friction.tangential.bound.max() / k.min()
     stage = LocalStage(problem, k)
     outgoing = stage(np.asfortranarray(incoming))
     displacement = stage.displacement
@@ -254,7 +254,7 @@ def test_the_local_stage_obeys_every_law_along_its_search_direction(seed, substr
         if name.startswith("cut"):
             assert np.array_equal(displacement[cut.first], displacement[cut.second])
             assert np.all(np.abs(force[cut.first] + force[cut.second]) <= rounding)
-    bound = law.bound[:, None]
+    bound = law.tangential.bound[:, None]
     slip = np.diff(displacement[law.tangent.above], axis=1, prepend=0.0)
     friction = force[law.tangent.above]
     assert np.all(np.abs(friction) <= bound + rounding)

@@ -184,7 +184,7 @@ def test_normal_and_tangential_search_directions_are_scaled_apart():
     ).direction.of(problem)
     factor = np.ones(problem.n_rows)
     for law in problem.rubbing.values():
-        factor[np.concatenate(law.normal.sides)] = 3.0
+        factor[np.concatenate(law.normal.component.sides)] = 3.0
         factor[np.concatenate(law.tangent.sides)] = 5.0
     np.testing.assert_allclose(scaled, factor * plain)
 

@@ -81,7 +81,7 @@ def test_k_between_bodies_knows_their_shape_and_not_their_cuts():
         _, problem = layers_of(ratio, **values)
         law = problem.rubbing["contact 1-2"]
         k = automatic(problem)
-        return k[law.normal.above].sum(), k[law.tangent.above].sum()
+        return k[law.normal.component.above].sum(), k[law.tangent.above].sum()
 
     np.testing.assert_allclose(total(200, substructures=8), total(200), rtol=1e-12)
     np.testing.assert_allclose(total(10), (7.0, 1.0), rtol=1e-12)
@@ -96,7 +96,7 @@ def test_k_of_a_support_is_at_least_the_stiffness_of_what_is_squeezed_on_it():
         _, problem = problem_of("block", height=height)
         law = problem.rubbing["support"]
         k = automatic(problem)
-        np.testing.assert_allclose(k[law.normal.above].sum(), expected, rtol=1e-12)
+        np.testing.assert_allclose(k[law.normal.component.above].sum(), expected, rtol=1e-12)
         np.testing.assert_allclose(k[law.tangent.above].sum(), expected, rtol=1e-12)
 
 
@@ -104,7 +104,7 @@ def test_k_of_a_support_grows_with_the_cube_root_of_its_points_on_fine_meshes_of
     def total(**values):
         _, problem = problem_of("block", elements_up=4, substructures=8, **values)
         law = problem.rubbing["support"]
-        return automatic(problem)[law.normal.above].sum()
+        return automatic(problem)[law.normal.component.above].sum()
 
     np.testing.assert_allclose(total(elements=96), 7.0, rtol=1e-12)
     np.testing.assert_allclose(total(elements=768), 14.0, rtol=1e-12)

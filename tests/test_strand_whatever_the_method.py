@@ -13,7 +13,7 @@ from solver.latin import Ending, iterations, solve
 from solver.latin.indicators import behaviour_indicator
 from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
-from solver.laws import Friction
+from solver.laws import Contact
 from solver.loads import PRESETS, PULLS
 from solver.reduction.svd import InterfaceField, decompositions, friction_spectra
 from solver.scenes import discretise
@@ -128,7 +128,7 @@ def test_rows_of_a_contact_lie_opposite_each_other_and_cover_it_once():
     scene, problem = strand(settings), discretise(settings)
     positions = problem.positions[problem.row_dofs]
     for law in problem.rubbing.values():
-        assert isinstance(law, Friction)
+        assert isinstance(law, Contact)
         np.testing.assert_array_equal(positions[law.tangent.above], positions[law.tangent.below])
         np.testing.assert_array_equal(positions[law.tangent.above], law.positions[law.points])
         half = 0.5 * scene.length / scene.elements  # of the held end
@@ -149,7 +149,9 @@ def test_laws_of_all_contacts_are_one_law_at_work():
     force = problem.direction[:, None] * (stage.displacement - incoming)
     for law in problem.rubbing.values():
         np.testing.assert_allclose(force[law.tangent.above], -force[law.tangent.below], atol=1e-12)
-        assert np.all(np.abs(force[law.tangent.above]) <= law.bound[:, None] * (1.0 + 1e-9))
+        assert np.all(
+            np.abs(force[law.tangent.above]) <= law.tangential.bound[:, None] * (1.0 + 1e-9)
+        )
 
 
 def test_singular_values_are_those_of_the_friction_on_every_piece(known):

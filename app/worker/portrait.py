@@ -99,7 +99,7 @@ class Sitter:
             chosen.append(first + kept)
             rows = law.tangent.above[pairs[kept]]
             above.append(problem.row_dofs[rows])
-            across = law.normal.above[pairs[kept]] if law.normal else rows
+            across = law.normal.component.above[pairs[kept]] if law.normal else rows
             normal.append(problem.row_dofs[across])
             chains.append(np.full(len(kept), number))
             first += len(points)

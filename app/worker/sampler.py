@@ -82,9 +82,9 @@ class Sampler:
         problem, law, loop = self._problem, self._law, self.loop
         bound = coefficient = None
         if law.opens:
-            coefficient = _floats(law.mean_by_point(law.friction)[self._rows])
+            coefficient = _floats(law.mean_by_point(law.tangential.friction)[self._rows])
         else:
-            whole = law.by_point(law.bound)[self._rows]
+            whole = law.by_point(law.tangential.bound)[self._rows]
             bound = _floats(whole * problem.scales.force / self._lengths)
         load = loop.force if isinstance(loop.force, np.ndarray) else None
         return Stand(

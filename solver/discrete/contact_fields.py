@@ -56,7 +56,7 @@ def contact_fields(
     law, places = problem.rubbing[name], problem.contact_places[name]
     scale = problem.scales.displacement
     jumps = [law.mean_by_point(one.jump(displacement)) * scale for one in law.components]
-    if not law.opens:
+    if law.normal is None:
         return ContactFields(None, force[places[0]], None, jumps[0], status)
-    gap = law.mean_by_point(law.gap[:, None]) * scale
+    gap = law.mean_by_point(law.normal.gap[:, None]) * scale
     return ContactFields(force[places[0]], force[places[1]], jumps[0] + gap, jumps[1], status)

@@ -8,11 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields
 from solver.discrete.probes import Probe, reaction
 from solver.discrete.problem import Problem
-from solver.laws import Dirichlet, Interface, Neumann
 
 
 class Fields(Protocol):
@@ -51,19 +50,15 @@ class Loop:
 def loop_of_ends(problem: Problem, title: str) -> Loop:
     """Give the mean force on the loaded ends of rods over their mean displacement."""
     law = problem.interfaces["load"]
-    count = len(_rows(law))
+    pulled = law.given_force
+    count = len(law.rows)
     weights = np.full(count, 1.0 / count)
-    ends = Probe(problem.row_dofs[_rows(law)], weights)
+    ends = Probe(problem.row_dofs[law.rows], weights)
     force: Array | Callable[[Fields], Array]
-    if isinstance(law, Neumann):
-        force = weights @ law.force * problem.scales.force
+    if pulled is not None:
+        force = weights @ pulled.values * problem.scales.force
     else:
         held = reaction(problem, "load")
         force = lambda fields: held(fields.displacement) / count  # noqa: E731
     mean = "End" if count == 1 else "Mean end"
     return Loop((f"{mean} displacement", "m"), (title, "N"), ends, force)
-
-
-def _rows(law: Interface) -> Indices:
-    assert isinstance(law, Neumann | Dirichlet)
-    return law.rows

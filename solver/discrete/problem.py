@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +18,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.inside import Inside
-from solver.laws import Dirichlet, Friction, Interface, Perfect
-
-Law = TypeVar("Law", bound=Interface)
+from solver.laws import Contact, Given, Interface
 
 
 @dataclass(frozen=True)
@@ -169,9 +166,23 @@ class Problem:
         weights[1:] += 0.5 * steps
         return weights
 
-    def of_law(self, law: type[Law]) -> list[Law]:
-        """Give the interfaces that obey one law."""
-        return [one for one in self.interfaces.values() if isinstance(one, law)]
+    @cached_property
+    def given_forces(self) -> list[Given]:
+        """Forces that are prescribed, interface by interface."""
+        found = (law.given_force for law in self.interfaces.values())
+        return [one for one in found if one is not None]
+
+    @cached_property
+    def given_displacements(self) -> list[Given]:
+        """Displacements that are prescribed, interface by interface."""
+        found = (law.given_displacement for law in self.interfaces.values())
+        return [one for one in found if one is not None]
+
+    @cached_property
+    def cuts(self) -> list[tuple[Indices, Indices]]:
+        """Rows of both sides of the glued cuts, interface by interface."""
+        found = (law.joined for law in self.interfaces.values())
+        return [one for one in found if one is not None]
 
     @cached_property
     def sliding(self) -> tuple[Indices, Array]:
@@ -192,19 +203,19 @@ class Problem:
         """Which of these rows are along the normal of their interface."""
         rows = np.arange(self.n_rows)[self.rubbing_rows]
         laws = self.rubbing.values()
-        normal = [law.normal.above for law in laws if law.normal is not None]
+        normal = [law.normal.component.above for law in laws if law.normal is not None]
         return np.isin(rows, np.concatenate([np.zeros(0, dtype=np.intp), *normal]))
 
     @cached_property
-    def friction(self) -> Friction:
+    def friction(self) -> Contact:
         """The interface with friction, where it is the only one."""
         (found,) = self.rubbing.values()
         return found
 
     @cached_property
-    def rubbing(self) -> dict[str, Friction]:
+    def rubbing(self) -> dict[str, Contact]:
         """The interfaces with friction, by name."""
-        return {name: law for name, law in self.interfaces.items() if isinstance(law, Friction)}
+        return {name: law for name, law in self.interfaces.items() if isinstance(law, Contact)}
 
     @cached_property
     def opens(self) -> bool:
@@ -214,9 +225,7 @@ class Problem:
     @cached_property
     def has_cuts(self) -> bool:
         """Whether any two substructures meet, glued or in contact."""
-        return bool(self.of_law(Perfect)) or any(
-            law.macro is not None for law in self.rubbing.values()
-        )
+        return bool(self.cuts) or any(law.macro is not None for law in self.rubbing.values())
 
     @cached_property
     def macro(self) -> tuple[sparse.csr_array, Array]:
@@ -287,8 +296,8 @@ class Problem:
 
         Shapes (n,) and (n, n_instants).
         """
-        parts = self.of_law(Dirichlet)
+        parts = self.given_displacements
         none = np.zeros(0, dtype=np.intp), np.zeros((0, self.n_instants))
         rows = np.concatenate([none[0], *(law.rows for law in parts)])
         dofs, first = np.unique(self.row_dofs[rows], return_index=True)
-        return dofs, np.concatenate([none[1], *(law.displacement for law in parts)])[first]
+        return dofs, np.concatenate([none[1], *(law.values for law in parts)])[first]

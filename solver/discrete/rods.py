@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.laws import Coulomb, FrictionLaw
 
 COARSEST = 6
 """Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
@@ -42,6 +43,8 @@ class Rods:
         Displacement of the held ends, shape (n_instants,), m.
     body_force
         Axial force per length, uniform along the rods, shape (n_instants,), N/m.
+    friction_law
+        Along the interfaces.
     section
         Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
         of the inverse is 1.
@@ -61,6 +64,7 @@ class Rods:
     support: Array | None = None
     body_force: Array | None = None
     section: Array | None = None
+    friction_law: FrictionLaw = field(default_factory=Coulomb)
 
     @property
     def nodes(self) -> Array:

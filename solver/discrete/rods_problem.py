@@ -10,7 +10,7 @@ from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.rod import rod_stiffness, tributary
 from solver.discrete.rod_pieces import NO_ROW, Pieces
 from solver.discrete.rods import Rods
-from solver.laws import Component, Dirichlet, Friction, Interface, Neumann, Perfect, Rod
+from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod, Sliders
 
 MACRO_DEGREE = 1
 """Polynomials of the friction force on each piece of a contact: resultant and first moment. Without
@@ -112,7 +112,7 @@ def _interfaces(scene: Rods, pieces: Pieces) -> dict[str, Interface]:
     return found
 
 
-def _friction(scene: Rods, pieces: Pieces, number: int) -> Friction:
+def _friction(scene: Rods, pieces: Pieces, number: int) -> Contact:
     rubbing = pieces.rubbing
     element = 1.0 / scene.elements
     weights = scene.length * np.concatenate(
@@ -127,9 +127,10 @@ def _friction(scene: Rods, pieces: Pieces, number: int) -> Friction:
     positions = np.zeros(points[-1] + 1)
     positions[points] = scene.nodes[node]
     below = pieces.below(number)
-    return Friction.of_known_bound(
-        Component(pieces.above(number), below),
-        scene.bound[node] * weights / scene.stiffness,
+    bound = scene.bound[node] * weights / scene.stiffness
+    sliders = Sliders.of_known_bound(Component(pieces.above(number), below), bound)
+    return Contact(
+        tangential=scene.friction_law.on(sliders, weights, scene.length),
         points=points,
         positions=positions,
         weights=weights,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from solver.arrays import Array
+from solver.laws import Coulomb, FrictionLaw
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +104,8 @@ class Stack:
     tilt
         Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
         `body_force` has turned the other way already. None where it does not.
+    friction_law
+        Between the bodies, and on the support.
     """
 
     length: float
@@ -124,3 +127,4 @@ class Stack:
     duration: float
     spring: Spring | None = None
     tilt: Array | None = None
+    friction_law: FrictionLaw = field(default_factory=Coulomb)

@@ -15,11 +15,14 @@ from solver.discrete.stack_parts import Part
 from solver.laws import (
     Bodies,
     Component,
+    Contact,
     Dirichlet,
-    Friction,
+    Frictionless,
     Interface,
     Perfect,
     SlackSpring,
+    Sliders,
+    Unilateral,
 )
 
 OPPOSITE = {"right": "left", "top": "bottom"}
@@ -55,7 +58,7 @@ def _macro_basis(scene: Stack, part: Part, side: str) -> Array:
     return side_basis(part.rectangle, side, len(part.rows[side]), scene.macro_degree)
 
 
-def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Friction]]:
+def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Contact]]:
     columns, rows = scene.substructures
     x = np.linspace(0.0, scene.length, scene.order * scene.elements[0] + 1)
     for body in range(scene.bodies):
@@ -76,17 +79,21 @@ def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Fri
         lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
         # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
         bases = [sparse.coo_array(_macro_basis(scene, part, "bottom")) for part in above]
+        along, across = (
+            Component(upper[:, axis], None if lower is None else lower[:, axis]) for axis in (0, 1)
+        )
+        sliders = Sliders.of_contact(along, np.full(len(node), friction))
+        areas = scene.length * np.concatenate(
+            [own[span] for own, span in zip(weights, spans, strict=True)]
+        )
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
-            Friction.of_contact(
-                normal=Component(upper[:, 1], None if lower is None else lower[:, 1]),
-                tangent=Component(upper[:, 0], None if lower is None else lower[:, 0]),
+            Contact(
+                normal=Unilateral(component=across, gap=gap),
+                tangential=scene.friction_law.on(sliders, areas, scene.length),
                 points=points,
                 positions=x[found],
-                weights=scene.length
-                * np.concatenate([own[span] for own, span in zip(weights, spans, strict=True)]),
-                gap=gap,
-                friction=np.full(len(node), friction),
+                weights=areas,
                 around=Bodies(
                     moduli=(
                         float(scene.stiffness[body]),
@@ -99,19 +106,20 @@ def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Fri
         )
 
 
-def _spring(scene: Stack, spring: Spring, part: Part) -> SlackSpring:
+def _spring(scene: Stack, spring: Spring, part: Part) -> Contact:
     """Give the law of a spring: it pushes to the right, as if from the left."""
     rows = part.rows["right"]
-    return SlackSpring.of_contact(
-        normal=Component(rows[:, 0]),
-        tangent=Component(rows[:, 1]),
-        friction=np.zeros(1),
+    return Contact(
+        normal=SlackSpring(
+            component=Component(rows[:, 0]),
+            gap=np.array([spring.slack / scene.length]),
+            softness=np.array([scene.young / spring.stiffness]),
+        ),
+        tangential=Frictionless(component=Component(rows[:, 1])),
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([scene.length]),
         weights=scene.length * part.rectangle.edge_weights("right")[:1],
-        gap=np.array([spring.slack / scene.length]),
         around=Bodies(depth=scene.height),
-        softness=np.array([scene.young / spring.stiffness]),
     )
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Course
-from solver.laws import Dirichlet, Neumann, Perfect
 from solver.refusal import check_range
 
 
@@ -73,7 +72,7 @@ class SearchDirection(ABC):
             for rows in law.tangent.sides:
                 k[rows] *= self.along
             if law.normal is not None:
-                for rows in law.normal.sides:
+                for rows in law.normal.component.sides:
                     k[rows] *= self.across
         k = np.ascontiguousarray(k)
         k.flags.writeable = False
@@ -114,13 +113,13 @@ def automatic(problem: Problem) -> Array:
     laws = list(problem.rubbing.values())
     around = laws[0].around
     k = problem.direction * around.elsewhere
-    for cut in problem.of_law(Perfect):
-        k[cut.first] *= around.on_cuts
-        k[cut.second] *= around.on_cuts
+    for first, second in problem.cuts:
+        k[first] *= around.on_cuts
+        k[second] *= around.on_cuts
     parts = len(laws) / sliding_share(problem)
     for law in laws:
         law.around.choose(law, k, parts)
-        if law.compliance.any():
+        if law.tangential.softness is not None:
             softness = law.compliance[law.points] / law.shares
             for rows in law.tangent.sides:
                 k[rows] /= 1.0 + softness * k[rows]
@@ -137,16 +136,16 @@ def sliding_share(problem: Problem) -> float:
     stiffness is 1.
     """
     first, *_ = problem.rubbing.values()
-    capacity = float(first.bound.sum())
+    capacity = float(first.tangential.bound.sum())
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)
-    for pulled in problem.of_law(Neumann):
-        load += pulled.force.mean(axis=0)
-    for moved in problem.of_law(Dirichlet):
-        if moved.acts:
+    for pulled in problem.given_forces:
+        load += pulled.values.mean(axis=0)
+    for moved in problem.given_displacements:
+        if moved.values.any():
             if first.is_on_support:
                 return 1.0
-            load += moved.displacement.mean(axis=0)
+            load += moved.values.mean(axis=0)
     for part in problem.substructures:
         if part.body_force is not None:
             load += part.body_force.sum(axis=0)

@@ -74,7 +74,9 @@ class DirectionUpdate:
     def __init__(self, problem: Problem, k: Array, course: Course | None) -> None:
         self._problem = problem
         self._first = k
-        self._gives_way = any(law.compliance.any() for law in problem.rubbing.values())
+        self._gives_way = any(
+            law.tangential.softness is not None for law in problem.rubbing.values()
+        )
         self.course = course or Course("first", k)
 
     @property

@@ -10,7 +10,6 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.latin.status_step import Certificate
-from solver.laws import Neumann, Perfect
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""
@@ -83,10 +82,10 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     """
     known, is_known = _known_forces(problem, contact_force)
     balance, needed = _balance(problem, displacement)
-    cuts = problem.of_law(Perfect)
-    n_cuts = sum(len(law.first) for law in cuts)
-    first = np.concatenate([np.zeros(0, dtype=np.intp), *(law.first for law in cuts)])
-    second = np.concatenate([np.zeros(0, dtype=np.intp), *(law.second for law in cuts)])
+    cuts = problem.cuts
+    n_cuts = sum(len(side) for side, _ in cuts)
+    first = np.concatenate([np.zeros(0, dtype=np.intp), *(side for side, _ in cuts)])
+    second = np.concatenate([np.zeros(0, dtype=np.intp), *(side for _, side in cuts)])
     pairs = np.arange(n_cuts)
     opposite = sparse.csr_array(
         (np.ones(2 * n_cuts), (np.tile(pairs, 2), np.concatenate([first, second]))),
@@ -103,8 +102,8 @@ def _known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArra
     """Give the forces of rows that rub or are loaded, and which rows these are."""
     found = np.zeros((problem.n_rows, problem.n_instants))
     is_known = np.zeros(problem.n_rows, dtype=bool)
-    for loaded in problem.of_law(Neumann):
-        found[loaded.rows], is_known[loaded.rows] = loaded.force, True
+    for loaded in problem.given_forces:
+        found[loaded.rows], is_known[loaded.rows] = loaded.values, True
     for name, law in problem.rubbing.items():
         for place, component in zip(problem.contact_places[name], law.components, strict=True):
             carried = law.shares[:, None] * contact_force[place][law.points]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
-from solver.laws import Friction
+from solver.laws import Contact
 from solver.reduction.basis import Modes, Reduction, ReferencePoints
 
 CREEP = 1e-2
@@ -228,13 +228,13 @@ class Iterate:
 
     @cached_property
     def status(self) -> NDArray[np.int8]:
-        """Contact status of the local stage, shape (n_points, n_instants), as in `Friction.status`.
+        """Contact status of the local stage, shape (n_points, n_instants), as in `Contact.status`.
 
         Points of all interfaces with friction, one interface after the other.
         """
         return np.concatenate([self.status_at(law) for law in self.problem.rubbing.values()])
 
-    def status_at(self, law: Friction, creep: float = CREEP) -> NDArray[np.int8]:
+    def status_at(self, law: Contact, creep: float = CREEP) -> NDArray[np.int8]:
         """Read the contact status at one interface, (n_points, n_instants).
 
         A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
@@ -248,7 +248,7 @@ class Iterate:
         slip = law.slip(moved, force)
         apart = np.abs(slip - law.slip(self.boundary_displacement, self.boundary_force))
         if law.normal is not None:
-            touches = law.by_point(force[law.normal.above]) > 0.0
+            touches = law.by_point(force[law.normal.component.above]) > 0.0
             slip, apart = slip[touches], apart[touches]
         still = min(apart.max(initial=0.0), creep * np.abs(slip).max(initial=0.0))
         return law.status(moved, force, float(still))

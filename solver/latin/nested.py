@@ -18,7 +18,7 @@ from solver.latin.direction import automatic
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage
 from solver.latin.local import LocalStage
-from solver.laws import Friction
+from solver.laws import Contact
 from solver.reference.assembly import assembled_stiffness
 
 BoolArray = NDArray[np.bool_]
@@ -161,7 +161,7 @@ def _apart(problem: Problem, bodies: Indices) -> Array:
     return np.asarray(problem.positions + 2.0 * problem.scales.displacement * bodies)
 
 
-def _points_apart(problem: Problem, law: Friction, bodies: Indices) -> Array:
+def _points_apart(problem: Problem, law: Contact, bodies: Indices) -> Array:
     """Give the positions of an interface's points, those of other bodies apart."""
     numbers = np.zeros(len(law.positions), dtype=np.intp)
     numbers[law.points] = sum(bodies[problem.row_dofs[rows]] for rows in law.tangent.sides)

@@ -2,20 +2,33 @@
 
 from solver.laws.around import Bodies, Rod
 from solver.laws.boundary import Dirichlet, Neumann
-from solver.laws.friction import OPEN, Friction
-from solver.laws.interface import Component, Interface
+from solver.laws.compliant import Compliant
+from solver.laws.contact import OPEN, Contact
+from solver.laws.coulomb import Coulomb, Sliders
+from solver.laws.frictionless import Frictionless
+from solver.laws.interface import Component, Given, Interface
 from solver.laws.perfect import Perfect
 from solver.laws.slack_spring import SlackSpring
+from solver.laws.tangential import FrictionLaw, Tangential
+from solver.laws.unilateral import Unilateral
 
 __all__ = [
     "OPEN",
     "Bodies",
+    "Compliant",
     "Component",
+    "Contact",
+    "Coulomb",
     "Dirichlet",
-    "Friction",
+    "FrictionLaw",
+    "Frictionless",
+    "Given",
     "Interface",
     "Neumann",
     "Perfect",
     "Rod",
     "SlackSpring",
+    "Sliders",
+    "Tangential",
+    "Unilateral",
 ]

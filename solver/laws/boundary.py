@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.laws.interface import Gaps, Interface, MacroPart, Region, Rule, beyond, squared
+from solver.laws.interface import Gaps, Given, Interface, MacroPart, Region, Rule, beyond, squared
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,11 @@ class Dirichlet(Interface):
         """Compare the displacement with that prescribed."""
         missed = beyond(displacement[self.rows] - self.displacement, noise)
         return Gaps(displacement=squared(missed))
+
+    @property
+    def given_displacement(self) -> Given:
+        """The displacement."""
+        return Given(self.rows, self.displacement)
 
     @property
     def acts(self) -> bool:
@@ -81,6 +86,11 @@ class Neumann(Interface):
     def macro_parts(self) -> Iterator[MacroPart]:
         """Give the macro forces, which the load balances."""
         yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
+
+    @property
+    def given_force(self) -> Given:
+        """The force."""
+        return Given(self.rows, self.force)
 
     @property
     def acts(self) -> bool:

@@ -8,20 +8,55 @@ longer by the bound over k_t. An infinite k_t is Coulomb's friction.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.friction import Friction
+from solver.laws.coulomb import SliderRule, Sliders
 from solver.laws.interface import Region
-from solver.laws.obeying import FrictionRule
+from solver.laws.tangential import FrictionLaw, Tangential, TangentialRule
+from solver.refusal import check_range
 
 
 @dataclass(frozen=True)
-class CompliantFriction(Friction):
-    """An interface whose pairs give way before they slip.
+class Compliant(FrictionLaw):
+    """Friction that gives way before it slips.
+
+    Attributes
+    ----------
+    contact_stiffness
+        k_t per length or area, over ES / L^2 of a rod or E / L of a body; positive.
+
+    Raises
+    ------
+    RefusedError
+        For a stiffness that is not above zero.
+    """
+
+    contact_stiffness: float
+
+    words = (
+        "it gives way like a spring before it slips (Jenkins' element), as in joints and fretting."
+    )
+
+    def __post_init__(self) -> None:
+        check_range(self, "contact_stiffness", 0.0, np.inf, above=True)
+
+    def on(self, sliders: Sliders, weights: Array, length: float) -> Tangential:
+        """Give the law at pairs, as `FrictionLaw.on`."""
+        return CompliantSliders(
+            component=sliders.component,
+            bound=sliders.bound,
+            friction=sliders.friction,
+            softness=length / (self.contact_stiffness * weights),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompliantSliders(Sliders):
+    """Pairs that give way before they slip.
 
     Attributes
     ----------
@@ -29,54 +64,32 @@ class CompliantFriction(Friction):
         1 / k_t of each pair, shape (n_pairs,), scaled, positive.
     """
 
-    softness: Array = field(default_factory=lambda: np.zeros(0))
+    softness: Array = field()
 
-    of_pairs: ClassVar[tuple[str, ...]] = (*Friction.of_pairs, "softness")
-
-    @classmethod
-    def of(cls, law: Friction, stiffness: float, length: float) -> CompliantFriction:
-        """Make a law compliant.
-
-        Parameters
-        ----------
-        law
-            Any friction.
-        stiffness
-            k_t per length or area, over ES / L^2 of a rod or E / L of a body; positive.
-        length
-            L, m: the unit of lengths, that of forces being ES, or E L per thickness.
-        """
-        values: dict[str, Any] = {one.name: getattr(law, one.name) for one in fields(law)}
-        return cls(**values, softness=length / (stiffness * law.weights))
+    of_pairs: ClassVar[tuple[str, ...]] = (*Sliders.of_pairs, "softness")
 
     @property
-    def compliance(self) -> Array:
-        """Tangential displacement before slip, per friction force, of every point, scaled."""
-        return np.asarray(1.0 / self.by_point(1.0 / self.softness))
-
-    @property
-    def shares(self) -> Array:
-        """Share of each pair in the force of its point: of its stiffness."""
-        stiffness = 1.0 / self.softness
-        return np.asarray(stiffness / self.by_point(stiffness)[self.points])
+    def divided_by(self) -> tuple[Array, ...]:
+        """The stiffness."""
+        return (1.0 / self.softness,)
 
     def slider(self, displacement: Array, force: Array | None) -> Array:
-        """Give where the slider of every pair stands, as `Friction.slider`."""
-        found = self.tangent.jump(displacement)
+        """Give where the slider of every pair stands, as `Tangential.slider`."""
+        found = self.component.jump(displacement)
         if force is None:
             return found
-        return np.asarray(found + self.softness[:, None] * force[self.tangent.above])
+        return np.asarray(found + self.softness[:, None] * force[self.component.above])
 
-    def friction_rule(self, region: Region) -> FrictionRule:
-        """Prepare the tangential part of the law for a region."""
+    def rule(self, region: Region) -> TangentialRule:
+        """Prepare the law for a region."""
         return CompliantRule(self, region)
 
 
-class CompliantRule(FrictionRule):
+class CompliantRule(SliderRule):
     """Friction with a spring beside that of the search direction."""
 
-    def __init__(self, law: CompliantFriction, region: Region) -> None:
-        super().__init__(law.tangent, law.bound, law.friction, region)
+    def __init__(self, law: CompliantSliders, region: Region) -> None:
+        super().__init__(law, region)
         longer = 1.0 + law.softness[:, None] / self.springs.soft
         self.reach, self.grows = longer * self.reach, longer * self.grows
         self._share = 1.0 / longer

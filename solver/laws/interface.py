@@ -38,6 +38,21 @@ class Component(NamedTuple):
         return (self.above,) if self.below is None else (self.above, self.below)
 
 
+class Given(NamedTuple):
+    """What is given at rows.
+
+    Attributes
+    ----------
+    rows
+        Shape (n,).
+    values
+        Displacements, or forces on the body, shape (n, n_instants), scaled.
+    """
+
+    rows: Indices
+    values: Array
+
+
 class MacroPart(NamedTuple):
     """Rows whose macro forces are in equilibrium (paper, eq. 1).
 
@@ -142,6 +157,21 @@ class Interface(ABC):
     def macro_parts(self) -> Iterator[MacroPart]:
         """Give what is in equilibrium in the coarse problem."""
         return iter(())
+
+    @property
+    def given_force(self) -> Given | None:
+        """Forces that are prescribed here, or None."""
+        return None
+
+    @property
+    def given_displacement(self) -> Given | None:
+        """Displacements that are prescribed here, or None."""
+        return None
+
+    @property
+    def joined(self) -> tuple[Indices, Indices] | None:
+        """Rows that move together, shape (n,) each, or None."""
+        return None
 
     @property
     def acts(self) -> bool:

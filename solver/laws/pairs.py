@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -22,23 +22,17 @@ class Pairs(Interface):
 
     Attributes
     ----------
-    tangent
-        Component along the interface.
     points
         Point of the interface that each pair belongs to, shape (n_pairs,).
     positions
         Place of the points along the interface, shape (n_points,), m.
-    normal
-        Component across the interface; None where the pressure is known.
     macro
         Macro basis of each component between two bodies, shape (n_pairs, n_macro): what one takes
         from the other is in equilibrium in the coarse problem. None on a rigid support.
     """
 
-    tangent: Component
     points: Indices
     positions: Array
-    normal: Component | None = None
     macro: sparse.csr_array | None = None
 
     @property
@@ -47,19 +41,19 @@ class Pairs(Interface):
         return np.concatenate([rows for component in self.components for rows in component.sides])
 
     @property
+    @abstractmethod
+    def components(self) -> tuple[Component, ...]:
+        """All components, the tangential one last."""
+
+    @property
+    def tangent(self) -> Component:
+        """The component along the interface."""
+        return self.components[-1]
+
+    @property
     def is_on_support(self) -> bool:
         """Whether what lies below is rigid."""
         return self.tangent.below is None
-
-    @property
-    def opens(self) -> bool:
-        """Whether it is unilateral contact, with a normal component."""
-        return self.normal is not None
-
-    @cached_property
-    def components(self) -> tuple[Component, ...]:
-        """All components, the tangential one last."""
-        return (self.tangent,) if self.normal is None else (self.normal, self.tangent)
 
     def by_point(self, values: Array) -> Array:
         """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
@@ -86,8 +80,3 @@ class Pairs(Interface):
             return Gaps()
         sums = (sum(force[rows] for rows in component.sides) for component in self.components)
         return Gaps(force=sum(squared(beyond(np.asarray(one), noise)) for one in sums))
-
-    def carried(self, force: Array) -> float:
-        """Give the largest force on a pair where it may open, of that of all rows."""
-        rows = [component.above for component in self.components if self.opens]
-        return max((float(np.abs(force[own]).max()) for own in rows), default=0.0)

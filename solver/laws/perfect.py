@@ -33,6 +33,11 @@ class Perfect(Interface):
         """Rows of both sides."""
         return np.concatenate([self.first, self.second])
 
+    @property
+    def joined(self) -> tuple[Indices, Indices]:
+        """Both sides."""
+        return self.first, self.second
+
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
         """Join all cuts; the macro bases stay behind, a local stage knows none."""

@@ -1,4 +1,4 @@
-"""A spring that is slack at first: a stop that gives way, without friction.
+"""A spring that is slack at first: a stop that gives way.
 
 It is unilateral contact with a compliance in series, as `solver.laws.compliant` has it along the
 interface: of the opening g and the pressing force N, g + N / k_s >= 0, N >= 0, and one of them is
@@ -7,20 +7,19 @@ zero. So along the search direction the two springs share what is missing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.friction import Friction
-from solver.laws.interface import Region
-from solver.laws.obeying import ContactRule, FrictionRule
-from solver.laws.rules import Rules
+from solver.laws.interface import Region, Rule
+from solver.laws.tangential import TangentialRule
+from solver.laws.unilateral import ContactRule, Unilateral
 
 
-@dataclass(frozen=True)
-class SlackSpring(Friction):
-    """An interface that pushes in proportion once its gap is closed.
+@dataclass(frozen=True, kw_only=True)
+class SlackSpring(Unilateral):
+    """Pairs that push in proportion once their gap is closed.
 
     Attributes
     ----------
@@ -28,34 +27,24 @@ class SlackSpring(Friction):
         1 / k_s of each pair, shape (n_pairs,), scaled, positive.
     """
 
-    softness: Array = field(default_factory=lambda: np.zeros(0))
+    softness: Array = field()
 
     def opening(self, displacement: Array, force: Array) -> Array:
         """Give the distance of the two ends, the spring's own compression added."""
         found = super().opening(displacement, force)
-        assert self.normal is not None
-        return np.asarray(found + self.softness[:, None] * force[self.normal.above])
+        return np.asarray(found + self.softness[:, None] * force[self.component.above])
 
-    def contact_rule(self, friction: FrictionRule, region: Region) -> ContactRule:
-        """Prepare the normal part of the law for a region."""
+    def rule(self, friction: TangentialRule, region: Region) -> Rule:
+        """Prepare the law for a region; it tells friction what presses."""
         return SpringRule(self, friction, region)
-
-    def rules(self, first: int) -> list[Rules]:
-        """Say what the jumps of the points obey, each with the spring in series.
-
-        Along the interface there is no force that it could change.
-        """
-        softness = 1.0 / self.by_point(1.0 / self.softness)
-        return [replace(one, compliance=softness) for one in super().rules(first)]
 
 
 class SpringRule(ContactRule):
     """Contact with a spring beside that of the search direction."""
 
-    def __init__(self, law: SlackSpring, friction: FrictionRule, region: Region) -> None:
-        assert law.normal is not None
-        super().__init__(law.normal, law.gap, friction, region)
-        soft = self._springs.soft
+    def __init__(self, law: SlackSpring, friction: TangentialRule, region: Region) -> None:
+        super().__init__(law, friction, region)
+        soft = self.springs.soft
         self._share = soft / (soft + law.softness[:, None])
 
     def held(self, jump: Array) -> Array:

@@ -7,7 +7,6 @@ from scipy import sparse
 
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
-from solver.laws import Neumann
 
 
 def assembled_stiffness(problem: Problem) -> sparse.csr_array:
@@ -30,6 +29,6 @@ def external_force(problem: Problem) -> Array:
     for part in problem.substructures:
         if part.body_force is not None:
             np.add.at(total, part.dofs, part.body_force)
-    for law in problem.of_law(Neumann):
-        np.add.at(total, problem.row_dofs[law.rows], law.force)
+    for given in problem.given_forces:
+        np.add.at(total, problem.row_dofs[given.rows], given.values)
     return total

@@ -15,6 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.rods import Rods
+from solver.laws import Coulomb
 from solver.reference.closed_form import ClosedForm, closed_form
 
 STEPS = 100
@@ -53,9 +54,11 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
 
     Returns
     -------
-    The solution, or None where no wire is broken, or where its neighbours rub on others too and
-    pass on what they took over.
+    The solution, or None where no wire is broken, where its neighbours rub on others too and pass
+    on what they took over, or where friction is not Coulomb's.
     """
+    if scene.friction_law != Coulomb():
+        return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None
     tension = _tension(scene) if scene.rigid_grip else scene.load

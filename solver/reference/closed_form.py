@@ -15,6 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.rods import Rods
+from solver.laws import Coulomb
 from solver.laws.play import play
 
 SECTIONS = 4096
@@ -64,9 +65,12 @@ def closed_form(scene: Rods) -> ClosedForm | None:
     Returns
     -------
     The solution, or None for a bar whose support moves or that carries body forces: there, the
-    normal force is no play operator of the load. Also None for a bar of varying section.
+    normal force is no play operator of the load. Also None for a bar of varying section, and
+    where friction is not Coulomb's.
     """
     if scene.support is not None or scene.body_force is not None or scene.section is not None:
+        return None
+    if scene.friction_law != Coulomb():
         return None
     nodal = _normal_force(scene, _grip_beyond(scene, 0.0, with_end=True))
     middle = _normal_force(scene, _grip_beyond(scene, 0.5))

@@ -11,7 +11,6 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
-from solver.laws import Neumann
 from solver.reference.assembly import assembled_stiffness
 from solver.reference.condensation import jumps
 from solver.reference.self_stress import self_stresses
@@ -127,7 +126,7 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
     Where no forces are given, those that move what is prescribed are the load; and where these are
     but rounding, because nothing resists, those that such displacements would cost elements.
     """
-    forces = [law.force for law in problem.of_law(Neumann)]
+    forces = [given.values for given in problem.given_forces]
     forces += [part.body_force for part in problem.substructures if part.body_force is not None]
     if not any(force.any() for force in forces):
         dofs, prescribed = problem.prescribed

@@ -161,7 +161,7 @@ class _Structure:
         self.moves = np.diff(prescribed.T, axis=0, prepend=0.0)
         self._movable, bound = np.ones(problem.n_dofs), np.zeros(problem.n_dofs)
         self._movable[self._fixed] = 0.0
-        np.add.at(bound, rubbing, law.bound)
+        np.add.at(bound, rubbing, law.tangential.bound)
         self._support_bound = bound[self._fixed]
         self._search = _Search(self.band, bound * self._movable, self._movable)
 

@@ -18,7 +18,6 @@ from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK
 from solver.scenes.entry import Entry, Kind
-from solver.scenes.friction_law import is_coulomb, with_friction_law
 from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
 from solver.scenes.strand import STRAND
@@ -51,8 +50,7 @@ def data_of(settings: Settings) -> Rods | Stack:
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem that checked settings describe."""
     data = data_of(settings)
-    problem = discretise_rods(data) if isinstance(data, Rods) else discretise_stack(data)
-    return with_friction_law(problem, settings)
+    return discretise_rods(data) if isinstance(data, Rods) else discretise_stack(data)
 
 
 def coarser_problems(settings: Settings) -> list[Problem]:
@@ -63,8 +61,7 @@ def coarser_problems(settings: Settings) -> list[Problem]:
     The finest first; none where the scene's own mesh is as coarse as makes sense.
     """
     coarser = entry_of(settings).coarser
-    found = () if coarser is None else coarser(settings)
-    return [with_friction_law(problem, settings) for problem in found]
+    return [] if coarser is None else list(coarser(settings))
 
 
 def loop_of(settings: Settings, problem: Problem) -> Loop:
@@ -75,13 +72,13 @@ def loop_of(settings: Settings, problem: Problem) -> Loop:
 def closed_form_of(settings: Settings) -> ClosedForm | None:
     """Solve a rod on its support without discretisation in space, where that is known."""
     solve = entry_of(settings).closed_form
-    return None if solve is None or not is_coulomb(settings) else solve(settings)
+    return None if solve is None else solve(settings)
 
 
 def broken_wire_of(settings: Settings) -> BrokenWire | None:
     """Solve a broken wire without discretisation in space, where that is known."""
     solve = entry_of(settings).broken_wire
-    return None if solve is None or not is_coulomb(settings) else solve(settings)
+    return None if solve is None else solve(settings)
 
 
 def points_of(settings: Settings, name: str) -> Pairs:

@@ -222,6 +222,7 @@ def bar(settings: BarSettings) -> Rods:
         support=settings.path("support_load") if settings.support_displacement else None,
         body_force=settings.path("body_load") if settings.body_force else None,
         section=section,
+        friction_law=settings.law(),
     )
 
 

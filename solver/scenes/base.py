@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, quantity
+from solver.laws.catalogue import FRICTION_LAWS
+from solver.laws.tangential import FrictionLaw
 from solver.loads import PRESETS, instants_of, load_path
 from solver.settings import Settings
 
@@ -23,9 +26,8 @@ class SceneSettings(Settings):
 
     friction_law = choice(
         "coulomb",
-        ["coulomb", "compliant"],
-        "coulomb: a point sticks until the friction force reaches its bound. compliant: it gives "
-        "way like a spring before it slips (Jenkins' element), as in joints and fretting.",
+        list(FRICTION_LAWS),
+        " ".join(f"{name}: {law.words}" for name, law in FRICTION_LAWS.items()),
         group="Contact",
         title="Friction law",
     )
@@ -45,6 +47,12 @@ class SceneSettings(Settings):
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
     SHAPES: ClassVar[Mapping[str, Callable[[Array, int], Array]]] = PRESETS
     """What the presets of paths over time stand for."""
+
+    def law(self) -> FrictionLaw:
+        """Give the law of friction; its attributes are named like settings."""
+        kind: Any = FRICTION_LAWS[str(self.friction_law)]
+        found: FrictionLaw = kind(**{one.name: getattr(self, one.name) for one in fields(kind)})
+        return found
 
     @property
     def n_nodes(self) -> int:

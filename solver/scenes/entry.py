@@ -31,14 +31,14 @@ class Entry(Generic[S]):
     kind
         What there is to see: a rod on its support, wires beside each other, or plane bodies.
     data
-        Makes what the scene is made of, with Coulomb's friction: rods, or stacked bodies.
+        Makes what the scene is made of: rods, or stacked bodies.
     loop
         Gives the loop that it shows.
     coarser
         Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
         where no run starts from them.
     closed_form, broken_wire
-        Solve it without discretisation in space, under Coulomb's friction, or give None.
+        Solve it without discretisation in space, where that is known, or give None.
     sizes
         Numbers over which costs are measured, by setting.
     """

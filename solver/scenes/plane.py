@@ -191,6 +191,7 @@ class PlaneSettings(SceneSettings):
             poisson=self.poisson,
             state=self.plane,
             friction=self.friction,
+            friction_law=self.law(),
             instants=self.times(),
             duration=self.duration,
             **others,

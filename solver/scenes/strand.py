@@ -183,6 +183,7 @@ def strand(settings: StrandSettings) -> Rods:
         wires=settings.wires,
         broken=(settings.broken, _break_node(settings)) if settings.broken else None,
         rigid_grip=settings.grip == "displacement",
+        friction_law=settings.law(),
     )
 
 

@@ -102,7 +102,7 @@ class FinishedRun:
         moved, force = iterate.local_displacement, iterate.boundary_local_force
         found = np.zeros(self.problem.n_instants)
         for law in self.problem.rubbing.values():
-            slip = np.diff(law.slider(moved, force), axis=1, prepend=0.0)
+            slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
             found -= (force[law.tangent.above] * slip).sum(axis=0)
         return found * scales.force * scales.displacement
 

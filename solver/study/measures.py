@@ -127,7 +127,7 @@ def holding_friction(run: FinishedRun, at: float | None) -> float:
         if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
             return math.nan
         if contact.normal_force is None:
-            bound = law.by_point(law.bound).sum() * run.problem.scales.force
+            bound = law.by_point(law.tangential.bound).sum() * run.problem.scales.force
             pressing = np.full(run.problem.n_instants, bound / friction)
         else:
             pressing = contact.normal_force.sum(axis=0)

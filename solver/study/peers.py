@@ -97,7 +97,7 @@ def solve_by_peer(problem: Problem, peer: Peer, tolerance: float) -> PeerFields:
     law = problem.friction
     rubbing = problem.row_dofs[law.tangent.above]
     bound = np.zeros(problem.n_dofs)
-    np.add.at(bound, rubbing, law.bound)
+    np.add.at(bound, rubbing, law.tangential.bound)
     fixed, prescribed = problem.prescribed
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
     stiffness, force = assembled_stiffness(problem), external_force(problem)

@@ -20,7 +20,7 @@ from solver.latin import Paper, iterations
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
 from solver.latin.reduced_linear import ReducedLinearStage
-from solver.laws import Component, Friction
+from solver.laws import Component, Contact, Sliders
 from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -76,9 +76,8 @@ def half_plane(points: int, instants: int) -> Problem:
     dense = shapes.T * (1.0 + np.pi * np.arange(points)) @ shapes
     rows = np.arange(points)
     positions = (rows + 0.5) / points
-    law = Friction.of_known_bound(
-        Component(rows),
-        np.full(points, 1e-3),
+    law = Contact(
+        tangential=Sliders.of_known_bound(Component(rows), np.full(points, 1e-3)),
         points=rows,
         positions=positions,
         weights=np.full(points, 1.0 / points),

@@ -1,0 +1,44 @@
+"""The search directions of one component of a jump (solver/README.md, 2)."""
+
+from __future__ import annotations
+
+from solver.arrays import Array, Indices
+from solver.laws.interface import Component, Region
+
+
+class Springs:
+    """The search directions of one component: a spring 1/k on either side, in series.
+
+    Attributes
+    ----------
+    soft
+        Both added, shape (n_pairs, 1), scaled.
+    share_below
+        Share of the side below in them; None on a rigid support.
+    """
+
+    def __init__(self, component: Component, region: Region) -> None:
+        self._above = region.of(component.above)
+        self._below: slice | Indices | None = None
+        self.soft = 1.0 / region.k[component.above, None]
+        self.share_below: Array | None = None
+        if component.below is not None:
+            self._below = region.of(component.below)
+            soft_below = 1.0 / region.k[component.below, None]
+            self.soft = self.soft + soft_below
+            self.share_below = soft_below / self.soft
+
+    def jump(self, incoming: Array) -> Array:
+        """Give z of the jump."""
+        above: Array = incoming[self._above]
+        return above if self._below is None else above - incoming[self._below]
+
+    def close(self, incoming: Array, jump: Array, held: Array, displacement: Array) -> None:
+        """Write W^ of both sides, with which the jump is `held` instead of `jump`."""
+        if self.share_below is None:
+            displacement[self._above] = held
+            return
+        moved = held - jump
+        under = self.share_below * moved
+        displacement[self._below] = incoming[self._below] - under
+        displacement[self._above] = incoming[self._above] + (moved - under)

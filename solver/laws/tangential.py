@@ -1,0 +1,137 @@
+"""What is said along an interface: its tangential law, at the pairs of a mesh and as a choice.
+
+A structure chooses a `FrictionLaw`, a value of a few numbers; on a mesh that becomes a `Tangential`
+with an array for all that differs from pair to pair. In the local stage the jump along E+ is scalar
+(paper, problem 2.1; solver/README.md, 2).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array
+from solver.laws.interface import Component, Region
+
+if TYPE_CHECKING:
+    from solver.laws.coulomb import Sliders
+
+
+class FrictionLaw(ABC):
+    """A law of friction, before anything is known of a mesh."""
+
+    words: ClassVar[str]
+    """What it is, for who chooses it."""
+
+    @abstractmethod
+    def on(self, sliders: Sliders, weights: Array, length: float) -> Tangential:
+        """Give the law at pairs.
+
+        Parameters
+        ----------
+        sliders
+            What they would be with Coulomb's law.
+        weights
+            Tributary length or area of each pair, shape (n_pairs,), m or m^2.
+        length
+            Unit of lengths, m.
+        """
+
+
+class TangentialRule(Protocol):
+    """A tangential law that is ready for one region."""
+
+    def __call__(
+        self, incoming: Array, displacement: Array, some: slice, pressing: Array | None = None, /
+    ) -> None:
+        """Write W^ of its rows, as `Rule`; `pressing` is N of the pairs where it varies."""
+
+
+class Tangential(ABC):
+    """A tangential law at the pairs of an interface.
+
+    Attributes
+    ----------
+    component
+        Rows of the pairs.
+    bound
+        r, the friction force of each pair that needs no pressing one, (n_pairs,), non-negative.
+    friction
+        Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
+    softness
+        Displacement before slip per friction force, (n_pairs,), scaled; None if there is none.
+    """
+
+    component: Component
+    bound: Array
+    friction: Array
+    softness: Array | None = None
+
+    of_pairs: ClassVar[tuple[str, ...]] = ()
+    """Attributes of shape (n_pairs,) of its dataclass."""
+
+    @abstractmethod
+    def rule(self, region: Region) -> TangentialRule:
+        """Prepare the law for a region."""
+
+    @property
+    def divided_by(self) -> tuple[Array, ...]:
+        """What the pairs of a point divide their force by, if it is positive; (n_pairs,) each."""
+        return (self.bound,)
+
+    def slider(self, displacement: Array, force: Array | None) -> Array:
+        """Give the slip of every pair up to every instant, shape (n_pairs, n_instants), scaled.
+
+        Parameters
+        ----------
+        displacement, force
+            W and F of all rows, shape (n_rows, n_instants); F may be None where nobody reads it.
+        """
+        return self.component.jump(displacement)
+
+    def allowed(self, pressing: Array | None, slip: Array) -> Array:
+        """Give the largest friction force, shape (n_pairs, n_instants).
+
+        Parameters
+        ----------
+        pressing
+            Force that presses, same shape; None where the pressure is known.
+        slip
+            Increments, same shape.
+        """
+        bound = self.bound[:, None]
+        if pressing is not None:
+            bound = bound + self.friction[:, None] * np.maximum(pressing, 0.0)
+        return np.broadcast_to(bound, slip.shape)
+
+    @property
+    def most(self) -> Array:
+        """Largest value that the bound r ever has, shape (n_pairs,)."""
+        return self.bound
+
+    def kept(self, chosen: NDArray[np.bool_]) -> Self:
+        """Keep some pairs."""
+        below = self.component.below
+        own = Component(self.component.above[chosen], None if below is None else below[chosen])
+        values: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self.of_pairs}
+        return self._with(component=own, **values)
+
+    @classmethod
+    def joined(cls, laws: Sequence[Self]) -> Self:
+        """Put the pairs of laws between two bodies one after the other."""
+        values: dict[str, Any] = {
+            name: np.concatenate([getattr(law, name) for law in laws]) for name in cls.of_pairs
+        }
+        component = Component(
+            np.concatenate([law.component.above for law in laws]),
+            np.concatenate([law.component.sides[1] for law in laws]),
+        )
+        return laws[0]._with(component=component, **values)
+
+    def _with(self, **changes: Any) -> Self:
+        return replace(self, **changes)  # type: ignore[type-var]  # all of its kind are dataclasses
