@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import panel as pn
 
 from app.address import TABS, Sight, sight_from_query
 from app.banner import Banner
+from app.delivery import Delivery
 from app.gallery import gallery
 from app.keys import Keys
+from app.log import RunLog
 from app.looks import Looks
 from app.notes import Notes
 from app.page_link import PageLink
@@ -33,12 +34,6 @@ from solver.settings import Settings
 TICK_MS = 25
 FIRST_ROW = 3
 """Plots that a projector, or a frame of a course page, has room for."""
-CLEAR, DIMMED = {"opacity": "1"}, {"opacity": "0.35"}
-"""Plots that show the scene at work, and those that do not yet."""
-LOST_AFTER = 2.0
-"""Seconds after which a picture that was not acknowledged is taken for lost."""
-REST = 0.2
-"""Times what a browser needs for a picture, left to it to listen to its user."""
 
 
 class Dashboard:
@@ -75,14 +70,9 @@ class Dashboard:
         self.session = session
         self._asked_for = session.wanted
         self._loaded = False
-        self._logged = (0, "")
-        self._sent = self._painted = 0
-        self._sent_at = 0.0
-        self._is_dimmed = False
         self._notes = Notes()
-        self._painted_scene = session.settings.scene
         self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
-        self._presence = Presence(session, self.pulse)
+        self._presence, self._log = Presence(session, self.pulse), RunLog(session)
         session.watch(complaint=complaint)
         self.transport = Transport(session)
         self._looks = Looks(session)
@@ -103,6 +93,9 @@ class Dashboard:
         self._live = self._make_live()
         self._what_if = WhatIf(session, self._open_run, question)
         self._tabs = Tabs(session, self._live, self._what_if, self._on_tab)
+        self._delivery = Delivery(
+            session, self.pulse, self._gallery, lambda: self._tabs.shows_the_run
+        )
         self._sight = sight or Sight()
         self._furnish(on_phone=on_phone)
         if self._sight.plots:
@@ -165,14 +158,11 @@ class Dashboard:
         self.pulse.leads = self.session.attendance.ticket
         self.transport.tick()
         self._pass_on(self.session.collect())
-        self._log()
-        if self._painted < self._sent and time.monotonic() - self._sent_at > LOST_AFTER:
-            self._sent_at = time.monotonic()
-            self.session.ask(afresh=True)
+        self._log.follow()
+        self._delivery.seek_the_lost()
         self._link.follow()
 
     def _listen(self) -> None:
-        self.pulse.on("painted", self._on_painted)
         self.pulse.on("leads", self._lead_again)
         self.pulse.on("went", self._go_to)
         self.pulse.param.watch(lambda event: self._on_narrow(), "narrow")
@@ -215,12 +205,8 @@ class Dashboard:
         self._arrange()
 
     def _show(self) -> None:
-        """Tell plots that do not show the run's scene from those that do; show where the run is."""
-        is_dimmed = self.session.facts is None and not self._sent
-        is_dimmed = is_dimmed or self.session.settings.scene != self._painted_scene
-        if is_dimmed != self._is_dimmed:
-            self._is_dimmed = is_dimmed
-            self._gallery.styles = DIMMED if is_dimmed else CLEAR
+        """Show where the run is."""
+        self._delivery.dim()
         bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
         self.transport.place(self._looks.parts(shows_bodies=bodies))
         self.transport.show()
@@ -230,22 +216,8 @@ class Dashboard:
         """Give the browser the pictures that came, and show what they say."""
         for block in blocks:
             with pn.io.hold():
-                self._sent_at = time.monotonic()
-                self._sent += 1
-                self.pulse.paint(self._sent, block)
-                if self.session.facts is not None:
-                    self._painted_scene = self.session.settings.scene
+                self._delivery.send(block)
                 self._show()
-
-    def _log(self) -> None:
-        """Tell whoever serves the page what its run has come to; a drag is no news till its end."""
-        session = self.session
-        if session.facts is None or session.follows_hand:
-            return
-        came_to = "broke" if session.facts.is_broken else "ended" if session.is_over else "started"
-        if (session.ticket, came_to) != self._logged:
-            self._logged = session.ticket, came_to
-            pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
 
     def _lead_again(self, ticket: str) -> None:
         attendance = self.session.attendance
@@ -261,11 +233,6 @@ class Dashboard:
         self._tabs.bar.value = sight_from_query(query)[0].tab
         self._follow()
         self._link.follow(replaces=True)
-
-    def _on_painted(self, number: int) -> None:
-        self._painted = number
-        if number == self._sent and self._tabs.shows_the_run:
-            self.session.ask(rest=REST * (time.monotonic() - self._sent_at))
 
     def _drag(self, told: dict[str, Any]) -> None:
         self._sidebar.hear(**told)

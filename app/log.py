@@ -4,12 +4,33 @@ from __future__ import annotations
 
 import logging
 
+import panel as pn
 from tornado.iostream import StreamClosedError
 from tornado.websocket import WebSocketClosedError
+
+from app.session import Session
 
 LOGGERS = ("asyncio", "bokeh.server.views.ws", "panel.io.document", "tornado.application")
 NOT_SENT = "Failed sending message as connection was closed"
 """What Bokeh and Panel say of each message on its way to a page that is closed or reloaded."""
+
+
+class RunLog:
+    """Tells whoever serves a page what its runs come to; a drag is no news till its end."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._told = (0, "")
+
+    def follow(self) -> None:
+        """Say it, if it is news."""
+        session = self._session
+        if session.facts is None or session.follows_hand:
+            return
+        came_to = "broke" if session.facts.is_broken else "ended" if session.is_over else "started"
+        if (session.ticket, came_to) != self._told:
+            self._told = session.ticket, came_to
+            pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")
 
 
 def leave_out_the_unsent() -> None:
