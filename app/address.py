@@ -18,9 +18,10 @@ from app.worker.shown import Look
 from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
 from solver.files import scene_settings
 from solver.lessons.lesson import Lesson
+from solver.scenes import CATALOGUE as SCENES
 from solver.settings import Settings
 
-DEFAULT_SCENE = "bar"
+DEFAULT_SCENE = next(iter(SCENES))
 TABS = ("Live", "What if", "Figures", "Study", "Stability")
 TAB_OF = {tab.lower(): tab for tab in TABS}
 """Who writes an address by hand need not mind their case."""

@@ -14,6 +14,7 @@ from app.form import item_of
 from app.refusals import refused, sentence
 from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError, about
+from solver.scenes import loads_of
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, Quantity, reading
 from solver.study.sweep import Plan, plan_of
@@ -26,8 +27,6 @@ VARY, OF = "vary", "of"
 VALUES, COARSE = 13, 10
 """Values of a range: along a curve, and along each side of a map."""
 TENTH = 0.1
-LOADS = ("peak", "deflection", "moment", "top_tangential_displacement", "slope")
-"""Settings that say how much a scene is loaded; the first that applies counts."""
 CUTS = (1, 2, 5, 10, 20)
 """Numbers of substructures that are compared."""
 
@@ -233,7 +232,7 @@ def bathtubs(settings: Settings) -> Question:
 def design_chart(settings: Settings) -> Question | None:
     """Ask for the energy dissipated over friction and load, where a number says the load."""
     definitions = offered(settings)
-    load = next((name for name in LOADS if name in definitions), None)
+    load = next((name for name in loads_of(settings) if name in definitions), None)
     if load is None or "friction" not in definitions:
         return None
     spans = []

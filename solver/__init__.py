@@ -1,6 +1,6 @@
 """Slipfront's engine: frictional contact by the multiscale LATIN method.
 
->>> from solver import Latin, iterations, solve
+>>> from solver import Latin, Rods, Stack, iterations, solve
 """
 
 from __future__ import annotations
@@ -11,13 +11,15 @@ from typing import Any
 HOMES = {
     "Latin": "solver.latin",
     "Problem": "solver.discrete",
+    "Rods": "solver.discrete",
+    "Stack": "solver.discrete",
     "iterations": "solver.latin",
     "solve": "solver.latin",
 }
 """Where the names stand that are given here: loaded when asked for, as NumPy is told beforehand how
 many threads it may use (`solver/__main__.py`)."""
 
-__all__ = ["Latin", "Problem", "iterations", "solve"]
+__all__ = ["Latin", "Problem", "Rods", "Stack", "iterations", "solve"]
 
 
 def __getattr__(name: str) -> Any:

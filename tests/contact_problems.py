@@ -3,7 +3,8 @@
 import numpy as np
 
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
-from solver.discrete.stack import Given, Side, Stack, Support
+from solver.discrete.stack import Stack
+from solver.discrete.stack_data import Given, Side, Support
 from solver.laws import Bodies, Component, Contact, Dirichlet, Sliders, Unilateral
 
 COURSES = ("random", "reversal", "open and close", "wander")

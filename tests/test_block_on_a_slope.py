@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from solver.definitions import SettingError
 from solver.discrete.rest import rigid_slide
-from solver.discrete.stack import Spring
+from solver.discrete.stack_data import Spring
 from solver.latin import Ending, solve
 from solver.laws import Component, Contact, Frictionless, SlackSpring
 from solver.laws.interface import Region

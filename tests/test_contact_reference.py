@@ -16,8 +16,6 @@ from contact_problems import (
     two_bodies,
 )
 
-from solver.discrete.rods_problem import discretise_rods
-from solver.discrete.stack_problem import discretise_stack
 from solver.laws import Component, Dirichlet
 from solver.reference import contact as module
 from solver.reference.assembly import assembled_stiffness, external_force
@@ -209,9 +207,7 @@ def _on(law, rows):
 
 
 def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_support():
-    of = discretise_rods(
-        bar(BarSettings.checked({"method": "paper", "instants": 41, "peak": 1200.0}))
-    )
+    of = bar(BarSettings.checked({"method": "paper", "instants": 41, "peak": 1200.0})).discretise()
     law, size = of.friction, len(of.friction.points)
     below = substructure(np.eye(size), (of.n_dofs, of.n_rows), None, extra_rows=size)
     interfaces = {
@@ -235,20 +231,20 @@ def test_friction_between_a_bar_and_a_held_body_is_that_of_the_bar_on_its_suppor
 
 
 def test_the_bar_keeps_its_own_solver():
-    of = discretise_rods(bar(BarSettings.checked({"method": "paper", "instants": 21})))
+    of = bar(BarSettings.checked({"method": "paper", "instants": 21})).discretise()
     found, plain = reference_of(of), incremental(of)
     assert found.steps == plain.steps
     assert np.array_equal(found.displacement, plain.displacement)
 
 
 def test_decomposition_changes_nothing():
-    whole, parts = (reference_of(discretise_stack(block(cuts=cuts))) for cuts in ((1, 1), (3, 2)))
+    whole, parts = (reference_of(block(cuts=cuts).discretise()) for cuts in ((1, 1), (3, 2)))
     assert np.array_equal(whole.status, parts.status)
     np.testing.assert_allclose(whole.contact_force, parts.contact_force, atol=1e-6)
 
 
 def test_a_block_under_more_shear_than_friction_carries_is_said_to_be_lost():
-    of = discretise_stack(block(shear=0.5, height=0.2))
+    of = block(shear=0.5, height=0.2).discretise()
     found = reference_of(of)
     shear = 0.5 * np.sin(2.0 * np.pi * np.maximum(of.instants - 0.25, 0.0) / 0.75)
     carried = np.abs(shear) < 0.3
@@ -259,7 +255,7 @@ def test_a_block_under_more_shear_than_friction_carries_is_said_to_be_lost():
 
 def test_without_friction_a_block_can_be_pressed_but_not_pushed():
     still, pushed = (
-        reference_of(discretise_stack(block(friction=0.0, shear=shear))) for shear in (0.0, 0.1)
+        reference_of(block(friction=0.0, shear=shear).discretise()) for shear in (0.0, 0.1)
     )
     assert still.converged.all()
     swing = np.sin(8.0 * np.pi * np.maximum(pushed.problem.instants - 0.25, 0.0) / 3.0)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from contact_problems import block
 
-from solver.discrete.stack import Given, Side
-from solver.discrete.stack_problem import discretise_stack
+from solver.discrete.stack_data import Given, Side
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
@@ -29,7 +28,7 @@ CASES = {
 
 @pytest.fixture(scope="module", params=CASES)
 def case(request):
-    problem = discretise_stack(block(**CASES[request.param]))
+    problem = block(**CASES[request.param]).discretise()
     settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9)
     iterate = next(islice(iterations(problem, method_of(settings)), 399, None))
     return problem, reference_of(problem), iterate
@@ -54,7 +53,7 @@ def test_both_show_the_same_at_every_interface(case):
 
 
 def test_the_tilted_block_lifts_off_and_comes_back():
-    reference = reference_of(discretise_stack(block(**CASES["tilted until it lifts off"])))
+    reference = reference_of(block(**CASES["tilted until it lifts off"]).discretise())
     status = reference.contact("support").status
     opened, closed = np.diff((status == OPEN).astype(int), axis=1) > 0, status[:, -1] != OPEN
     assert (opened[:, 3:].any(axis=1) & closed).sum() > 3
@@ -68,7 +67,7 @@ def test_a_reference_is_no_distance_from_itself(case):
 
 
 def test_a_solve_records_its_errors_and_ends_by_its_rules():
-    problem = discretise_stack(block())
+    problem = block().discretise()
     distance = distance_to(reference_of(problem), problem)
     settings = BarSettings.checked({"method": "paper"}).replace(relaxation=0.9, tolerance=1e-14)
     solution = solve(problem, method_of(settings), distance=distance)
@@ -79,7 +78,7 @@ def test_a_solve_records_its_errors_and_ends_by_its_rules():
 def test_only_forces_that_a_support_does_not_share_are_compared():
     wall = Side(Given(True, 0.0 * HERE, 0.0 * HERE), Given(True, -1e-4 * HERE, 0.0 * HERE))
     for side, points in ((LEANING, 13), (wall, 12)):
-        problem = discretise_stack(block(left=side))
+        problem = block(left=side).discretise()
         assert len(problem.rubbing["support"].positions) == points
         places = problem.contact_places["support"]
         assert all(determinate_forces(problem)[place][:, 1:].all() for place in places)

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.discrete.problem import Problem
-from solver.discrete.rods_problem import discretise_rods
 from solver.reference import incremental as module
 from solver.reference.incremental import Interrupted, Reference, incremental
 from solver.scenes.bar import BarSettings, bar
@@ -22,7 +21,7 @@ SHARES = st.floats(-1.0, 1.0).map(lambda share: share if abs(share) > 1e-200 els
 
 
 def problem(**values: object) -> Problem:
-    return discretise_rods(bar(BarSettings.checked({"method": "paper", **values})))
+    return bar(BarSettings.checked({"method": "paper", **values})).discretise()
 
 
 def table(values: list[float]) -> list[list[float]]:
@@ -151,7 +150,7 @@ def test_without_load_nothing_moves():
 
 def test_without_friction_the_bar_is_elastic():
     scene = bar(BarSettings.checked({"method": "paper", "friction": 0.0}))
-    found = incremental(discretise_rods(scene))
+    found = incremental(scene.discretise())
     elastic = scene.nodes[:, None] * scene.load / scene.stiffness
     np.testing.assert_allclose(found.displacement, elastic, rtol=0.0, atol=1e-15)
     assert not found.friction_force.any()

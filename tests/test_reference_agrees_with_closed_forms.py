@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.discrete.rods import Rods
-from solver.discrete.rods_problem import discretise_rods
 from solver.reference.closed_form import ClosedForm, closed_form
 from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings, bar
@@ -98,7 +97,7 @@ def test_dissipation_of_the_incremental_solution_converges_with_order_two():
     sizes = np.array([10, 20, 40, 80])
     errors = []
     for elements in sizes:
-        found = incremental(discretise_rods(under(scene(elements=int(elements)), force)))
+        found = incremental(under(scene(elements=int(elements)), force).discretise())
         errors.append(abs(loop_area(force[400:], found.displacement[-1, 400:]) - formula))
     assert fitted_order(sizes, errors) == pytest.approx(2.0, abs=0.02)
     assert errors[-1] < 1e-3 * formula
@@ -124,7 +123,7 @@ def test_the_answer_does_not_depend_on_the_rate(corners, points):
 def test_scaling_load_and_pressure_scales_the_displacement(corners, factor):
     base = under(scene(elements=10), corners)
     scaled = replace(base, load=factor * base.load, bound=factor * base.bound)
-    for solve in (solved, lambda one: incremental(discretise_rods(one))):
+    for solve in (solved, lambda one: incremental(one.discretise())):
         once, more = solve(base).displacement, solve(scaled).displacement
         np.testing.assert_allclose(more, factor * once, rtol=1e-9, atol=1e-15 * factor)
 
@@ -135,7 +134,7 @@ def test_a_closed_inner_loop_leaves_no_trace(first, turn, depth):
     inside = turn + depth * (first - turn)
     load = [first, turn, inside, turn]
     base = under(scene(elements=20, friction_profile="rising"), load)
-    exact, discrete = solved(base), incremental(discretise_rods(base))
+    exact, discrete = solved(base), incremental(base.discretise())
     for field in (exact.displacement, discrete.displacement):
         np.testing.assert_allclose(field[:, 3], field[:, 1], rtol=0.0, atol=1e-15)
     np.testing.assert_allclose(exact.normal_force[:, 3], exact.normal_force[:, 1], atol=1e-9)
@@ -145,7 +144,7 @@ def test_a_closed_inner_loop_leaves_no_trace(first, turn, depth):
 @given(FORCES, st.integers(1, 60))
 def test_friction_forces_of_both_references_are_one_under_a_uniform_bound(load, elements):
     base = under(scene(elements=elements, substructures=1), load)
-    exact, discrete = solved(base), incremental(discretise_rods(base))
+    exact, discrete = solved(base), incremental(base.discretise())
     off_the_clamp = slice(1, None)
     np.testing.assert_allclose(
         discrete.friction_force[off_the_clamp], exact.friction_force[off_the_clamp], atol=1e-9
@@ -159,7 +158,7 @@ def test_incremental_displacement_converges_with_order_two(profile, load, peak):
     errors = []
     for elements in sizes:
         base = scene(elements=int(elements), load=load, peak=peak, friction_profile=profile)
-        exact, discrete = solved(base).displacement, incremental(discretise_rods(base)).displacement
+        exact, discrete = solved(base).displacement, incremental(base.discretise()).displacement
         errors.append(float(np.linalg.norm(discrete - exact) / np.linalg.norm(exact)))
     assert fitted_order(sizes, errors) > 1.8
     assert errors[-1] < 1e-4

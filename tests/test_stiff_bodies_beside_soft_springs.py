@@ -9,7 +9,6 @@ from contact_problems import block
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.discrete.stack_problem import discretise_stack
 from solver.latin import solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
@@ -189,7 +188,7 @@ def test_a_body_that_contact_alone_holds_has_three_rigid_motions_and_a_held_one_
     ]
     assert max(strained) < 1e-13
     assert discretise(CATALOGUE["block"].settings.checked({})).motions is None
-    two = discretise_stack(block(bodies=2, elements=(4, 2), cuts=(1, 1), height=0.3))
+    two = block(bodies=2, elements=(4, 2), cuts=(1, 1), height=0.3).discretise()
     assert two.motions.shape[1] == 6
 
 

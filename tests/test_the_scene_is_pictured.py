@@ -11,10 +11,9 @@ from studios import ALL, SMALL, Shown
 from test_views_say_what_they_draw import looked_at
 
 from app.views import load_path, picture, sketch
-from app.views.acts import acts_on, holds
 from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN
 from app.views.drawing import Curve, Drawing, Scene
-from solver.scenes import CATALOGUE, data_of
+from solver.scenes import CATALOGUE, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 
@@ -64,7 +63,7 @@ def test_the_load_arrow_follows_the_load_and_says_its_value(instant: int) -> Non
     shown = Shown()
     shown.run(1, "bar", SMALL["bar"])
     scene = shown.scene(instant=instant)
-    load = float(scene.run.stand.portrait.data.load[instant])
+    load = float(scene.run.stand.portrait.described.acts[0].values[instant])
     drawing = pictured(scene)
     assert abs(load) == pytest.approx(900.0)
     assert says(drawing)["F"] == f"{load / 1e3:.3g} kN".replace("-", "−")
@@ -104,8 +103,9 @@ def test_a_gap_in_the_support_is_seen() -> None:
 
 def test_a_slope_is_drawn_as_steep_as_it_is_and_the_weight_points_down() -> None:
     scene = looked_at("incline")
-    data = scene.run.stand.portrait.data
-    angle = float(data.tilt[scene.instant])
+    tilt = scene.run.stand.portrait.described.tilt
+    assert tilt is not None
+    angle = float(tilt[scene.instant])
     assert angle > 0.1
     drawing = pictured(scene)
     assert drawing.bodies is not None
@@ -143,17 +143,19 @@ def test_what_acts_has_its_unit_and_its_symbol(
     values: dict[str, Any], unit: set[str], symbols: set[str]
 ) -> None:
     settings = BlockSettings.checked({**SMALL["block"], "gap": "flat", **values})
-    acts = acts_on(data_of(settings), settings)
+    acts = structure_of(settings).described().acts
     assert {act.unit for act in acts} == unit
     assert {act.symbol for act in acts} == symbols
 
 
 @pytest.mark.parametrize(
-    ("kind", "how"), [("clamped", "clamp"), ("roller", "rollers"), ("free", ""), ("traction", "")]
+    ("kind", "how"),
+    [("clamped", {"clamp"}), ("roller", {"rollers"}), ("free", set()), ("traction", set())],
 )
-def test_sides_are_held_as_they_say(kind: str, how: str) -> None:
+def test_sides_are_held_as_they_say(kind: str, how: set[str]) -> None:
     settings = BlockSettings.checked({**SMALL["block"], "left": kind})
-    assert holds(data_of(settings).sides["left"]) == how
+    holds = structure_of(settings).described().holds
+    assert {hold.kind for hold in holds if hold.side == "left"} == how
 
 
 def test_a_hatch_lies_behind_its_edge() -> None:

@@ -12,13 +12,13 @@ from test_views_say_what_they_draw import looked_at
 
 from app.gallery import gallery
 from app.views import picture
-from app.views.acts import acts_on
 from app.views.catalogue import fitting
 from app.views.colors import FORCE, GIVEN
 from app.views.drawing import POSITION
 from app.worker.easel import marked
 from solver.definitions import SettingError
-from solver.scenes import CATALOGUE, behind, data_of
+from solver.discrete.structure import Act
+from solver.scenes import CATALOGUE, behind, structure_of
 from solver.scenes.sides import LOADED_SIDES, PRESCRIBED
 from solver.settings import Settings
 
@@ -38,6 +38,12 @@ def settings_of(scene: str, changes: dict[str, Any]) -> Settings:
     return CATALOGUE[scene].settings.checked({**SMALL[scene], **changes})
 
 
+def acts_of(settings: Settings) -> list[tuple[Act, str]]:
+    """Give what acts, each with the name of the setting behind it, if any."""
+    names = behind(settings)
+    return [(act, names.get(act.where, "")) for act in structure_of(settings).described().acts]
+
+
 def larger(settings: Settings, name: str) -> Settings:
     """Give a setting a larger value, or where that is refused a smaller one."""
     value = float(settings.values()[name])
@@ -50,13 +56,12 @@ def larger(settings: Settings, name: str) -> Settings:
 @pytest.mark.parametrize(("scene", "changes"), CASES)
 def test_every_act_follows_the_setting_that_it_names(scene: str, changes: dict[str, Any]) -> None:
     settings = settings_of(scene, changes)
-    acts = acts_on(data_of(settings), settings)
+    acts = acts_of(settings)
     assert acts
-    for number, act in enumerate(acts):
-        assert settings.applies(act.setting)
-        changed = larger(settings, act.setting)
-        again = acts_on(data_of(changed), changed)[number]
-        assert (again.symbol, again.setting) == (act.symbol, act.setting)
+    for number, (act, name) in enumerate(acts):
+        assert settings.applies(name)
+        again, same = acts_of(larger(settings, name))[number]
+        assert (again.symbol, same) == (act.symbol, name)
         assert not np.allclose(again.values, act.values, rtol=1e-3, atol=0.0)
 
 
@@ -78,12 +83,12 @@ def test_settings_behind_a_side_are_those_that_apply_there(side: str, kind: str)
 def test_a_load_that_is_a_table_has_no_handle() -> None:
     table = [[0.0, 0.0], [1.0, 1e5]]
     bar = settings_of("bar", {"load": table})
-    assert {act.symbol: act.setting for act in acts_on(data_of(bar), bar)} == {
+    assert {act.symbol: name for act, name in acts_of(bar)} == {
         "F": "",
         "p": "pressure",
     }
     layers = settings_of("layers", {"pressure_load": table, "bend_load": [[0.0, 0.0], [1.0, 1e-3]]})
-    assert {act.setting for act in acts_on(data_of(layers), layers)} == {""}
+    assert {name for _, name in acts_of(layers)} == {""}
 
 
 @pytest.mark.parametrize(("scene", "changes"), CASES)
@@ -92,8 +97,7 @@ def test_handles_end_at_the_heads_of_arrows_and_grow_along_them(
 ) -> None:
     shown = looked_at(scene, changes)
     drawing = picture.draw(shown, None)
-    acts = acts_on(shown.run.stand.portrait.data, shown.run.settings)
-    settings = {act.setting for act in acts}
+    settings = {name for _, name in acts_of(shown.run.settings)}
     heads = np.concatenate(
         [
             np.stack([curve.x, curve.y], axis=1)
@@ -158,10 +162,10 @@ def test_one_chooses_among_interfaces_where_they_lie(scene: str, names: tuple[st
     shown = looked_at(scene, changes)
     drawing = picture.draw(shown, None)
     assert tuple(drawing.contacts) == names
-    data = shown.run.stand.portrait.data
+    length, height = shown.run.stand.portrait.size
     for number, places in enumerate(drawing.contacts.values(), start=1):
-        assert np.ptp(places[:, 0]) > 0.8 * data.length
-        assert places[0, 1] == pytest.approx(number * data.height, rel=0.05)
+        assert np.ptp(places[:, 0]) > 0.8 * length
+        assert places[0, 1] == pytest.approx(number * height / changes["layers"], rel=0.05)
 
 
 def test_every_element_knows_its_place_before_it_moved() -> None:
@@ -169,7 +173,7 @@ def test_every_element_knows_its_place_before_it_moved() -> None:
     bodies = picture.draw(scene, None).bodies
     assert bodies is not None
     assert bodies.along is not None
-    length = scene.run.stand.portrait.data.length
+    length = scene.run.stand.portrait.described.length
     assert len(bodies.along) == len(bodies.values)
     assert bodies.along.min() == pytest.approx(length / 32)
     assert bodies.along.max() == pytest.approx(length * 31 / 32)

@@ -17,14 +17,12 @@ from pages import status, visits
 from playwright.sync_api import expect
 
 PROGRAM = """
-from solver import Latin, solve
-from solver.discrete.rods import Rods
-from solver.discrete.rods_problem import discretise_rods
+from solver import Latin, Rods, solve
 import numpy as np, solver
 t = np.linspace(0.0, 1.0, 21)
 rods = Rods(length=1.0, stiffness=1e6, elements=20, substructures=2, bound=np.full(21, 1500.0),
             load=900.0 * t, instants=t, duration=1.0)
-print(solve(discretise_rods(rods), Latin()).status.ending, solver.__file__)
+print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
 """
 
 

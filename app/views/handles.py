@@ -7,12 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.views.acts import size_of
-from app.worker.portrait import PITCH, THICKNESS
+from app.worker.portrait import PITCH, THICKNESS, Portrait
 from app.worker.shown import thinned
 from solver.arrays import Array
-from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack
 from solver.scenes import behind
 from solver.settings import Settings
 
@@ -53,19 +50,20 @@ def on_arrow(setting: str, settings: Settings, arrow: Array, size: float) -> Han
     return Handle(setting, arrow, value, value / (DOUBLED * size))
 
 
-def on_bodies(data: Rods | Stack, settings: Settings, gap: Array | None) -> Iterator[Handle]:
+def on_bodies(portrait: Portrait, settings: Settings, gap: Array | None) -> Iterator[Handle]:
     """Make handles of the break of a wire, and of both ends of a gap as it is drawn, m."""
-    found, size = behind(settings), max(size_of(data))
+    found, size = behind(settings), max(portrait.size)
+    length, broken = portrait.described.length, portrait.described.broken
     reach = 0.5 * THICKNESS * size
-    if "break" in found and isinstance(data, Rods) and data.broken is not None:
-        wire, node = data.broken
-        x, y = data.nodes[node], (PITCH * (wire - 1) + 0.5 * THICKNESS) * data.length
+    if "break" in found and broken is not None:
+        body, x = broken
+        y = (PITCH * body + 0.5 * THICKNESS) * length
         ends = np.array([[x - reach, y], [x + reach, y]])
         name = found["break"]
-        yield Handle(name, ends, float(getattr(settings, name)), 1.0 / data.length)
+        yield Handle(name, ends, float(getattr(settings, name)), 1.0 / length)
     if "gap" in found and gap is not None:
         name = found["gap"]
-        for x, depth in ((0.0, gap[0]), (data.length, gap[-1])):
+        for x, depth in ((0.0, gap[0]), (length, gap[-1])):
             ends = np.array([[x, -depth - reach], [x, -depth + reach]])
             # The depth is in inverse proportion to the radius.
             rate = 1.0 / (np.log(10.0) * max(float(depth), STEEPEST * size))

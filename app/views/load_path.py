@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.views.acts import acts_on
 from app.views.colors import BLUE, FORCE, GREEN, GREY, PURPLE, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import ROOM, across, decimal_scale, spanned, upright
 from solver.arrays import Array
-from solver.discrete.stack import Stack
 
 COLORS = (FORCE, BLUE, GREEN, PURPLE, GREY)
 
 
 def draw(scene: Scene, _kept: None) -> Drawing | None:
     """Draw every load that changes, or that of a constant one; of several units, shares of each."""
-    data = scene.run.stand.portrait.data
+    instants = scene.run.stand.portrait.described.instants
     paths = _paths(scene)
     if not paths:
         return None
@@ -26,7 +24,7 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
     top = max(peaks)
     factor, unit = decimal_scale(top, units.pop()) if len(units) == 1 else (0.0, "of its peak")
     time = float(scene.run.stand.instants[scene.instant])
-    x = spanned(float(data.instants[0]), float(data.instants[-1]))
+    x = spanned(float(instants[0]), float(instants[-1]))
     shown = [values / (factor or peak) for (_, _, values), peak in zip(paths, peaks, strict=True)]
     low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
     room = (ROOM - 1.0) * (max(high, 0.0) - min(low, 0.0) or 1.0)
@@ -34,11 +32,11 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
     curves = [across([0.0], x, color=GREY, alpha=0.4, width=1)]
     keys = []
     for (name, own, _), values, peak, color in zip(paths, shown, peaks, COLORS, strict=False):
-        curves.append(Curve(data.instants, values, color))
+        curves.append(Curve(instants, values, color))
         size, prefixed = decimal_scale(peak, own)
         keys.append(Key(color, "line", f"{name}, {peak / size:.3g} {prefixed}"))
     curves.append(upright([time], y, color=VERMILION, width=2))
-    now = [np.interp(time, data.instants, one) for one in shown[: len(COLORS)]]
+    now = [np.interp(time, instants, one) for one in shown[: len(COLORS)]]
     return Drawing(x, y, curves, [Marks([time] * len(now), now, VERMILION)], keys=keys)
 
 
@@ -47,13 +45,13 @@ def _paths(scene: Scene) -> list[tuple[str, str, Array]]:
 
     Those of one symbol say where they act, too.
     """
-    data = scene.run.stand.portrait.data
+    described = scene.run.stand.portrait.described
     found = [
-        (act.symbol, act.where, act.unit, np.atleast_2d(act.values)[-1])
-        for act in acts_on(data, scene.run.settings)
+        (act.symbol, act.where.replace(" ", ", "), act.unit, np.atleast_2d(act.values)[-1])
+        for act in described.acts
     ]
-    if isinstance(data, Stack) and data.tilt is not None:
-        found.insert(0, ("θ", "", "°", np.degrees(data.tilt)))
+    if described.tilt is not None:
+        found.insert(0, ("θ", "", "°", np.degrees(described.tilt)))
     shown = [path for path in found if np.ptp(path[-1]) > 0.0] or found
     symbols = [symbol for symbol, *_ in shown]
     return [

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from app.views import sketch
-from app.views.acts import OUTWARD, Act, acts_on, ends_of, holds, size_of
 from app.views.colors import BACKWARD, FORCE, FORWARD, GHOST, GIVEN, GREY, VERMILION, shaded
 from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
 from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, Word
@@ -17,8 +16,8 @@ from app.views.legend import Key
 from app.views.scales import decimal_scale
 from app.worker.portrait import Portrait, Pose
 from solver.arrays import Array
-from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack, Support
+from solver.discrete.structure import OUTWARD, Act, Hold, ends_of
+from solver.scenes import behind
 from solver.settings import Settings
 
 ARROW = 0.17
@@ -39,7 +38,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
     factor = scene.look.magnification
     fit = fitting(portrait.mesh, pose.largest, kept or 1.0)
     artist = _Artist(portrait, pose, factor or fit, float(scene.run.stand.instants[scene.instant]))
-    acts = acts_on(portrait.data, scene.run.settings)
+    acts = portrait.described.acts
     strokes = [Curve(*artist.placed(one), GREY, 1, "dotted") for one in artist.outlines()]
     strokes += [Curve(*artist.placed(one), GREY, 1.5) for one in artist.held()]
     last = int(portrait.mesh.parts.max())
@@ -86,7 +85,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
 def _keys(portrait: Portrait, factor: float) -> tuple[Key, ...]:
     keys = [Key(BACKWARD, "square", "slip −"), Key(FORWARD, "square", "slip +")]
     keys.append(Key(GREY, "bare", f"displacement × {factor:g}"))
-    if isinstance(portrait.data, Rods):
+    if portrait.described.height is None:
         keys.append(Key(GREY, "bare", "thickness not to scale"))
     return tuple(keys)
 
@@ -96,10 +95,10 @@ class _Artist:
 
     def __init__(self, portrait: Portrait, pose: Pose, factor: float, time: float) -> None:
         self._portrait, self._pose, self._factor, self._time = portrait, pose, factor, time
-        self._data = portrait.data
-        self._length, self._height = size_of(self._data)
-        self.size = max(self._length, self._height)
-        tilt = self._data.tilt if isinstance(self._data, Stack) else None
+        self._described = portrait.described
+        self._length, self._height = portrait.size
+        self.size = max(portrait.size)
+        tilt = self._described.tilt
         self._tilts = np.zeros(1) if tilt is None else tilt
         self._tilt = float(self._now(tilt)) if tilt is not None else 0.0
         self.nodes: Array = portrait.mesh.nodes + np.float32(factor) * pose.displacement
@@ -118,8 +117,9 @@ class _Artist:
         """
         moves = self._factor * reach
         sides = dict.fromkeys(OUTWARD, (ROOM + HATCH) * self.size + moves)
-        if isinstance(self._data, Stack) and self._data.support is not None:
-            sides["bottom"] = float(self._gap(self._data.support).max()) + 2 * HATCH * self.size
+        gap = self._gap()
+        if gap is not None:
+            sides["bottom"] = float(gap.max()) + 2 * HATCH * self.size
         for act in acts:
             side = next(name for name, away in OUTWARD.items() if away == act.away)
             words = WORDS * self.size if side in ("left", "right") else 0.0
@@ -136,8 +136,7 @@ class _Artist:
     def outlines(self) -> Iterator[Array]:
         """Give the undeformed bodies."""
         nodes = self._portrait.mesh.nodes[self._portrait.mesh.quads]
-        bodies = self._data.wires if isinstance(self._data, Rods) else self._data.bodies
-        for body in nodes.reshape(bodies, -1, 2):
+        for body in nodes.reshape(self._described.bodies, -1, 2):
             (left, low), (right, high) = body.min(axis=0), body.max(axis=0)
             yield sketch.line((left, low), (right, low), (right, high), (left, high), (left, low))
 
@@ -152,46 +151,49 @@ class _Artist:
 
     def held(self) -> Iterator[Array]:
         """Give what holds the bodies: supports, clamps, rollers, a spring."""
-        return self._rods_held(self._data) if isinstance(self._data, Rods) else self._stack_held()
+        draws = {
+            "clamp": self._clamp,
+            "rollers": self._rollers,
+            "support": self._support,
+            "spring": self._spring,
+        }
+        for hold in self._described.holds:
+            yield from draws[hold.kind](hold)
 
-    def _rods_held(self, data: Rods) -> Iterator[Array]:
+    def _ends(self, hold: Hold) -> Array:
+        """Give both ends of the part of a side that is held, undeformed, shape (2, 2), m."""
+        first, last = ends_of(hold.side) * [self._length, self._height]
+        return np.array([first + share * (last - first) for share in hold.stretch])
+
+    def _clamp(self, hold: Hold) -> Iterator[Array]:
+        depth, ends = HATCH * self.size, self._ends(hold)
+        if self._described.height is None:
+            ends += [[0.0, -depth], [0.0, depth]]
+        if hold.moved is not None:
+            ends[:, 0] += self._factor * float(self._now(hold.moved))
+        yield sketch.hatched(ends, depth, 1.0 if hold.side in ("left", "top") else -1.0)
+
+    def _rollers(self, hold: Hold) -> Iterator[Array]:
         depth = HATCH * self.size
-        moved = 0.0 if data.support is None else self._factor * float(self._now(data.support))
-        clamp = sketch.line((moved, -depth), (moved, self._height + depth))
-        yield sketch.hatched(clamp, depth, behind=1.0)
-        if data.wires > 1:
-            return
-        rubs = np.flatnonzero(data.bound > 0.0)
-        for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
-            if len(run) > 1:
-                ends = data.nodes[run[[0, -1]]]
-                edge = sketch.line((ends[0], 0.0), (ends[1], 0.0))
-                yield sketch.hatched(edge, depth)
+        first, last = self._ends(hold) + 0.5 * depth * np.array(OUTWARD[hold.side])
+        yield sketch.rollers(first, last, 0.5 * depth)
 
-    def _stack_held(self) -> Iterator[Array]:
-        data, depth = self._data, HATCH * self.size
-        assert isinstance(data, Stack)
-        if data.support is not None:
-            x = np.linspace(0.0, self._length, len(data.support.gap))
-            edge = np.stack([x, -self._gap(data.support)], axis=1)
+    def _support(self, hold: Hold) -> Iterator[Array]:
+        edge, gap = self._ends(hold), self._gap()
+        if gap is not None:
+            x = np.linspace(0.0, self._length, len(gap))
+            edge = np.stack([x, -gap], axis=1)
             beyond = ROOM * self.size + self._factor * self._pose.largest
             aside = np.array([[beyond, 0.0]])
             edge = np.concatenate([edge[:1] - aside, edge, edge[-1:] + aside])
-            yield sketch.hatched(edge, depth)
-        for name, side in data.sides.items():
-            how, (first, last) = holds(side), ends_of(name, self._length, self._height)
-            if how == "clamp":
-                behind = 1.0 if name in ("left", "top") else -1.0
-                yield sketch.hatched(np.stack([first, last]), depth, behind)
-            elif how == "rollers":
-                aside = 0.5 * depth * np.array(OUTWARD[name])
-                yield sketch.rollers(first + aside, last + aside, 0.5 * depth)
-        if data.spring is not None:
-            foot = self._moved(np.array([[self._length, 0.0]]))[0] + [0.0, depth]
-            wall = np.array([self._length + 0.25 * self.size, depth])
-            yield sketch.spring(foot, wall, 0.5 * depth)
-            half = np.array([0.0, depth])
-            yield sketch.hatched(np.stack([wall - half, wall + half]), depth)
+        yield sketch.hatched(edge, HATCH * self.size)
+
+    def _spring(self, hold: Hold) -> Iterator[Array]:
+        depth, foot = HATCH * self.size, self._ends(hold)[:1]
+        wall = foot[0] + [0.25 * self.size, depth]
+        yield sketch.spring(self._moved(foot)[0] + [0.0, depth], wall, 0.5 * depth)
+        half = np.array([0.0, depth])
+        yield sketch.hatched(np.stack([wall - half, wall + half]), depth)
 
     def across(self, place: float) -> Array:
         """Give a line through all bodies at a place along them, m."""
@@ -207,12 +209,11 @@ class _Artist:
         self, arrows: Sequence[tuple[Act, Sequence[Array]]], settings: Settings
     ) -> list[Handle]:
         """Give what can be dragged, with the arrows of what acts, where it lies on the page."""
-        data = self._data
-        support = data.support if isinstance(data, Stack) else None
-        found = list(on_bodies(data, settings, None if support is None else self._gap(support)))
+        found = list(on_bodies(self._portrait, settings, self._gap()))
+        names = behind(settings)
         for act, own in arrows:
-            if act.setting:
-                found += [on_arrow(act.setting, settings, arrow, self.size) for arrow in own]
+            if act.where in names:
+                found += [on_arrow(names[act.where], settings, arrow, self.size) for arrow in own]
         if found:
             x, y = self.placed(np.stack([one.ends for one in found]))
             ends = np.stack([x, y], axis=2)
@@ -225,12 +226,13 @@ class _Artist:
         unit, name = decimal_scale(peak, act.unit)
         now = self._now(act.values)
         shares = np.broadcast_to(now / peak, len(act.places))
+        places = act.places * [self._length, self._height]
         towards, away = np.array(act.towards), np.array(act.away)
         if towards.ndim > 1:
             towards = self._now(towards)
         is_aside = np.ndim(act.towards) < 2 and abs(float(towards @ away)) < 0.5
         ends, drawn, words = [], [], []
-        for place, share in zip(self._moved(act.places), shares, strict=True):
+        for place, share in zip(self._moved(places), shares, strict=True):
             length = ARROW * self.size * float(share) * towards
             base = place + (0.5 * ROOM * self.size) * away if is_aside else place
             if is_aside:
@@ -246,8 +248,8 @@ class _Artist:
         chosen = range(len(ends)) if np.ndim(now) else [len(ends) // 2]
         for number in chosen:
             value = float(np.broadcast_to(now, len(ends))[number]) / unit
-            says = f"{act.symbol} = {_plain(value)} {name}"
-            words.append((ends[number], says, _aligned(act.away)))
+            says = f"{act.symbol} = {sketch.plain(value)} {name}"
+            words.append((ends[number], says, sketch.aligned(act.away)))
         return drawn, words
 
     def band(self, status: int) -> Array:
@@ -260,9 +262,10 @@ class _Artist:
             strokes += sketch.stretches(places[own], pose.status[own] == status)
         return sketch.joined(strokes)
 
-    def _gap(self, support: Support) -> Array:
+    def _gap(self) -> Array | None:
         """Give the gap as it is drawn: magnified as displacements are, and at most so deep."""
-        return np.minimum(self._factor * support.gap, DEEPEST * self.size)
+        gaps = [hold.gap for hold in self._described.holds if hold.gap is not None]
+        return np.minimum(self._factor * gaps[0], DEEPEST * self.size) if gaps else None
 
     def _moved(self, places: Array) -> Array:
         """Give where the nodes nearest to undeformed places have gone, as seen from there."""
@@ -272,21 +275,10 @@ class _Artist:
 
     def _now(self, values: Array) -> Array:
         """Give values over time at the chosen instant."""
-        instants = self._data.instants
+        instants = self._described.instants
         flat = np.atleast_2d(values)
         found = np.array([np.interp(self._time, instants, one) for one in flat])
         return found if values.ndim > 1 else found[0]
-
-
-def _aligned(away: tuple[float, float]) -> tuple[str, str]:
-    """Say how words stand beside what points away from a body: across and up."""
-    across = {1.0: "left", -1.0: "right"}.get(away[0], "center")
-    return across, {1.0: "bottom", -1.0: "top"}.get(away[1], "middle")
-
-
-def _plain(value: float) -> str:
-    """Write a number with three digits at most, and zero without a sign."""
-    return f"{value:.3g}".replace("-", "−") if abs(value) > 1e-9 else "0"
 
 
 VIEW = View(

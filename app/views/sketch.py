@@ -1,6 +1,6 @@
-"""Strokes of which a picture of a scene is made: arrows, hatches, rollers, a spring.
+"""Strokes of which a picture of a scene is made, arrows, hatches, rollers, a spring, and its words.
 
-Each gives a polyline, shape (n, 2), in which NaN interrupts the line.
+A stroke is a polyline, shape (n, 2), in which NaN interrupts the line.
 """
 
 from __future__ import annotations
@@ -89,3 +89,14 @@ def turned(points: Array, angle: float) -> Array:
         return points
     cos, sin = np.cos(angle), np.sin(angle)
     return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
+
+
+def aligned(away: tuple[float, float]) -> tuple[str, str]:
+    """Say how words stand beside what points away from a body: across and up."""
+    across = {1.0: "left", -1.0: "right"}.get(away[0], "center")
+    return across, {1.0: "bottom", -1.0: "top"}.get(away[1], "middle")
+
+
+def plain(value: float) -> str:
+    """Write a number with three digits at most, and zero without a sign."""
+    return f"{value:.3g}".replace("-", "−") if abs(value) > 1e-9 else "0"

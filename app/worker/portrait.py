@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from app.worker.shown import Bytes, Floats, Mesh, MeshField, thinned
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
-from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack
+from solver.discrete.structure import Description
 from solver.latin import Iterate
 
 THICKNESS, PITCH = 0.07, 0.1
@@ -26,8 +25,8 @@ class Portrait:
 
     Attributes
     ----------
-    data
-        What the scene is made of, and all that acts on it.
+    described
+        Bodies, what holds them and what acts on them.
     mesh
         Of the bodies; rods are drawn with a thickness.
     places
@@ -36,10 +35,17 @@ class Portrait:
         Number of the interface of each of them, shape (n_points,).
     """
 
-    data: Rods | Stack
+    described: Description
     mesh: Mesh
     places: Floats
     chains: NDArray[np.intp]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and height of all bodies as they are drawn, m."""
+        own = self.described
+        thickness = own.length * (PITCH * (own.bodies - 1) + THICKNESS)
+        return own.length, thickness if own.height is None else own.height
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,10 +72,8 @@ class Pose:
 
 def rims(portrait: Portrait) -> list[NDArray[np.intp]]:
     """Give the nodes around every body, a rectangle while undeformed, back to the first."""
-    data, mesh = portrait.data, portrait.mesh
-    bodies = data.wires if isinstance(data, Rods) else data.bodies
-    found = []
-    for quads in mesh.quads.reshape(bodies, -1):
+    mesh, found = portrait.mesh, []
+    for quads in mesh.quads.reshape(portrait.described.bodies, -1):
         own = np.unique(quads)
         x, y = mesh.nodes[own].T
         sides = ((y == y.min(), x), (x == x.max(), y), (y == y.max(), -x), (x == x.min(), -y))
@@ -82,20 +86,20 @@ class Sitter:
 
     Parameters
     ----------
-    problem, data
+    problem, described
         What is solved, and what it was made of.
     mesh
         Of plane bodies; None of rods.
     """
 
-    def __init__(self, problem: Problem, data: Rods | Stack, mesh: Mesh | None) -> None:
-        self._rods = _RodMesh(problem, data) if isinstance(data, Rods) else None
+    def __init__(self, problem: Problem, described: Description, mesh: Mesh | None) -> None:
+        self._rods = _RodMesh(problem, described) if mesh is None else None
         heights = self._rods.heights if self._rods else None
         chosen, above, normal, chains = [], [], [], []
         first = 0
-        for number, (name, law) in enumerate(problem.rubbing.items()):
+        for number, law in enumerate(problem.rubbing.values()):
             points, pairs = np.unique(law.points, return_index=True)
-            kept = thinned(len(points), MOST_POINTS) if name != "spring" else points[:0]
+            kept = thinned(len(points), MOST_POINTS if len(points) > 1 else 0)
             chosen.append(first + kept)
             rows = law.tangent.above[pairs[kept]]
             above.append(problem.row_dofs[rows])
@@ -112,7 +116,7 @@ class Sitter:
             places = np.stack([places, heights[along]], axis=1)
         whole = mesh or (self._rods.mesh if self._rods else None)
         assert whole is not None
-        self.portrait = Portrait(data, whole, _floats(places), np.concatenate(chains))
+        self.portrait = Portrait(described, whole, _floats(places), np.concatenate(chains))
 
     def pose(self, iterate: Iterate, column: int, bodies: MeshField | None) -> Pose:
         """Show an iterate at one instant; plane bodies are given."""
@@ -133,21 +137,21 @@ class Sitter:
 class _RodMesh:
     """Rods as rectangles above each other, one row of quadrilaterals a substructure."""
 
-    def __init__(self, problem: Problem, data: Rods) -> None:
-        per_rod = len(problem.substructures) // data.wires
+    def __init__(self, problem: Problem, described: Description) -> None:
+        per_rod = len(problem.substructures) // described.bodies
         kept, corners, parts = [], [], []
         lows: list[Array] = []
         self.heights = np.zeros(problem.n_dofs)
         size = 0
         for number, part in enumerate(problem.substructures):
             dofs = part.dofs[thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))]
-            low = PITCH * data.length * (number // per_rod)
+            low = PITCH * described.length * (number // per_rod)
             self.heights[part.dofs] = low
             first = size + 2 * np.arange(len(dofs) - 1)
             corners.append(np.stack([first, first + 2, first + 3, first + 1], axis=1))
             parts.append(np.full(len(dofs) - 1, number))
             kept.append(np.repeat(dofs, 2))
-            lows.append(np.tile([low, low + THICKNESS * data.length], len(dofs)))
+            lows.append(np.tile([low, low + THICKNESS * described.length], len(dofs)))
             size += 2 * len(dofs)
         self._dofs: Indices = np.concatenate(kept)
         nodes = np.stack([problem.positions[self._dofs], np.concatenate(lows)], axis=1)

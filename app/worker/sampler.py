@@ -32,7 +32,7 @@ from solver.discrete.loops import Fields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
 from solver.reference.solution import Reference
-from solver.scenes import broken_wire_of, closed_form_of, data_of, kind_of, loop_of
+from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of
 from solver.settings import Settings
 
 
@@ -75,7 +75,7 @@ class Sampler:
         elif kind_of(settings) == "wires":
             self._wires = ShownWires(problem, settings.values()["broken"])
         mesh = self._mesh.mesh if self._mesh else None
-        self._sitter = Sitter(problem, data_of(settings), mesh)
+        self._sitter = Sitter(problem, structure_of(settings).described(), mesh)
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.stack import Given, Stack
+from solver.discrete.stack_data import Given, StackData
 
 SLACK = 1e-9
 """Share of the loads that rounding may add to them."""
@@ -21,7 +21,7 @@ class Loss:
     instant: float
 
 
-def wrench(scene: Stack) -> tuple[Array, Array, Array]:
+def wrench(scene: StackData) -> tuple[Array, Array, Array]:
     """Give the resultants of tractions and body forces on a single body.
 
     Returns
@@ -56,18 +56,18 @@ def _resultant(given: Given, size: float) -> tuple[Array, Array]:
     return total, 0.5 * size * total + size**2 / 6.0 * given.slope
 
 
-def is_held_up(scene: Stack) -> bool:
+def is_held_up(scene: StackData) -> bool:
     """Tell whether a side prescribes a displacement upwards."""
     return any(side.y.prescribed for side in scene.sides.values())
 
 
-def is_upright(scene: Stack) -> bool:
+def is_upright(scene: StackData) -> bool:
     """Tell whether a side keeps the body from turning."""
     sides = scene.sides
     return sides["top"].y.prescribed or any(sides[name].x.prescribed for name in ("left", "right"))
 
 
-def loss_of_equilibrium(scene: Stack) -> Loss | None:
+def loss_of_equilibrium(scene: StackData) -> Loss | None:
     """Find why a body on a support cannot rest under its loads, or None if nothing forbids it.
 
     Nothing but the support can hold what no side holds: it presses and does not pull, friction

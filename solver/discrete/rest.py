@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.equilibrium import is_held_up, is_upright, wrench
-from solver.discrete.stack import Spring, Stack
+from solver.discrete.stack_data import Spring, StackData
 
 BEDDING = 7.0
 """Stiffness of the support per area, times the body's length over E: that of the contact itself,
@@ -20,7 +20,7 @@ FREE = 1e-9
 that a free motion is pushed."""
 
 
-def rigid_rest(scene: Stack) -> Array | None:
+def rigid_rest(scene: StackData) -> Array | None:
     """Give the rigid motion that brings the body onto its support.
 
     The body is rigid, the support an elastic bedding (Winkler), so that a curved side rests on a
@@ -54,7 +54,7 @@ def rigid_rest(scene: Stack) -> Array | None:
     return settled if settled.any() else None
 
 
-def rigid_slide(scene: Stack, spring: Spring) -> Array:
+def rigid_slide(scene: StackData, spring: Spring) -> Array:
     """Give how far the body would slide if it were rigid, to the right, (n_instants,), m.
 
     It moves no farther than it must: until friction and the spring together hold it.

@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.arrays import Indices
 from solver.discrete.rod import substructure_sizes
-from solver.discrete.rods import Rods
+from solver.discrete.rods_data import RodsData
 
 NO_ROW = -1
 
@@ -38,7 +38,7 @@ class Pieces:
         Rows of the ends, shape (count, n_rods), `NO_ROW` at the break.
     """
 
-    def __init__(self, scene: Rods) -> None:
+    def __init__(self, scene: RodsData) -> None:
         self.sizes, before = _dealt(scene)
         self.count = len(self.sizes)
         self.starts = np.concatenate([[0], np.cumsum(self.sizes)[:-1]])
@@ -93,7 +93,7 @@ class Pieces:
         return [*found, ends[ends != NO_ROW]]
 
 
-def _dealt(scene: Rods) -> tuple[list[int], int]:
+def _dealt(scene: RodsData) -> tuple[list[int], int]:
     """Deal the elements of a rod to substructures; also give how many lie before the break."""
     if scene.broken is None:
         return substructure_sizes(scene.elements, scene.substructures), 0

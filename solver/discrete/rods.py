@@ -1,103 +1,65 @@
-"""Elastic rods that rub: what the scenes `bar` and `strand` are made of."""
+"""Elastic rods that rub on a support, or on each other."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
 
 import numpy as np
 
-from solver.arrays import Array
-from solver.laws import Coulomb, FrictionLaw
+from solver.discrete.problem import Problem
+from solver.discrete.rods_data import RodsData
+from solver.discrete.rods_problem import discretise_rods
+from solver.discrete.structure import OUTWARD, Act, Description, Hold
 
-COARSEST = 6
-"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rods:
-    """One rod on a rigid rough support, or equal parallel rods that rub on each other.
-
-    Their left ends are held; absent parts are None.
-
-    Attributes
-    ----------
-    length, stiffness
-        Length L, m, and axial stiffness ES of one rod, N; where that varies, of the uniform rod
-        that the same force at both ends stretches by as much.
-    elements, substructures
-        Of one rod: numbers of equal linear elements, and of parts that they are dealt to.
-    bound
-        Friction bound mu p at the nodes of an interface, shape (n_nodes,), N/m.
-    load
-        Force at the right end of every rod, or with a rigid grip that of a rod which carries
-        nothing but its share, shape (n_instants,), N.
-    instants, duration
-        Instants, shape (n_instants,), and length of the interval, s.
-    wires
-        Number of the rods, from 1: a single one rubs on its support, several on their neighbours.
-    broken
-        Number of the broken rod and of the node where it is broken, of several rods.
-    rigid_grip
-        Whether the right ends are displaced by load times L / ES instead.
-    support
-        Displacement of the held ends, shape (n_instants,), m.
-    body_force
-        Axial force per length, uniform along the rods, shape (n_instants,), N/m.
-    friction_law
-        Along the interfaces.
-    section
-        Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
-        of the inverse is 1.
-    """
-
-    length: float
-    stiffness: float
-    elements: int
-    substructures: int
-    bound: Array
-    load: Array
-    instants: Array
-    duration: float
-    wires: int = 1
-    broken: tuple[int, int] | None = None
-    rigid_grip: bool = False
-    support: Array | None = None
-    body_force: Array | None = None
-    section: Array | None = None
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
-
-    @property
-    def nodes(self) -> Array:
-        """Positions of the nodes of a rod, shape (n_nodes,), m."""
-        return np.linspace(0.0, self.length, self.elements + 1)
-
-    @property
-    def rubbing_sides(self) -> int:
-        """Neighbours of the broken rod."""
-        return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
-
-    def coarser(self) -> Rods | None:
-        """Give the same uncut rods on half the elements, or None where no front would be seen.
-
-        They must be whole: a break stands at a node.
-        """
-        elements = self.elements // 2
-        if elements < COARSEST:
-            return None
-        nodes = np.linspace(0.0, self.length, elements + 1)
-        bound = np.interp(nodes, self.nodes, self.bound)
-        section = self._section_between(nodes)
-        return replace(self, elements=elements, substructures=1, bound=bound, section=section)
-
-    def _section_between(self, nodes: Array) -> Array | None:
-        """Give the stiffness between other nodes, in series what the elements have there."""
-        if self.section is None:
-            return None
-        compliance = np.concatenate([[0.0], np.cumsum(1.0 / self.section)])
-        own = np.diff(np.interp(nodes, self.nodes, compliance))
-        return np.asarray(np.mean(own) / own)
+PRESSED = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+"""Where the pressure is shown, as far as anything rubs there."""
 
 
-def neighbours(wire: int, wires: int) -> int:
-    """Give how many neighbours a rod of several has, numbered from 1."""
-    return (wire > 1) + (wire < wires)
+class Rods(RodsData):
+    """Rods as a structure; the attributes are those of `RodsData`."""
+
+    def discretise(self) -> Problem:
+        """Make the discrete problem."""
+        return discretise_rods(self)
+
+    def described(self) -> Description:
+        """Say what there is, for whoever draws it."""
+        broken = self.broken and (self.broken[0] - 1, float(self.nodes[self.broken[1]]))
+        return Description(
+            bodies=self.wires,
+            length=self.length,
+            height=None,
+            instants=self.instants,
+            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            holds=tuple(self._holds()),
+            broken=broken,
+        )
+
+    def _acts(self) -> Iterator[Act]:
+        end, start = np.array([[1.0, 0.5]]), np.array([[0.0, 0.5]])
+        right = OUTWARD["right"]
+        if self.rigid_grip:
+            moved = self.load * self.length / self.stiffness
+            yield Act("right x", "u", end, right, right, moved, "m")
+        else:
+            yield Act("right x", "F", end, right, right, self.load, "N")
+        if self.support is not None:
+            yield Act("left x", "u", start, right, OUTWARD["left"], self.support, "m")
+        if self.body_force is not None:
+            middle = np.array([[0.5, 1.0]])
+            yield Act("body", "b", middle, right, right, self.body_force, "N/m")
+        x = PRESSED[np.interp(PRESSED, self.nodes / self.length, self.bound) > 0.0]
+        if self.pressure is not None and len(x):
+            places = np.stack([x, np.ones_like(x)], axis=1)
+            pressure = np.full(len(self.instants), self.pressure)
+            yield Act("top y", "p", places, OUTWARD["bottom"], OUTWARD["top"], pressure, "N/m")
+
+    def _holds(self) -> Iterator[Hold]:
+        yield Hold("clamp", "left", moved=self.support)
+        if self.wires > 1:
+            return
+        rubs = np.flatnonzero(self.bound > 0.0)
+        for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
+            if len(run) > 1:
+                first, last = run[[0, -1]] / self.elements
+                yield Hold("support", "bottom", (float(first), float(last)))

@@ -9,7 +9,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.rod import rod_stiffness, tributary
 from solver.discrete.rod_pieces import NO_ROW, Pieces
-from solver.discrete.rods import Rods
+from solver.discrete.rods_data import RodsData
 from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod, Sliders
 
 MACRO_DEGREE = 1
@@ -20,7 +20,7 @@ up to half of the iterations with 20 wires or more in 4 pieces each, and so do 1
 gain nothing."""
 
 
-def discretise_rods(scene: Rods) -> Problem:
+def discretise_rods(scene: RodsData) -> Problem:
     """Cut all rods at the same nodes and write the laws of their interfaces.
 
     Lengths are scaled by L, forces by ES of one rod (solver/README.md, 1). Degrees of freedom run
@@ -52,7 +52,7 @@ def discretise_rods(scene: Rods) -> Problem:
 
 
 def _substructure(
-    scene: Rods,
+    scene: RodsData,
     pieces: Pieces,
     wire: int,
     column: int,
@@ -89,7 +89,7 @@ def _elasticity(size: int, elements: int, trace: Indices, ends: int, section: Ar
     return Elasticity(stiffness, trace, direction)
 
 
-def _interfaces(scene: Rods, pieces: Pieces) -> dict[str, Interface]:
+def _interfaces(scene: RodsData, pieces: Pieces) -> dict[str, Interface]:
     found: dict[str, Interface] = {
         "friction" if below is None else f"contact {below + 1}-{above + 1}": _friction(
             scene, pieces, number
@@ -112,7 +112,7 @@ def _interfaces(scene: Rods, pieces: Pieces) -> dict[str, Interface]:
     return found
 
 
-def _friction(scene: Rods, pieces: Pieces, number: int) -> Contact:
+def _friction(scene: RodsData, pieces: Pieces, number: int) -> Contact:
     rubbing = pieces.rubbing
     element = 1.0 / scene.elements
     weights = scene.length * np.concatenate(
@@ -139,7 +139,7 @@ def _friction(scene: Rods, pieces: Pieces, number: int) -> Contact:
     )
 
 
-def _modulus(scene: Rods, node: Indices) -> Array | None:
+def _modulus(scene: RodsData, node: Indices) -> Array | None:
     """Give the stiffness around nodes: of half an element on either side, in series."""
     if scene.section is None:
         return None

@@ -7,7 +7,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.elements import edge_mass
 from solver.discrete.plane import Rectangle
-from solver.discrete.stack import Given, Stack
+from solver.discrete.stack_data import Given, StackData
 
 Place = tuple[int, int, int]
 """Column and row of a substructure in its body, and the body."""
@@ -15,7 +15,7 @@ Corner = tuple[int, int]
 """First column and row of its nodes in its body."""
 
 
-def neighbour(scene: Stack, place: Place, side: str) -> str | Place:
+def neighbour(scene: StackData, place: Place, side: str) -> str | Place:
     """Tell what lies beyond a side: a substructure, "support", or the name of an outer side."""
     column, row, body = place
     columns, rows = scene.substructures
@@ -31,7 +31,7 @@ def neighbour(scene: Stack, place: Place, side: str) -> str | Place:
 
 
 def along(
-    scene: Stack, rectangle: Rectangle, place: Place, corner: Corner, side: str, given: Given
+    scene: StackData, rectangle: Rectangle, place: Place, corner: Corner, side: str, given: Given
 ) -> Array:
     """Give 2 s / length - 1 at the nodes of a substructure on an outer side, (n_nodes, 1)."""
     if side in ("left", "right"):
@@ -44,7 +44,9 @@ def along(
     return np.asarray(2.0 * (first + np.arange(count)[:, None]) / whole - 1.0)
 
 
-def nodal_force(scene: Stack, rectangle: Rectangle, place: Place, corner: Corner) -> Array | None:
+def nodal_force(
+    scene: StackData, rectangle: Rectangle, place: Place, corner: Corner
+) -> Array | None:
     """Give nodal forces of tractions and body forces, scaled, (2 n_nodes, n), None without any.
 
     Tractions vary linearly along a side, body forces are constant; both are work equivalent.

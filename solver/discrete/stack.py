@@ -1,130 +1,81 @@
-"""Rectangular bodies stacked on each other: what the scenes `block` and `layers` are made of."""
+"""Rectangular bodies in the plane, one on a support or several stacked on each other."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 
-from solver.arrays import Array
-from solver.laws import Coulomb, FrictionLaw
+import numpy as np
 
-
-@dataclass(frozen=True, eq=False)
-class Given:
-    """What is given for one component along a side: mean + slope (2 s / length - 1).
-
-    Attributes
-    ----------
-    prescribed
-        Whether it is a displacement, m; else it is a traction, Pa.
-    mean, slope
-        Over time, shape (n_instants,).
-    each_body
-        Whether s runs over each body of the stack anew, on the left and the right.
-    """
-
-    prescribed: bool
-    mean: Array
-    slope: Array
-    each_body: bool = False
+from solver.discrete.problem import Problem
+from solver.discrete.stack_data import Given, Side, StackData
+from solver.discrete.stack_problem import discretise_stack
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, ends_of
 
 
-@dataclass(frozen=True, eq=False)
-class Side:
-    """What is given along a side of the stack, for the components along x and y."""
+class Stack(StackData):
+    """Bodies in the plane as a structure; the attributes are those of `StackData`."""
 
-    x: Given
-    y: Given
+    def discretise(self) -> Problem:
+        """Make the discrete problem."""
+        return discretise_stack(self)
+
+    def described(self) -> Description:
+        """Say what there is, for whoever draws it."""
+        return Description(
+            bodies=self.bodies,
+            length=self.length,
+            height=self.bodies * self.height,
+            instants=self.instants,
+            acts=tuple(act for act in self._acts() if np.any(act.values)),
+            holds=tuple(self._holds()),
+            tilt=self.tilt,
+        )
+
+    def _acts(self) -> Iterator[Act]:
+        for name, side in self.sides.items():
+            if name == "bottom" and self.support is not None:
+                continue
+            for component, given in enumerate((side.x, side.y)):
+                yield _given(given, name, component)
+        if self.body_force is not None:
+            size = np.hypot(*self.body_force)
+            towards = self.body_force / np.where(size > 0.0, size, 1.0)
+            weight = size * self.length * (self.bodies * self.height)
+            yield Act("body", "W", np.array([[0.5, 0.5]]), towards, (1.0, 0.0), weight, "N")
+
+    def _holds(self) -> Iterator[Hold]:
+        if self.support is not None:
+            yield Hold("support", "bottom", gap=self.support.gap)
+        for name, side in self.sides.items():
+            is_still = _is_still(side)
+            if all(is_still):
+                yield Hold("clamp", name)
+            elif any(is_still):
+                yield Hold("rollers", name)
+        if self.spring is not None:
+            yield Hold("spring", "right")
 
 
-@dataclass(frozen=True, eq=False)
-class Support:
-    """A rigid rough support below the stack.
-
-    Attributes
-    ----------
-    gap
-        Opening at the nodes of the lowest side, shape (nodes along,), m.
-    friction
-        Coefficient mu.
-    """
-
-    gap: Array
-    friction: float
-
-
-@dataclass(frozen=True)
-class Spring:
-    """A spring along x at the foot of the right side of the lowest body, slack at first.
-
-    Attributes
-    ----------
-    slack
-        How far the foot may move to the left before it is pulled back, m.
-    stiffness
-        N/m.
-    """
-
-    slack: float
-    stiffness: float
+def _given(given: Given, side: str, component: int) -> Act:
+    """Show what is given along a side: evenly in the middle, unevenly at both ends."""
+    towards, away = ((1.0, 0.0), (0.0, 1.0))[component], OUTWARD[side]
+    first, last = ends_of(side)
+    unit = "m" if given.prescribed else "Pa"
+    is_normal = away[component] != 0.0
+    symbol = "u" if given.prescribed else "σ" if is_normal else "τ"
+    where = f"{side} {'xy'[component]}"
+    if np.any(given.slope):
+        values = np.stack([given.mean - given.slope, given.mean + given.slope])
+        return Act(where, symbol, np.stack([first, last]), towards, away, values, unit)
+    several = is_normal and not given.prescribed
+    share = np.array([0.15, 0.5, 0.85] if several else [0.7 if is_normal else 0.3])
+    places = first + share[:, None] * (last - first)
+    return Act(where, symbol, places, towards, away, given.mean, unit)
 
 
-@dataclass(frozen=True, eq=False)
-class Stack:
-    """Equal rectangular bodies on each other; one metre thick.
-
-    Attributes
-    ----------
-    length, height
-        Of one body, m.
-    bodies
-        Their number.
-    elements, substructures
-        Of one body, along and up.
-    order
-        Of the elements: 1 bilinear, 2 biquadratic.
-    macro_degree
-        Of the macro basis on each side of a substructure; long sides get more in proportion.
-    young, poisson, state
-        Elasticity, Pa; `state` is "strain" or "stress".
-    stiffness
-        Young's modulus of every body over `young`, shape (bodies,).
-    friction
-        Coefficient mu between the bodies.
-    support
-        Below the lowest body, or None.
-    sides
-        What is given along the outer sides; a support replaces "bottom". `left` and `right` run
-        over the sides of all bodies.
-    body_force
-        Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
-    instants, duration
-        s.
-    spring
-        At the right side, of which nothing is prescribed then; or None.
-    tilt
-        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
-        `body_force` has turned the other way already. None where it does not.
-    friction_law
-        Between the bodies, and on the support.
-    """
-
-    length: float
-    height: float
-    bodies: int
-    elements: tuple[int, int]
-    substructures: tuple[int, int]
-    order: int
-    macro_degree: int
-    young: float
-    poisson: float
-    state: str
-    stiffness: Array
-    friction: float
-    support: Support | None
-    sides: dict[str, Side]
-    body_force: Array | None
-    instants: Array
-    duration: float
-    spring: Spring | None = None
-    tilt: Array | None = None
-    friction_law: FrictionLaw = field(default_factory=Coulomb)
+def _is_still(side: Side) -> list[bool]:
+    """Tell which components of a side are held at rest."""
+    return [
+        given.prescribed and not np.any(given.mean) and not np.any(given.slope)
+        for given in (side.x, side.y)
+    ]

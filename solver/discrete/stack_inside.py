@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.stack import Stack
+from solver.discrete.stack_data import StackData
 from solver.discrete.stack_parts import Grid, Part
 
 
 class StackInside:
     """What lies inside the substructures of a stack, as `problem.Inside` says."""
 
-    def __init__(self, scene: Stack, parts: list[Part], grid: Grid, skeleton: Indices) -> None:
+    def __init__(self, scene: StackData, parts: list[Part], grid: Grid, skeleton: Indices) -> None:
         self._parts = parts
         self._young = scene.young
         self._length = scene.length

@@ -10,7 +10,7 @@ from scipy import sparse
 from solver.arrays import Array
 from solver.discrete.macro import side_basis
 from solver.discrete.sides import Place, along, neighbour
-from solver.discrete.stack import Side, Spring, Stack
+from solver.discrete.stack_data import Side, Spring, StackData
 from solver.discrete.stack_parts import Part
 from solver.laws import (
     Bodies,
@@ -28,7 +28,7 @@ from solver.laws import (
 OPPOSITE = {"right": "left", "top": "bottom"}
 
 
-def interfaces_of(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Interface]]:
+def interfaces_of(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str, Interface]]:
     """Give all interfaces by name: contacts, then cuts, then prescribed sides."""
     yield from _contacts(scene, parts)
     if scene.spring is not None:
@@ -54,11 +54,11 @@ def _name(place: Place) -> str:
     return f"{column + 1}.{row + 1}" + (f" of {body + 1}" if body else "")
 
 
-def _macro_basis(scene: Stack, part: Part, side: str) -> Array:
+def _macro_basis(scene: StackData, part: Part, side: str) -> Array:
     return side_basis(part.rectangle, side, len(part.rows[side]), scene.macro_degree)
 
 
-def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Contact]]:
+def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str, Contact]]:
     columns, rows = scene.substructures
     x = np.linspace(0.0, scene.length, scene.order * scene.elements[0] + 1)
     for body in range(scene.bodies):
@@ -106,7 +106,7 @@ def _contacts(scene: Stack, parts: dict[Place, Part]) -> Iterable[tuple[str, Con
         )
 
 
-def _spring(scene: Stack, spring: Spring, part: Part) -> Contact:
+def _spring(scene: StackData, spring: Spring, part: Part) -> Contact:
     """Give the law of a spring: it pushes to the right, as if from the left."""
     rows = part.rows["right"]
     return Contact(
@@ -124,7 +124,7 @@ def _spring(scene: Stack, spring: Spring, part: Part) -> Contact:
 
 
 def _prescribed(
-    scene: Stack, parts: dict[Place, Part], side: str, given: Side
+    scene: StackData, parts: dict[Place, Part], side: str, given: Side
 ) -> Iterable[tuple[str, Dirichlet]]:
     rows, values = [], []
     for place, part in parts.items():
@@ -142,7 +142,9 @@ def _prescribed(
         yield side, Dirichlet(np.concatenate(rows), np.concatenate(values))
 
 
-def _settle_corners(scene: Stack, place: Place, side: str, component: int, found: Array) -> None:
+def _settle_corners(
+    scene: StackData, place: Place, side: str, component: int, found: Array
+) -> None:
     """Let a corner have one displacement, that of the top or bottom, if both sides prescribe it."""
     for level, node in (("bottom", 0), ("top", -1)):
         if neighbour(scene, place, level) != level:

@@ -11,7 +11,7 @@ from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane import Condensed, Kept, Rectangle, both
 from solver.discrete.rod import substructure_sizes
 from solver.discrete.sides import Corner, Place, neighbour, nodal_force
-from solver.discrete.stack import Stack
+from solver.discrete.stack_data import StackData
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Part:
 class Grid:
     """Nodes of all bodies, and where they are cut."""
 
-    def __init__(self, scene: Stack) -> None:
+    def __init__(self, scene: StackData) -> None:
         columns, rows = (scene.order * number for number in scene.elements)
         bodies = scene.bodies
         self.nodes = np.arange(bodies * (rows + 1) * (columns + 1)).reshape(
@@ -72,7 +72,7 @@ class Grid:
         self.cuts = across, up
 
 
-def parts_of(scene: Stack, grid: Grid) -> list[Part]:
+def parts_of(scene: StackData, grid: Grid) -> list[Part]:
     """Cut all bodies; equal parts share what is condensed. Their rows are still to be numbered."""
     across, up = grid.cuts
     width = 1.0 / scene.elements[0]
@@ -114,7 +114,7 @@ def _kept(condensed: Condensed, held: dict[str, Held]) -> Kept:
     return Kept(condensed, np.unique(np.concatenate(edges)))
 
 
-def _held(scene: Stack, place: Place, side: str) -> Held:
+def _held(scene: StackData, place: Place, side: str) -> Held:
     """Tell which rows a side has: all at an interface, or those of prescribed components.
 
     A spring has those of one node.

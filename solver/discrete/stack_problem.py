@@ -11,13 +11,13 @@ from solver.discrete.motions import rigid_motions
 from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
 from solver.discrete.rest import rigid_rest, rigid_slide
 from solver.discrete.sides import neighbour
-from solver.discrete.stack import Stack
+from solver.discrete.stack_data import StackData
 from solver.discrete.stack_inside import StackInside
 from solver.discrete.stack_laws import interfaces_of
 from solver.discrete.stack_parts import Grid, Part, parts_of
 
 
-def discretise_stack(scene: Stack) -> Problem:
+def discretise_stack(scene: StackData) -> Problem:
     """Cut the bodies into rectangles and write the laws of their interfaces.
 
     Lengths are scaled by the length of a body, stresses by E. Search direction: E / l_sub per
@@ -52,7 +52,7 @@ def discretise_stack(scene: Stack) -> Problem:
     return replace(found, motions=motions)
 
 
-def _rest(scene: Stack, positions: Array, components: Indices) -> Array | None:
+def _rest(scene: StackData, positions: Array, components: Indices) -> Array | None:
     """Give the displacement of degrees of freedom where the body rests, (n_dofs, n_instants)."""
     rigid = rigid_rest(scene)
     if rigid is None:
@@ -66,7 +66,7 @@ def _rest(scene: Stack, positions: Array, components: Indices) -> Array | None:
 
 
 def _substructure(
-    scene: Stack, part: Part, skeleton: Indices, shared: dict[tuple[object, ...], Elasticity]
+    scene: StackData, part: Part, skeleton: Indices, shared: dict[tuple[object, ...], Elasticity]
 ) -> Substructure:
     rectangle = part.rectangle
     modulus = float(scene.stiffness[part.place[2]])

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rods import Rods
+from solver.discrete.rods_data import RodsData
 from solver.laws import Coulomb
 from solver.reference.closed_form import ClosedForm, closed_form
 
@@ -49,7 +49,7 @@ class BrokenWire:
     slip: Array
 
 
-def broken_wire(scene: Rods) -> BrokenWire | None:
+def broken_wire(scene: RodsData) -> BrokenWire | None:
     """Solve a strand with a broken wire in closed form.
 
     Returns
@@ -73,13 +73,13 @@ def broken_wire(scene: Rods) -> BrokenWire | None:
     )
 
 
-def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm]:
+def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm]:
     """Give the bars left and right of the break, from their far ends to the break."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
     found = []
     for elements in (node, scene.elements - node):
-        side = Rods(
+        side = RodsData(
             length=scene.length * elements / scene.elements,
             stiffness=scene.stiffness * sides / (sides + 1),
             elements=elements,
@@ -95,7 +95,7 @@ def _sides(scene: Rods, tension: Array) -> tuple[ClosedForm, ClosedForm]:
     return found[0], found[1]
 
 
-def _tension(scene: Rods) -> Array:
+def _tension(scene: RodsData) -> Array:
     """Find T under a rigid grip: a neighbour's elongation is given.
 
     It is T L / ES, plus for each side of the break what has slipped there over m + 1. The second

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rods import Rods
+from solver.discrete.rods_data import RodsData
 from solver.laws import Coulomb
 from solver.laws.play import play
 
@@ -54,7 +54,7 @@ class ClosedForm:
         return found
 
 
-def closed_form(scene: Rods) -> ClosedForm | None:
+def closed_form(scene: RodsData) -> ClosedForm | None:
     """Solve the friction bar in closed form (solver/README.md, 6).
 
     Parameters
@@ -81,7 +81,7 @@ def closed_form(scene: Rods) -> ClosedForm | None:
     return ClosedForm(nodal, -np.diff(sections, axis=0), displacement)
 
 
-def _grip_beyond(scene: Rods, share: float | Array, *, with_end: bool = False) -> Array:
+def _grip_beyond(scene: RodsData, share: float | Array, *, with_end: bool = False) -> Array:
     """Give R at a share of every element's length, shape (n_elements,), N; then at L if wanted.
 
     Of shares of shape (n_shares, 1) it gives (n_shares, n_elements).
@@ -95,11 +95,11 @@ def _grip_beyond(scene: Rods, share: float | Array, *, with_end: bool = False) -
     return np.append(found, 0.0) if with_end else found
 
 
-def _normal_force(scene: Rods, reach: Array) -> Array:
+def _normal_force(scene: RodsData, reach: Array) -> Array:
     return play(np.broadcast_to(scene.load, (len(reach), len(scene.load))), reach)
 
 
-def _mean_normal_force(scene: Rods, nodal: Array) -> Array:
+def _mean_normal_force(scene: RodsData, nodal: Array) -> Array:
     """Average over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])

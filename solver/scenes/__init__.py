@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from solver.definitions import Pairs
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods
-from solver.discrete.rods_problem import discretise_rods
-from solver.discrete.stack import Stack
-from solver.discrete.stack_problem import discretise_stack
+from solver.discrete.structure import Structure
 from solver.reference.broken_wire import BrokenWire
 from solver.reference.closed_form import ClosedForm
 from solver.scenes.bar import BAR
@@ -42,15 +39,14 @@ def kind_of(settings: Settings) -> Kind:
     return entry_of(settings).kind
 
 
-def data_of(settings: Settings) -> Rods | Stack:
-    """Make what checked settings describe: rods, or stacked bodies, with all that acts on them."""
-    return entry_of(settings).data(settings)
+def structure_of(settings: Settings) -> Structure:
+    """Make what checked settings describe: bodies, with all that acts on them."""
+    return entry_of(settings).structure(settings)
 
 
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem that checked settings describe."""
-    data = data_of(settings)
-    return discretise_rods(data) if isinstance(data, Rods) else discretise_stack(data)
+    return structure_of(settings).discretise()
 
 
 def coarser_problems(settings: Settings) -> list[Problem]:
@@ -88,6 +84,12 @@ def points_of(settings: Settings, name: str) -> Pairs:
     """
     assert isinstance(settings, SceneSettings)
     return settings.points(name)
+
+
+def loads_of(settings: Settings) -> Sequence[str]:
+    """Name the settings that say how much a scene is loaded; the first that applies counts."""
+    assert isinstance(settings, SceneSettings)
+    return settings.LOADS
 
 
 def ends_of(settings: Settings) -> Mapping[str, int]:

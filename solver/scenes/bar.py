@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,7 +13,6 @@ from solver.definitions import Pairs, SettingError, choice, count, curve, quanti
 from solver.discrete.loops import loop_of_ends
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
-from solver.discrete.rods_problem import discretise_rods
 from solver.loads import PRESETS, interpolate
 from solver.reference.closed_form import closed_form
 from solver.scenes.base import SceneSettings
@@ -36,6 +36,7 @@ class BarSettings(SceneSettings):
     """Settings of the friction bar; the defaults are Table 1 under a sine of 900 N."""
 
     scene = "bar"
+    LOADS: ClassVar = ("peak",)
 
     load = curve(
         "sine",
@@ -219,6 +220,7 @@ def bar(settings: BarSettings) -> Rods:
         load=settings.path("load"),
         instants=settings.times(),
         duration=settings.duration,
+        pressure=settings.pressure,
         support=settings.path("support_load") if settings.support_displacement else None,
         body_force=settings.path("body_load") if settings.body_force else None,
         section=section,
@@ -246,7 +248,7 @@ def _profile(profile: str | tuple[tuple[float, float], ...], nodes: Array, lengt
 def _coarser(settings: BarSettings) -> Iterator[Problem]:
     scene = bar(settings).coarser()
     while scene is not None:
-        yield discretise_rods(scene)
+        yield scene.discretise()
         scene = scene.coarser()
 
 
@@ -255,7 +257,7 @@ BAR = Entry(
     source="paper, section 3, Table 1",
     settings=BarSettings,
     kind="rod",
-    data=bar,
+    structure=bar,
     loop=lambda settings, problem: loop_of_ends(problem, "Force"),
     sizes=shared.ROD_SIZES,
     coarser=_coarser,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from typing import Any, ClassVar, Self
 
@@ -45,6 +45,8 @@ class SceneSettings(Settings):
 
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
+    LOADS: ClassVar[Sequence[str]] = ()
+    """Settings that say how much it is loaded; the first that applies counts."""
     SHAPES: ClassVar[Mapping[str, Callable[[Array, int], Array]]] = PRESETS
     """What the presets of paths over time stand for."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.loops import Loop
 from solver.discrete.probes import side_mean
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Given, Side, Stack, Support
+from solver.discrete.stack import Stack
+from solver.discrete.stack_data import Given, Side, Support
 from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Entry
@@ -26,6 +28,7 @@ class BlockSettings(SideSettings):
     """Settings of the block; by default it is pressed from above, then sheared to and fro."""
 
     scene = "block"
+    LOADS: ClassVar = ("top_tangential_displacement",)
 
     gap = curve(
         "parabola",
@@ -157,7 +160,7 @@ BLOCK = Entry(
     source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
     settings=BlockSettings,
     kind="plane",
-    data=block,
+    structure=block,
     loop=_loop,
     sizes=shared.PLANE_SIZES,
 )

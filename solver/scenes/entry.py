@@ -8,8 +8,7 @@ from typing import Generic, Literal, TypeVar
 
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods
-from solver.discrete.stack import Stack
+from solver.discrete.structure import Structure
 from solver.reference.broken_wire import BrokenWire
 from solver.reference.closed_form import ClosedForm
 from solver.scenes.base import SceneSettings
@@ -30,8 +29,8 @@ class Entry(Generic[S]):
         Its settings.
     kind
         What there is to see: a rod on its support, wires beside each other, or plane bodies.
-    data
-        Makes what the scene is made of: rods, or stacked bodies.
+    structure
+        Makes what the scene is made of.
     loop
         Gives the loop that it shows.
     coarser
@@ -47,7 +46,7 @@ class Entry(Generic[S]):
     source: str
     settings: type[S]
     kind: Kind
-    data: Callable[[S], Rods | Stack]
+    structure: Callable[[S], Structure]
     loop: Callable[[S, Problem], Loop]
     sizes: Mapping[str, tuple[int, ...]]
     coarser: Callable[[S], Iterable[Problem]] | None = None

@@ -17,7 +17,8 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.loops import Loop
 from solver.discrete.probes import constant
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Given, Side, Spring, Stack, Support
+from solver.discrete.stack import Stack
+from solver.discrete.stack_data import Given, Side, Spring, Support
 from solver.loads import PULLS
 from solver.scenes.entry import Entry
 from solver.scenes.plane import PlaneSettings
@@ -27,6 +28,7 @@ class InclineSettings(PlaneSettings):
     """Settings of the block on a slope; by default the spring catches it, and pulls it back."""
 
     scene = "incline"
+    LOADS: ClassVar = ("slope",)
     SHAPES: ClassVar = PULLS
 
     slope = quantity(
@@ -145,7 +147,7 @@ INCLINE = Entry(
     source="closed form: Coulomb, Théorie des machines simples, 1785",
     settings=InclineSettings,
     kind="plane",
-    data=incline,
+    structure=incline,
     loop=_loop,
     sizes=shared.PLANE_SIZES,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 
@@ -11,7 +12,8 @@ from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.loops import Loop
 from solver.discrete.probes import end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Given, Side, Stack
+from solver.discrete.stack import Stack
+from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
 from solver.scenes.entry import Entry
 from solver.scenes.plane import PlaneSettings
@@ -21,6 +23,7 @@ class LayersSettings(PlaneSettings):
     """Settings of the stack; by default it is pressed, then its end is bent up and down."""
 
     scene = "layers"
+    LOADS: ClassVar = ("deflection", "moment")
     across = "thickness"
 
     pressure = quantity(
@@ -198,7 +201,7 @@ LAYERS = Entry(
     source="a leaf spring, or the section of a cable laid flat",
     settings=LayersSettings,
     kind="plane",
-    data=layers,
+    structure=layers,
     loop=_loop,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
 )

@@ -11,8 +11,8 @@ import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.loops import loop_of_ends
 from solver.discrete.problem import Problem
-from solver.discrete.rods import COARSEST, Rods, neighbours
-from solver.discrete.rods_problem import discretise_rods
+from solver.discrete.rods import Rods
+from solver.discrete.rods_data import COARSEST, neighbours
 from solver.loads import PULLS
 from solver.reference.broken_wire import broken_wire
 from solver.scenes.base import SceneSettings
@@ -26,6 +26,7 @@ class StrandSettings(SceneSettings):
     """
 
     scene = "strand"
+    LOADS: ClassVar = ("peak",)
     PARTS: ClassVar = {"substructures": "elements", "broken": "wires"}
     SHAPES: ClassVar = PULLS
 
@@ -180,6 +181,7 @@ def strand(settings: StrandSettings) -> Rods:
         load=settings.path("load"),
         instants=settings.times(),
         duration=settings.duration,
+        pressure=settings.pressure,
         wires=settings.wires,
         broken=(settings.broken, _break_node(settings)) if settings.broken else None,
         rigid_grip=settings.grip == "displacement",
@@ -216,7 +218,7 @@ def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
 def _coarser(settings: StrandSettings) -> Iterator[Problem]:
     coarse = settings.coarser()
     while coarse is not None:
-        yield discretise_rods(strand(coarse))
+        yield strand(coarse).discretise()
         coarse = coarse.coarser()
 
 
@@ -225,7 +227,7 @@ STRAND = Entry(
     source="closed form: force regained over T / (mu p)",
     settings=StrandSettings,
     kind="wires",
-    data=strand,
+    structure=strand,
     loop=lambda settings, problem: loop_of_ends(problem, "Tension"),
     sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     coarser=_coarser,

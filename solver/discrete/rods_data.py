@@ -1,0 +1,107 @@
+"""Elastic rods that rub, as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.laws import Coulomb, FrictionLaw
+
+COARSEST = 6
+"""Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
+
+
+@dataclass(frozen=True, eq=False)
+class RodsData:
+    """One rod on a rigid rough support, or equal parallel rods that rub on each other.
+
+    Their left ends are held; absent parts are None.
+
+    Attributes
+    ----------
+    length, stiffness
+        Length L, m, and axial stiffness ES of one rod, N; where that varies, of the uniform rod
+        that the same force at both ends stretches by as much.
+    elements, substructures
+        Of one rod: numbers of equal linear elements, and of parts that they are dealt to.
+    bound
+        Friction bound mu p at the nodes of an interface, shape (n_nodes,), N/m.
+    load
+        Force at the right end of every rod, or with a rigid grip that of a rod which carries
+        nothing but its share, shape (n_instants,), N.
+    instants, duration
+        Instants, shape (n_instants,), and length of the interval, s.
+    wires
+        Number of the rods, from 1: a single one rubs on its support, several on their neighbours.
+    broken
+        Number of the broken rod and of the node where it is broken, of several rods.
+    rigid_grip
+        Whether the right ends are displaced by load times L / ES instead.
+    support
+        Displacement of the held ends, shape (n_instants,), m.
+    body_force
+        Axial force per length, uniform along the rods, shape (n_instants,), N/m.
+    friction_law
+        Along the interfaces.
+    section
+        Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
+        of the inverse is 1.
+    pressure
+        p behind the bound, N/m, for whoever draws it, where one number says it.
+    """
+
+    length: float
+    stiffness: float
+    elements: int
+    substructures: int
+    bound: Array
+    load: Array
+    instants: Array
+    duration: float
+    wires: int = 1
+    broken: tuple[int, int] | None = None
+    rigid_grip: bool = False
+    support: Array | None = None
+    body_force: Array | None = None
+    section: Array | None = None
+    pressure: float | None = None
+    friction_law: FrictionLaw = field(default_factory=Coulomb)
+
+    @property
+    def nodes(self) -> Array:
+        """Positions of the nodes of a rod, shape (n_nodes,), m."""
+        return np.linspace(0.0, self.length, self.elements + 1)
+
+    @property
+    def rubbing_sides(self) -> int:
+        """Neighbours of the broken rod."""
+        return 0 if self.broken is None else neighbours(self.broken[0], self.wires)
+
+    def coarser(self) -> Self | None:
+        """Give the same uncut rods on half the elements, or None where no front would be seen.
+
+        They must be whole: a break stands at a node.
+        """
+        elements = self.elements // 2
+        if elements < COARSEST:
+            return None
+        nodes = np.linspace(0.0, self.length, elements + 1)
+        bound = np.interp(nodes, self.nodes, self.bound)
+        section = self._section_between(nodes)
+        return replace(self, elements=elements, substructures=1, bound=bound, section=section)
+
+    def _section_between(self, nodes: Array) -> Array | None:
+        """Give the stiffness between other nodes, in series what the elements have there."""
+        if self.section is None:
+            return None
+        compliance = np.concatenate([[0.0], np.cumsum(1.0 / self.section)])
+        own = np.diff(np.interp(nodes, self.nodes, compliance))
+        return np.asarray(np.mean(own) / own)
+
+
+def neighbours(wire: int, wires: int) -> int:
+    """Give how many neighbours a rod of several has, numbered from 1."""
+    return (wire > 1) + (wire < wires)

@@ -1,0 +1,130 @@
+"""Rectangular bodies stacked on each other, as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from solver.arrays import Array
+from solver.laws import Coulomb, FrictionLaw
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """What is given for one component along a side: mean + slope (2 s / length - 1).
+
+    Attributes
+    ----------
+    prescribed
+        Whether it is a displacement, m; else it is a traction, Pa.
+    mean, slope
+        Over time, shape (n_instants,).
+    each_body
+        Whether s runs over each body of the stack anew, on the left and the right.
+    """
+
+    prescribed: bool
+    mean: Array
+    slope: Array
+    each_body: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """What is given along a side of the stack, for the components along x and y."""
+
+    x: Given
+    y: Given
+
+
+@dataclass(frozen=True, eq=False)
+class Support:
+    """A rigid rough support below the stack.
+
+    Attributes
+    ----------
+    gap
+        Opening at the nodes of the lowest side, shape (nodes along,), m.
+    friction
+        Coefficient mu.
+    """
+
+    gap: Array
+    friction: float
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring along x at the foot of the right side of the lowest body, slack at first.
+
+    Attributes
+    ----------
+    slack
+        How far the foot may move to the left before it is pulled back, m.
+    stiffness
+        N/m.
+    """
+
+    slack: float
+    stiffness: float
+
+
+@dataclass(frozen=True, eq=False)
+class StackData:
+    """Equal rectangular bodies on each other; one metre thick.
+
+    Attributes
+    ----------
+    length, height
+        Of one body, m.
+    bodies
+        Their number.
+    elements, substructures
+        Of one body, along and up.
+    order
+        Of the elements: 1 bilinear, 2 biquadratic.
+    macro_degree
+        Of the macro basis on each side of a substructure; long sides get more in proportion.
+    young, poisson, state
+        Elasticity, Pa; `state` is "strain" or "stress".
+    stiffness
+        Young's modulus of every body over `young`, shape (bodies,).
+    friction
+        Coefficient mu between the bodies.
+    support
+        Below the lowest body, or None.
+    sides
+        What is given along the outer sides; a support replaces "bottom". `left` and `right` run
+        over the sides of all bodies.
+    body_force
+        Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
+    instants, duration
+        s.
+    spring
+        At the right side, of which nothing is prescribed then; or None.
+    tilt
+        Angle over time by which the x axis rises, shape (n_instants,), rad, for whoever draws it:
+        `body_force` has turned the other way already. None where it does not.
+    friction_law
+        Between the bodies, and on the support.
+    """
+
+    length: float
+    height: float
+    bodies: int
+    elements: tuple[int, int]
+    substructures: tuple[int, int]
+    order: int
+    macro_degree: int
+    young: float
+    poisson: float
+    state: str
+    stiffness: Array
+    friction: float
+    support: Support | None
+    sides: dict[str, Side]
+    body_force: Array | None
+    instants: Array
+    duration: float
+    spring: Spring | None = None
+    tilt: Array | None = None
+    friction_law: FrictionLaw = field(default_factory=Coulomb)

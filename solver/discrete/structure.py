@@ -1,0 +1,126 @@
+"""What a scene, or a script, gives to be solved: a structure, and its words for who draws it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+
+OUTWARD = {
+    "left": (-1.0, 0.0),
+    "right": (1.0, 0.0),
+    "bottom": (0.0, -1.0),
+    "top": (0.0, 1.0),
+}
+"""Sides of all bodies together, and the normal of each."""
+Way = tuple[float, float]
+
+
+def ends_of(side: str) -> Array:
+    """Give both ends of a side, the lower or the left one first, as shares of length and height."""
+    x = {"left": (0.0, 0.0), "right": (1.0, 1.0)}.get(side, (0.0, 1.0))
+    y = {"bottom": (0.0, 0.0), "top": (1.0, 1.0)}.get(side, (0.0, 1.0))
+    return np.array([x, y]).T
+
+
+@dataclass(frozen=True, eq=False)
+class Act:
+    """A force, or a displacement, that is given.
+
+    Attributes
+    ----------
+    where
+        "right x": along a side; or "body": throughout.
+    symbol
+        What it is called.
+    places
+        Where on the undeformed bodies, shape (n, 2), as shares of their length and height.
+    towards
+        Direction of positive values, a unit vector, or one of each instant, (2, n_instants).
+    away
+        Direction in which there is room for an arrow, a unit vector.
+    values
+        Over time, shape (n_instants,) or, of each place, (n, n_instants).
+    unit
+        Of the values.
+    """
+
+    where: str
+    symbol: str
+    places: Array
+    towards: Way | Array
+    away: Way
+    values: Array
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """What holds bodies at a side.
+
+    Attributes
+    ----------
+    kind
+        A support is rigid and rough; a spring pulls along x, at the foot of its side.
+    side
+        Of all bodies together.
+    stretch
+        Ends of the part that is held, as shares of the side.
+    moved
+        Displacement of a clamp along x, shape (n_instants,), m, where it has one.
+    gap
+        Opening of a support that goes on beyond the bodies, at nodes along it, shape (n_nodes,), m.
+    """
+
+    kind: Literal["clamp", "rollers", "support", "spring"]
+    side: str
+    stretch: tuple[float, float] = (0.0, 1.0)
+    moved: Array | None = None
+    gap: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A structure in words: all that a picture of it shows before anything is solved.
+
+    Attributes
+    ----------
+    bodies
+        Number of equal bodies above each other.
+    length, height
+        Of all of them, m; rods have no height.
+    instants
+        Shape (n_instants,), s.
+    acts
+        All that acts and is not zero throughout.
+    holds
+        All that holds the bodies.
+    tilt
+        Angle over time by which the x axis rises, shape (n_instants,), rad, where it does.
+    broken
+        Number of the broken body, from 0, and where it is broken, m; where one is.
+    """
+
+    bodies: int
+    length: float
+    height: float | None
+    instants: Array
+    acts: Sequence[Act]
+    holds: Sequence[Hold]
+    tilt: Array | None = None
+    broken: tuple[int, float] | None = None
+
+
+class Structure(Protocol):
+    """Bodies, how they are held and what acts on them, as plain data: `Rods`, `Stack`."""
+
+    def discretise(self) -> Problem:
+        """Make the discrete problem."""
+
+    def described(self) -> Description:
+        """Say what there is, for whoever draws it."""
