@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,22 +13,20 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
 from solver.scenes import CATALOGUE
-from solver.study import survey_report
+from solver.study.audit.audit import Audited, Trial, audit
+from solver.study.audit.report import HEAD, line, prepare
+from solver.study.audit.stability import cases_of, stability_report, trials_of
+from solver.study.audit.survey import draws, survey_report
+from solver.study.audit.units import invariance, is_same
+from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
+from solver.study.benchmarks.reduction_cost import print_reduction_cost
+from solver.study.benchmarks.sweep_overhead import print_overhead
+from solver.study.benchmarks.thread_gain import print_thread_gain
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
-from solver.study.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.paper_figures import paper_figures
-from solver.study.reduction_cost import print_reduction_cost
-from solver.study.row_report import prepare
-from solver.study.stability import cases_of, stability
-from solver.study.stability_report import HEAD, counts, line, notes, passes, write_report
-from solver.study.stability_report import summary as summary_of
-from solver.study.stability_units import invariance
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, winners
-from solver.study.survey import Row, Verdict, survey
-from solver.study.sweep.overhead import print_overhead
-from solver.study.thread_gain import print_thread_gain
 
 SIDE = 20
 """Of the square chart whose overhead is measured."""
@@ -149,18 +147,25 @@ def _study(chosen: argparse.Namespace) -> int:
     return 0
 
 
+def _audited(trials: Iterable[Trial], folder: Path, name: str) -> Iterator[Audited]:
+    """Run trials, with a line for each, once it is known that the report can be written."""
+    prepare(folder, name)
+    print(HEAD)
+    for row in audit(trials):
+        print(line(row), flush=True)
+        yield row
+
+
 def _stability(chosen: argparse.Namespace) -> int:
     scene = None if chosen.scene is None else scene_settings(chosen.scene).scene
-    matrix = cases_of(scene, quick=chosen.quick)
+    matrix = trials_of(cases_of(scene, quick=chosen.quick))
     with writing(chosen.out):
-        prepare(chosen.out, "stability")
-        print(HEAD)
-        rows = stability(matrix, lambda row: print(line(row), flush=True))
+        rows = list(_audited(matrix, chosen.out, "stability"))
         apart = invariance() if scene in (None, "bar") else {}
-        files = write_report(rows, apart, chosen.out)
-    print("\n".join(["", summary_of(rows), aligned(counts(rows)), "", *notes(apart)]))
-    print(f"{len(files)} files in {chosen.out}")
-    return 0 if passes(rows, apart) else 1
+        report = stability_report(rows, apart)
+        files = report.write(chosen.out)
+    print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
+    return 0 if report.passes and is_same(apart) else 1
 
 
 def _survey(chosen: argparse.Namespace) -> int:
@@ -170,14 +175,11 @@ def _survey(chosen: argparse.Namespace) -> int:
         if value is not None and value < least:
             raise SettingError(f"--{name}", value, f"a whole number from {least}", "raise it")
     numbers = range(chosen.runs) if chosen.row is None else [chosen.row]
-    rows: list[Row] = []
+    rows: list[Audited] = []
     with writing(chosen.out):
-        prepare(chosen.out, "survey")
-        print(survey_report.HEAD)
         with contextlib.suppress(KeyboardInterrupt):  # what is done by then is kept
-            for row in survey(scenes, numbers, chosen.seed):
-                rows.append(row)
-                print(survey_report.line(row), flush=True)
-        files = survey_report.write_report(rows, chosen.out)
-    print("\n".join(["", *survey_report.ends(rows), f"{len(files)} files in {chosen.out}"]))
-    return int(any(row.verdict is Verdict.WRONG for row in rows))
+            rows.extend(_audited(draws(scenes, numbers, chosen.seed), chosen.out, "survey"))
+        report = survey_report(rows)
+        files = report.write(chosen.out)
+    print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
+    return 0 if report.passes else 1

@@ -16,7 +16,7 @@ from solver.latin.response import DenseResponse
 from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.study.reduction_cost import half_plane, reduction_cost, whole_iterations
+from solver.study.benchmarks.reduction_cost import half_plane, reduction_cost, whole_iterations
 
 
 def test_both_stages_give_the_same_on_the_half_plane():

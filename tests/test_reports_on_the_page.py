@@ -21,10 +21,10 @@ from app.worker.desk import Desk, files
 from app.worker.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
+from solver.study.audit.audit import Audited, Verdict, audit
+from solver.study.audit.cases import Case
+from solver.study.audit.stability import stability_report
 from solver.study.page import Plot
-from solver.study.stability import Row, Verdict, judge, run_case
-from solver.study.stability_cases import Case
-from solver.study.stability_report import stability_sections
 
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
@@ -71,16 +71,15 @@ def test_stability_is_shown_as_it_grows_and_then_whole(
     )
 
 
-def row(**changes: Any) -> Row:
-    case = Case("size", "tiny", {**TINY, **changes})
-    outcome = run_case(case, "paper")
-    return Row(case, "paper", outcome, judge(outcome))
+def row(**changes: Any) -> Audited:
+    (found,) = audit([Case("size", "tiny", {**TINY, **changes}).trial("paper")])
+    return found
 
 
 def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand: Errand) -> None:
     rows = [row(), row(k_scale=1e-6, max_iterations=20)]
     assert [one.verdict for one in rows] == [Verdict.RIGHT, Verdict.UNSOLVED]
-    sections = stability_sections(rows, {})
+    sections = stability_report(rows, {}).sections()
     page = "".join(sections)
     assert re.findall(r'<td class="verdict (\w+)"[^>]*>(\w+)</td>', page) == [
         ("right", "right"),

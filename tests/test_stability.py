@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import math
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -18,21 +19,25 @@ from solver.reference.incremental import incremental
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
-from solver.study.conditioning import condition_of_structure, condition_of_substructures
-from solver.study.stability import (
+from solver.study.audit.audit import Audited, Verdict, audit, judge
+from solver.study.audit.cases import (
     METHODS,
-    SAME_UP_TO,
-    Outcome,
-    Row,
-    Verdict,
-    cases_of,
-    judge,
-    stability,
+    PASSING,
+    REFUSED,
+    RIGHT,
+    UNCLEAR,
+    UNSOLVED,
+    Case,
+    graded,
 )
-from solver.study.stability_cases import REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, graded
-from solver.study.stability_plane import PRESSED
-from solver.study.stability_report import COLOURS, COLUMNS, counts, passes, summary, values
-from solver.study.stability_units import invariance
+from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
+from solver.study.audit.outcome import Outcome
+from solver.study.audit.plane_cases import PRESSED
+from solver.study.audit.report import COLOURS
+from solver.study.audit.stability import COLUMNS, cases_of, stability_report, trials_of
+from solver.study.audit.units import SAME_UP_TO, invariance, is_same
+from solver.study.finished import BROKEN
+from solver.study.finished import REFUSED as REFUSED_RUN
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,
@@ -44,7 +49,6 @@ GOOD = Outcome(
     error_displacement=1e-9,
     error_force=1e-8,
     finite=True,
-    warned="",
     condition_structure=1e3,
     condition_substructure=10.0,
 )
@@ -61,7 +65,7 @@ KNOWN_UNSOLVED = {
 
 @pytest.fixture(scope="module")
 def rows():
-    return stability(cases_of(quick=True))
+    return list(audit(trials_of(cases_of(quick=True))))
 
 
 def changed(**changes):
@@ -69,16 +73,16 @@ def changed(**changes):
 
 
 def test_every_quick_case_comes_to_what_is_expected(rows):
-    assert [row for row in rows if not row.as_expected] == []
+    assert [row for row in rows if not row.passed] == []
     assert len(rows) == 2 * len(cases_of(quick=True))
-    assert {row.case.scene for row in rows} == set(CATALOGUE)
+    assert {row.trial.scene for row in rows} == set(CATALOGUE)
 
 
 def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
     for row in rows:
-        place = (row.case.group, row.case.name)
-        if row.verdict is Verdict.UNSOLVED and row.case.expected == REFUSED:
-            assert row.outcome.ending == REFUSED
+        place = (row.trial.labels["group"], row.trial.labels["case"])
+        if row.verdict is Verdict.REFUSED:
+            assert row.trial.labels["expected"] == REFUSED
             assert "is refused; allowed: " in row.outcome.advice
         elif row.verdict is Verdict.UNSOLVED:
             assert place in KNOWN_UNSOLVED
@@ -91,48 +95,56 @@ def test_only_known_cases_end_without_the_answer_and_their_status_says_so(rows):
     ("outcome", "verdict"),
     [
         (GOOD, Verdict.RIGHT),
-        (changed(error_force=1e-5), Verdict.NEAR),
-        (changed(error_force=2e-3), Verdict.FAIL),
-        (changed(error_displacement=0.5), Verdict.FAIL),
+        (changed(error_force=1e-5), Verdict.WRONG),
+        (changed(error_displacement=0.5), Verdict.WRONG),
         (changed(error_force=0.5, ending=Ending.EXHAUSTED), Verdict.UNSOLVED),
-        (changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""), Verdict.FAIL),
+        (changed(error_force=0.5, ending=Ending.EXHAUSTED, advice=""), Verdict.WRONG),
         (changed(ending=Ending.STALLED), Verdict.RIGHT),
-        (changed(error_force=math.nan), Verdict.FAIL),
-        (changed(error_displacement=math.nan), Verdict.FAIL),
-        (changed(finite=False, ending=Ending.DIVERGED), Verdict.FAIL),
-        (changed(warned="overflow"), Verdict.FAIL),
+        (changed(error_force=math.nan), Verdict.WRONG),
+        (changed(error_displacement=math.nan), Verdict.WRONG),
+        (changed(finite=False, ending=Ending.DIVERGED), Verdict.WRONG),
         (changed(doubt="it is one of several", error_force=math.nan), Verdict.UNCLEAR),
-        (changed(doubt="it is one of several", finite=False), Verdict.FAIL),
-        (Outcome(REFUSED, "load = 1 is refused"), Verdict.UNSOLVED),
+        (changed(doubt="it is one of several", finite=False), Verdict.WRONG),
+        (Outcome(REFUSED_RUN, "load = 1 is refused"), Verdict.REFUSED),
+        (Outcome(BROKEN, "RuntimeWarning: overflow"), Verdict.WRONG),
     ],
 )
 def test_the_verdict_follows_from_errors_and_status(outcome, verdict):
-    assert judge(outcome) is verdict
+    assert judge(outcome, 1e-6, 1e-6) is verdict
 
 
 def test_a_case_that_should_be_right_does_not_pass_when_it_is_only_told():
     wrong = changed(error_force=0.5, ending=Ending.STALLED)
-    unclear = changed(doubt="the reference finds no solution")
-    refused = Outcome(REFUSED, "load = 1 is refused")
+    unclear = changed(doubt="the reference finds no solution", error_force=math.nan)
+    refused = Outcome(REFUSED_RUN, "load = 1 is refused")
     for found, passing in (
         (wrong, {UNSOLVED, UNCLEAR}),
         (unclear, {UNCLEAR}),
         (refused, {REFUSED}),
         (GOOD, {RIGHT, UNSOLVED, UNCLEAR}),
     ):
-        for expected in (RIGHT, UNSOLVED, UNCLEAR, REFUSED):
-            row = Row(Case("a", "b", {}, expected), "default", found, judge(found))
-            assert row.as_expected is (expected in passing)
+        for expected in PASSING:
+            row = Audited(Case("a", "b", {}, expected).trial("fast"), found)
+            assert row.passed is (expected in passing)
 
 
-def test_one_failure_or_one_changed_iterate_fails_the_whole():
+def test_one_failure_fails_the_whole():
     right, bad = (
-        Row(Case("a", "b"), "default", found, judge(found))
-        for found in (GOOD, changed(error_force=1.0))
+        Audited(Case("a", "b").trial("fast"), found) for found in (GOOD, changed(error_force=1.0))
     )
-    assert passes([right], {"units": 1e-12})
-    assert not passes([right, bad], {"units": 1e-12})
-    assert not passes([right], {"units": 1e-9})
+    assert stability_report([right], {}).passes
+    assert not stability_report([right, bad], {}).passes
+
+
+def test_a_warning_breaks_a_run(monkeypatch):
+    def warns(problem):
+        warnings.warn("overflow", RuntimeWarning, stacklevel=1)
+
+    monkeypatch.setattr("solver.study.audit.outcome.reference_of", warns)
+    (row,) = audit([Case("load", "zero", {"peak": 0.0}).trial("fast")])
+    assert row.outcome.ending == BROKEN
+    assert "overflow" in row.outcome.advice
+    assert row.verdict is Verdict.WRONG
 
 
 def test_the_matrix_covers_the_ranges():
@@ -148,7 +160,8 @@ def test_the_matrix_covers_the_ranges():
 def test_units_change_no_iterate():
     found = invariance()
     assert len(found) == 2 * len(METHODS)
-    assert max(found.values()) <= SAME_UP_TO
+    assert is_same(found)
+    assert not is_same({**found, "inches": 2.0 * SAME_UP_TO})
 
 
 def test_condition_numbers_are_those_of_the_dense_matrices():
@@ -219,12 +232,12 @@ def test_the_command_writes_a_table_and_a_page_that_stands_alone(written):
 def test_every_verdict_has_its_own_colour_and_words(rows):
     assert set(COLOURS) == set(Verdict)
     assert len(set(COLOURS.values())) == len(Verdict)
-    found = counts(rows)[1:]
+    report = stability_report(rows, {})
+    found = report.counts()[1:]
     assert [verdict for verdict, _, _ in found] == list(Verdict)
     assert len({meaning for _, _, meaning in found}) == len(Verdict)
     assert sum(int(runs) for _, runs, _ in found) == len(rows)
-    assert summary(rows) == f"{len(rows)} of {len(rows)} runs pass."
-    assert tuple(values(rows[0])) == COLUMNS
+    assert report.summary == f"{len(rows)} of {len(rows)} runs pass."
 
 
 def test_one_scene_alone_can_be_asked(tmp_path, capsys):
@@ -249,7 +262,7 @@ def test_a_failure_gives_exit_code_one(tmp_path, monkeypatch):
 def test_a_folder_that_cannot_be_written_to_is_refused_before_the_runs(
     tmp_path, monkeypatch, capsys, obstacle
 ):
-    monkeypatch.setattr(report_commands, "stability", lambda *rest: pytest.fail("it ran"))
+    monkeypatch.setattr(report_commands, "audit", lambda *rest: pytest.fail("it ran"))
     folder = tmp_path / "out"
     if obstacle == "page is a folder":
         (folder / "stability.html").mkdir(parents=True)

@@ -15,10 +15,12 @@ from solver.files import settings_from_command
 from solver.latin import Ending
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
-from solver.study.survey import AT_ROUNDING, BROKEN, REFUSED, Outcome, Row, Verdict, judge
-from solver.study.survey_draw import KEPT, LARGEST_FIELD, draw, is_foolish
-from solver.study.survey_report import counts, table_of_missed, wrong_lines
-from solver.study.survey_residual import kkt_residual
+from solver.study.audit.audit import Audited, Verdict, judge
+from solver.study.audit.draws import KEPT, LARGEST_FIELD, draw, is_foolish
+from solver.study.audit.outcome import AT_ROUNDING, Outcome
+from solver.study.audit.residual import kkt_residual
+from solver.study.audit.survey import drawn, survey_report, table_of_missed
+from solver.study.finished import BROKEN, REFUSED
 
 SMALL = {
     "bar": {"elements": 20, "substructures": 4, "instants": 11},
@@ -65,10 +67,10 @@ def test_a_run_is_bounded_by_its_mesh_times_its_instants(scene):
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_the_command_that_repeats_a_row_gives_the_same_settings(scene):
     for number in range(30):
-        row = Row(draw(scene, 5, number), 5, number, GOOD, Verdict.WRONG)
-        words = shlex.split(row.command)
+        settings = draw(scene, 5, number)
+        words = shlex.split(drawn(settings, 5, number).again[1])
         assert words[:5] == ["python", "-m", "solver", "run", scene]
-        assert settings_from_command(scene, words[6::2]).values() == row.settings.values()
+        assert settings_from_command(scene, words[6::2]).values() == settings.values()
 
 
 def test_factors_on_k_are_foolish_together_or_alone():
@@ -86,21 +88,32 @@ def test_factors_on_k_are_foolish_together_or_alone():
         (changed(error_force=math.nan), Verdict.WRONG),
         (changed(error_force=0.5, doubt="several"), Verdict.UNCLEAR),
         (changed(error_force=0.5, ending=Ending.STALLED), Verdict.UNSOLVED),
+        (changed(ending=Ending.STALLED), Verdict.RIGHT),
+        (changed(error_force=0.5, certified=True, residual=1e-13), Verdict.WRONG),
+        (changed(advice=""), Verdict.WRONG),
         (changed(error_force=0.5, doubt="several", certified=True, residual=1e-13), Verdict.RIGHT),
         (changed(certified=True, residual=2.0 * AT_ROUNDING), Verdict.WRONG),
         (changed(certified=True, residual=3e-7, floor=3e-7), Verdict.RIGHT),
         (changed(certified=True), Verdict.WRONG),
         (changed(finite=False), Verdict.WRONG),
         (Outcome(BROKEN, "ValueError: no"), Verdict.WRONG),
-        (Outcome(REFUSED, "k_scale = 1 is refused"), Verdict.UNSOLVED),
+        (Outcome(REFUSED, "k_scale = 1 is refused"), Verdict.REFUSED),
     ],
 )
 def test_the_verdict_follows_from_errors_residual_and_status(outcome, verdict):
-    assert judge(outcome, accuracy=0.01) is verdict
+    assert judge(outcome, force=0.02) is verdict
 
 
-def test_a_larger_accuracy_allows_a_larger_error():
-    assert judge(changed(error_force=0.15), accuracy=0.1) is Verdict.RIGHT
+def test_a_larger_accuracy_allows_a_larger_error_of_the_force():
+    settings = CATALOGUE["bar"].settings
+    found = changed(error_force=0.15, error_displacement=0.5)
+    for accuracy, verdict in ((0.1, Verdict.RIGHT), (0.01, Verdict.WRONG)):
+        trial = drawn(settings.checked({"accuracy": accuracy}), 1, 1)
+        assert Audited(trial, found).verdict is verdict
+
+
+def test_an_error_of_the_displacement_counts_where_it_is_limited():
+    assert judge(changed(error_displacement=0.5), 0.02, 0.02) is Verdict.WRONG
 
 
 @pytest.mark.parametrize("scene", SMALL)
@@ -142,22 +155,26 @@ def test_numbers_without_sense_are_refused(tmp_path, capsys):
 
 
 def test_a_wrong_row_is_listed_with_what_repeats_it():
-    wrong = Row(draw("bar", 9, 4), 9, 4, changed(error_force=0.3), Verdict.WRONG)
-    right = Row(draw("bar", 9, 5), 9, 5, GOOD, Verdict.RIGHT)
-    text = "\n".join(wrong_lines([wrong, right]))
+    wrong = Audited(drawn(draw("bar", 9, 4), 9, 4), changed(error_force=0.5, error_displacement=1))
+    right = Audited(drawn(draw("bar", 9, 5), 9, 5), changed(error_force=0.0))
+    report = survey_report([wrong, right])
+    text = "\n".join(report.lines())
     assert "survey bar --seed 9 --row 4" in text
-    assert wrong.command in text
+    assert wrong.trial.again[1] in text
     assert "--row 5" not in text
-    found = {verdict: runs for verdict, runs, _ in counts([wrong, right])[1:]}
-    assert found == {"right": "1", "unsolved": "0", "unclear": "0", "wrong": "1"}
+    assert "1 of 2 runs pass" in text
+    assert not report.passes
+    counted = {verdict: runs for verdict, runs, _ in report.counts()[1:]}
+    assert counted == {"right": "1", "unsolved": "0", "refused": "0", "unclear": "0", "wrong": "1"}
 
 
 def test_runs_that_did_not_converge_are_counted_by_whether_a_status_step_may_end_them():
     settings = CATALOGUE["bar"].settings
     missed = changed(ending=Ending.EXHAUSTED)
     rows = [
-        Row(settings.checked({"method": "paper"}), 9, 4, missed, Verdict.UNSOLVED),
-        Row(settings.checked({}), 9, 5, GOOD, Verdict.RIGHT),
+        Audited(drawn(settings.checked({"method": "paper"}), 9, 4), missed),
+        Audited(drawn(settings.checked({}), 9, 5), GOOD),
+        Audited(drawn(settings.checked({}), 9, 6), Outcome(REFUSED, "peak = 1 is refused")),
     ]
     assert [row[1:] for row in table_of_missed(rows)[1:]] == [
         ["1", "0", "0.0 %", "0"],

@@ -9,15 +9,15 @@ from typing import Any
 
 from app.worker.desk import Desk
 from solver.scenes import CATALOGUE
+from solver.study.audit.audit import Audited, audit
+from solver.study.audit.stability import cases_of, stability_report, trials_of
+from solver.study.audit.units import invariance
 from solver.study.error_against_time import error_against_time
 from solver.study.figure_page import figure_sections
 from solver.study.growth import growth
 from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
-from solver.study.stability import METHODS, Row, cases_of, stability
-from solver.study.stability_report import stability_sections, write_report
-from solver.study.stability_units import invariance
 from solver.study.study_files import write_study
 from solver.study.study_page import study_sections
 
@@ -48,24 +48,19 @@ def study_of(scene: str, values: dict[str, Any], repeats: int, sizes: bool, fold
 
 def stability_of(quick: bool, folder: Path) -> None:
     """Run the stability matrix, or a quarter of it, and show it again and again as it grows."""
-    desk, matrix, rows = Desk(folder), cases_of(quick=quick), list[Row]()
-    total = len(METHODS) * len(matrix)
-    shown = 0.0
-
-    def report(row: Row) -> None:
-        nonlocal shown
+    desk, matrix, rows = Desk(folder), trials_of(cases_of(quick=quick)), list[Audited]()
+    total, shown = len(matrix), 0.0
+    desk.tell(f"0 of {total} runs", 0.0)
+    for row in audit(matrix):
         rows.append(row)
         desk.tell(f"{len(rows)} of {total} runs", len(rows) / total)
         if time.monotonic() - shown > SHOWN_EVERY:
-            desk.show(stability_sections(rows, {}))
+            desk.show(stability_report(rows, {}).sections())
             shown = time.monotonic()
-
-    desk.tell(f"0 of {total} runs", 0.0)
-    stability(matrix, report)
     desk.tell("The same bar in other units", 1.0)
-    apart = invariance()
-    desk.publish(lambda place: write_report(rows, apart, place))
-    desk.show(stability_sections(rows, apart))
+    report = stability_report(rows, invariance())
+    desk.publish(report.write)
+    desk.show(report.sections())
 
 
 def figures_of_the_paper(folder: Path) -> None:

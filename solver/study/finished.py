@@ -25,6 +25,8 @@ from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 
+REFUSED, BROKEN = "refused", "broken"
+"""How a run ends that never was one: by refused settings, by a fault of the engine."""
 ALONE = 60
 """Iterations that take as long as a run of its own, with all beside them. A status step from a
 neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it

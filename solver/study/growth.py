@@ -14,9 +14,9 @@ from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.error_against_time import INCREMENTAL, by_increments, forms_of
 from solver.study.exponent import Exponent, exponent_of
+from solver.study.finished import BROKEN, REFUSED
 from solver.study.progress import Tell, silent
 from solver.study.quantities import reading
-from solver.study.survey import BROKEN, REFUSED
 from solver.study.sweep.plan import Axis, Plan
 from solver.study.sweep.point import run_point
 

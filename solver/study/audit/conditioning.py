@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import eigvals_banded, eigvalsh
+from scipy.linalg import eigvalsh
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness
 
-LARGEST_DENSE = 2000
-"""Degrees of freedom up to which condition numbers of other than tridiagonal matrices are found."""
+LARGEST = 2000
+"""Degrees of freedom up to which condition numbers are found."""
 
 
 def condition_of_structure(problem: Problem) -> float:
@@ -41,23 +41,7 @@ def condition_of_substructures(problem: Problem, k: Array) -> float:
 
 def _condition(matrix: sparse.csr_array) -> float:
     """Give largest over smallest eigenvalue of a symmetric matrix; infinite if that is zero."""
-    size = matrix.shape[0]
-    if size == 1:
-        return 1.0
-    rows, columns = sparse.coo_array(matrix).coords
-    if np.abs(rows - columns).max() > 1:
-        return _condition_of_dense(matrix)
-    band = np.zeros((2, size))
-    band[0], band[1, :-1] = matrix.diagonal(), matrix.diagonal(1)
-    first, last = (
-        float(eigvals_banded(band, lower=True, select="i", select_range=(place, place))[0])
-        for place in (0, size - 1)
-    )
-    return last / first if first > 0.0 else float("inf")
-
-
-def _condition_of_dense(matrix: sparse.csr_array) -> float:
-    if matrix.shape[0] > LARGEST_DENSE:
+    if matrix.shape[0] > LARGEST:
         return float("nan")
     found = eigvalsh(matrix.toarray())
     rounding = len(found) * np.finfo(float).eps * found[-1]

@@ -1,82 +1,15 @@
-"""Stiff and extreme cases: what one is, and those of the friction bar."""
+"""Stiff and extreme cases of the friction bar, and what is expected of each."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from solver.study.audit.cases import JUMP, PLATEAUS, RIGHT, UNSOLVED, Case, graded, reversals
 
-import numpy as np
-
-from solver.definitions import Pairs
-
-RIGHT = "right answer"
-UNSOLVED = "right answer, or said not to be"
-REFUSED = "refused in words"
-UNCLEAR = "right answer, or one that cannot be judged"
-PRECISE = {"accuracy": 1e-6, "tolerance": 1e-20, "max_iterations": 1500}
-"""Tight, so that whoever is called converged has to be right; enough for most cases."""
 SMALL = {"elements": 20, "substructures": 4, "instants": 41}
 """A quarter of the work of Table 1."""
-
-
-@dataclass(frozen=True)
-class Case:
-    """A run of a scene.
-
-    Attributes
-    ----------
-    group, name
-        What is extreme, and how much.
-    changes
-        Settings that differ from the scene's own, beside `PRECISE`.
-    expected
-        `RIGHT`; `UNSOLVED` where the method is known to be slow or beyond its digits; `REFUSED`
-        where there is no solution; `UNCLEAR` where friction is so large that there may be several.
-    quick
-        Whether it is one of the few for a short check.
-    """
-
-    group: str
-    name: str
-    changes: Mapping[str, object] = field(default_factory=dict)
-    expected: str = RIGHT
-    quick: bool = False
-    scene: str = "bar"
-
-
-def reversals(instants: int, peak: float) -> Pairs:
-    """Give a load of full size that turns at every instant of a second, (s, N)."""
-    step = 1.0 / (instants - 1)
-    return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
-
-
-def graded(contrast: float, elements: int) -> Pairs:
-    """Give a section that grows by equal factors from element to element of a bar of 1 m.
-
-    Parameters
-    ----------
-    contrast
-        Last over first section; their geometric mean stays what it was.
-    elements
-        Number of elements.
-    """
-    factors = contrast ** np.linspace(-0.5, 0.5, elements)
-    return tuple(((i + 0.5) / elements, float(factor)) for i, factor in enumerate(factors))
-
-
-JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))
-PLATEAUS: Pairs = (
-    (0.0, 0.0),
-    (0.2, 800.0),
-    (0.4, 800.0),
-    (0.6, -400.0),
-    (0.8, -400.0),
-    (1.0, 700.0),
-)
 QUICK = {"k_scale": (1e-6, 1e6), "young": (1.0, 1e18), "length": (1e-6, 1e4)}
 
 
-def cases() -> tuple[Case, ...]:
+def bar_cases() -> tuple[Case, ...]:
     """Give all cases of the bar."""
     return (
         Case("Table 1", "as it is", quick=True),

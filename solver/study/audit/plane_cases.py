@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solver.study.stability_cases import REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, reversals
+from solver.study.audit.cases import REFUSED, RIGHT, UNCLEAR, UNSOLVED, Case, cases_with, reversals
 
 BLOCK = {
     "elements": 16,
@@ -44,20 +44,8 @@ def plane_cases() -> tuple[Case, ...]:
     return (*_block(), *_layers(), *_incline())
 
 
-def _of_block(
-    group: str, name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
-) -> Case:
-    return Case(group, name, {**BLOCK, **changes}, expected, quick, "block")
-
-
-def _of_layers(
-    group: str, name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
-) -> Case:
-    return Case(group, name, {**LAYERS, **changes}, expected, quick, "layers")
-
-
 def _block() -> list[Case]:
-    case = _of_block
+    case = cases_with("block", BLOCK)
     jump = [[0.0, 0.0], [0.5, 0.0], [0.55, -4e-5], [1.0, -4e-5]]
     return [
         case("block", "as it is", {}, quick=True),
@@ -103,7 +91,7 @@ def _block() -> list[Case]:
 
 
 def _layers() -> list[Case]:
-    case = _of_layers
+    case = cases_with("layers", LAYERS)
     moment = {"bending": "moment", "moment": 1e3}
     return [
         case("layers", "as it is", {}, UNSOLVED, quick=True),
@@ -124,22 +112,18 @@ def _layers() -> list[Case]:
 
 
 def _incline() -> list[Case]:
-    def case(
-        name: str, changes: dict[str, object], expected: str = RIGHT, quick: bool = False
-    ) -> Case:
-        return Case("incline", name, {**INCLINE, **changes}, expected, quick, "incline")
-
+    case = cases_with("incline", INCLINE)
     return [
-        case("as it is", {}, quick=True),
-        case("never slides", {"slope": 10.0}),
-        case("friction 0", {"friction": 0.0}),
-        case("no slack", {"slack": 0.0}),
-        case("slack of a tenth of its length", {"slack": 1e-2}),
-        case("spring a thousand times softer", {"spring": 2e3}, UNSOLVED),
-        case("spring a million times stiffer", {"spring": 2e12}),
-        case("steel", {"young": 210e9}, UNSOLVED),
-        case("rises and falls twice", {"slope_load": "sine"}),
-        case("instants 1", {"instants": 1, "slope_load": "ramp"}),
-        case("weight 0", {"weight": 0.0}),
-        case("tips over", {"height": 0.15}, REFUSED, quick=True),
+        case("incline", "as it is", {}, quick=True),
+        case("incline", "never slides", {"slope": 10.0}),
+        case("incline", "friction 0", {"friction": 0.0}),
+        case("incline", "no slack", {"slack": 0.0}),
+        case("incline", "slack of a tenth of its length", {"slack": 1e-2}),
+        case("incline", "spring a thousand times softer", {"spring": 2e3}, UNSOLVED),
+        case("incline", "spring a million times stiffer", {"spring": 2e12}),
+        case("incline", "steel", {"young": 210e9}, UNSOLVED),
+        case("incline", "rises and falls twice", {"slope_load": "sine"}),
+        case("incline", "instants 1", {"instants": 1, "slope_load": "ramp"}),
+        case("incline", "weight 0", {"weight": 0.0}),
+        case("incline", "tips over", {"height": 0.15}, REFUSED, quick=True),
     ]

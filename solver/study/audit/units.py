@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import islice
 
 import numpy as np
@@ -11,13 +12,15 @@ from solver.latin import iterations
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.study.stability import METHODS
+from solver.study.audit.cases import METHODS
 
 UNITS = {
     "millimetres and newtons": (1e3, 1.0),
     "inches and pounds": (1.0 / 0.0254, 1.0 / 4.4482216152605),
 }
 """Units in a metre and in a newton."""
+SAME_UP_TO = 1e-10
+"""Relative difference of iterates that are the same."""
 
 
 def invariance(number: int = 40) -> dict[str, float]:
@@ -64,3 +67,15 @@ def bar_in_units(length: float, force: float) -> dict[str, float]:
 def _apart(one: Array, other: Array) -> float:
     size = float(np.abs(one).max())
     return float(np.abs(one - other).max()) / size if size > 0.0 else float(np.abs(other).max())
+
+
+def words_of(apart: Mapping[str, float]) -> str:
+    """Say what `invariance` found."""
+    units = ", ".join(f"{found:.1e} {name}" for name, found in apart.items())
+    same = "the same" if is_same(apart) else "other"
+    return f"In other units the bar has {same} iterates; largest relative difference: {units}."
+
+
+def is_same(apart: Mapping[str, float]) -> bool:
+    """Tell whether no unit changed an iterate."""
+    return all(found <= SAME_UP_TO for found in apart.values())

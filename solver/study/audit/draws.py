@@ -18,7 +18,7 @@ from numpy.random import Generator
 from solver.definitions import Curve, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.survey_loads import LOADS
+from solver.study.audit.random_loads import LOADS
 
 LARGEST_FIELD = 12_000
 """Displacements times instants of a run, at most: a thousand iterations then stay within seconds;

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from solver.study.stability_cases import JUMP, REFUSED, RIGHT, UNSOLVED, Case
+from solver.study.audit.cases import JUMP, REFUSED, UNSOLVED, Case, cases_with
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 31, "max_iterations": 1000}
 
 
 def strand_cases() -> tuple[Case, ...]:
     """Give all cases of the strand."""
-
-    def case(
-        group: str,
-        name: str,
-        changes: dict[str, object],
-        expected: str = RIGHT,
-        quick: bool = False,
-    ) -> Case:
-        return Case(group, name, {**SMALL, **changes}, expected, quick, "strand")
-
+    case = cases_with("strand", SMALL)
     return (
         case("strand", "as it is", {}, quick=True),
         case("friction", "0, given displacement", {"friction": 0.0, "grip": "displacement"}),

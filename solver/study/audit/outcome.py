@@ -1,0 +1,147 @@
+"""What a run comes to, measured against the reference and by the equations."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.discrete import Problem
+from solver.latin import Latin, Solution, solve
+from solver.latin.indicators import behaviour_indicator, latin_indicator
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import distance_to
+from solver.reference.solution import Reference
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
+from solver.study.audit.residual import kkt_residual
+from solver.study.finished import BROKEN, REFUSED
+
+AT_ROUNDING = 1e-8
+"""Residual of a certified solution, at most, by the equations alone."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run came to.
+
+    Attributes
+    ----------
+    ending, advice
+        Its status; `REFUSED` or `BROKEN`, and why.
+    certified, iterations, seconds, estimated_error
+        As the run itself says.
+    indicator, behaviour
+        At the end.
+    error_displacement, error_force
+        Relative distance to the reference; absolute (m, N) where reference and load are zero; NaN
+        where there is none.
+    residual
+        Of a certified run by `kkt_residual`; NaN of others.
+    floor
+        Residual of the reference, below which rounding lets nobody come: layers of 5000 times their
+        thickness have one of 3e-7. Measured where that of a certified solution is above rounding.
+    doubt
+        Why the reference is not the one solution, or empty.
+    finite
+        Whether all fields are.
+    condition_structure, condition_substructure
+        Condition numbers of the stiffness with supports but without contact, infinite if that
+        alone holds a body, and largest of the substructures' operators K + B' k B; NaN where they
+        were not asked, or are too large to tell.
+    """
+
+    ending: str
+    advice: str
+    certified: bool = False
+    iterations: int = 0
+    seconds: float = 0.0
+    estimated_error: float = math.nan
+    indicator: float = math.nan
+    behaviour: float = math.nan
+    error_displacement: float = math.nan
+    error_force: float = math.nan
+    residual: float = math.nan
+    floor: float = 0.0
+    doubt: str = ""
+    finite: bool = True
+    condition_structure: float = math.nan
+    condition_substructure: float = math.nan
+
+
+def run(scene: str, values: Mapping[str, object], *, conditions: bool = False) -> Outcome:
+    """Run a scene to its stop rule, and measure what comes out; a warning breaks it.
+
+    Parameters
+    ----------
+    scene, values
+        A name of the catalogue, and what differs from its settings.
+    conditions
+        Whether condition numbers are wanted, which take their time.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            settings = CATALOGUE[scene].settings.checked(values)
+            problem, method = discretise(settings), method_of(settings)
+            solution = solve(problem, method, watch=False)
+            return _measured(problem, solution, _conditions(problem, method) if conditions else ())
+        except RefusedError as refusal:
+            return Outcome(REFUSED, str(refusal))
+        except Exception as trouble:  # whatever it is belongs in the table
+            return Outcome(BROKEN, f"{type(trouble).__name__}: {trouble}")
+
+
+def _conditions(problem: Problem, method: Latin) -> tuple[float, float]:
+    k = method.direction.of(problem)
+    return condition_of_structure(problem), condition_of_substructures(problem, k)
+
+
+def _measured(problem: Problem, solution: Solution, conditions: tuple[float, ...]) -> Outcome:
+    """Compare a solution with the reference, and with the equations if it is certified."""
+    iterate, status = solution.iterate, solution.status
+    if not all(np.isfinite(one).all() for one in (iterate.displacement, iterate.contact_force)):
+        return Outcome(status.ending, status.advice, iterations=iterate.number, finite=False)
+    reference, doubt = _reference(problem)
+    errors = math.nan, math.nan
+    if reference is not None:
+        distance = distance_to(reference, problem)
+        errors = distance.of_displacement(iterate), distance.of_friction_force(iterate)
+    residual = kkt_residual(iterate, problem) if solution.is_certified else math.nan
+    floor = kkt_residual(reference, problem) if reference and residual > AT_ROUNDING else 0.0
+    last = solution.records[-1] if solution.records else None
+    return Outcome(
+        status.ending,
+        status.advice,
+        solution.is_certified,
+        iterate.number,
+        last.seconds if last else iterate.seconds,
+        last.estimated_error if last else math.nan,
+        latin_indicator(iterate),
+        behaviour_indicator(iterate),
+        *errors,
+        residual,
+        floor,
+        doubt,
+        True,
+        *conditions,
+    )
+
+
+def _reference(problem: Problem) -> tuple[Reference | None, str]:
+    """Give the reference, if there is one, and why it is not the one solution."""
+    try:
+        reference = reference_of(problem)
+    except NoReferenceError as refusal:
+        return None, str(refusal)
+    lost = np.count_nonzero(~reference.converged)
+    if lost:
+        return None, f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+    several = np.count_nonzero(reference.ambiguous)
+    return reference, f"there are several solutions at {several} instants" if several else ""
