@@ -120,28 +120,22 @@ def block(*, elements=(12, 8), cuts=(2, 2), bodies=1, friction=0.3, shear=0.2, s
     Shear and its change along the top are shares of the pressure, 1e-3 E.
     """
     instants = given.pop("instants", 17)
-    time, none = np.linspace(0.0, 1.0, instants), np.zeros(instants)
+    time = np.linspace(0.0, 1.0, instants)
     pressure = -1e6 * np.minimum(4.0 * time, 1.0)
     swing = 1e6 * shear * np.where(time > 0.25, np.sin(2.0 * np.pi * (time - 0.25) / 0.75), 0.0)
     tilt = slope * pressure * np.where(time > 0.25, np.sin(np.pi * (time - 0.25) / 0.75), 0.0)
-    free = Side(Given(False, none, none), Given(False, none, none))
-    top = Side(Given(False, swing, none), Given(False, pressure, tilt))
+    top = Side(Given(False, swing), Given(False, pressure, tilt))
     return Stack(
         length=1.0,
         height=given.pop("height", 0.6),
         bodies=bodies,
         elements=elements,
         substructures=cuts,
-        macro_degree=1,
-        order=1,
         young=1e9,
         poisson=0.3,
-        state="strain",
-        stiffness=np.ones(bodies),
         friction=friction,
         support=Support(np.zeros(elements[0] + 1), friction),
-        sides={"left": free, "right": free, "top": top, **given},
-        body_force=None,
+        sides={"top": top, **given},
         instants=time,
         duration=1.0,
     )

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from solver.arrays import Array
 from solver.laws import Coulomb, FrictionLaw
+
+SIDES = "left", "right", "top", "bottom"
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,14 +22,14 @@ class Given:
     prescribed
         Whether it is a displacement, m; else it is a traction, Pa.
     mean, slope
-        Over time, shape (n_instants,).
+        Over time, shape (n_instants,); no slope is 0.
     each_body
         Whether s runs over each body of the stack anew, on the left and the right.
     """
 
     prescribed: bool
     mean: Array
-    slope: Array
+    slope: Array | float = 0.0
     each_body: bool = False
 
 
@@ -87,14 +92,14 @@ class StackData:
     young, poisson, state
         Elasticity, Pa; `state` is "strain" or "stress".
     stiffness
-        Young's modulus of every body over `young`, shape (bodies,).
+        Young's modulus of every body over `young`, shape (bodies,), where they differ.
     friction
         Coefficient mu between the bodies.
     support
         Below the lowest body, or None.
     sides
-        What is given along the outer sides; a support replaces "bottom". `left` and `right` run
-        over the sides of all bodies.
+        What is given along the outer sides, by "left", "right", "top", "bottom"; others are free. A
+        support replaces "bottom". `left` and `right` run over the sides of all bodies.
     body_force
         Force per volume along x and y, shape (2, n_instants), N/m^3, or None.
     instants, duration
@@ -110,21 +115,31 @@ class StackData:
 
     length: float
     height: float
-    bodies: int
     elements: tuple[int, int]
     substructures: tuple[int, int]
-    order: int
-    macro_degree: int
     young: float
     poisson: float
-    state: str
-    stiffness: Array
-    friction: float
-    support: Support | None
-    sides: dict[str, Side]
-    body_force: Array | None
     instants: Array
     duration: float
+    bodies: int = 1
+    order: int = 1
+    macro_degree: int = 1
+    state: str = "strain"
+    stiffness: Array | None = None
+    friction: float = 0.0
+    support: Support | None = None
+    sides: Mapping[str, Side] = field(default_factory=dict)
+    body_force: Array | None = None
     spring: Spring | None = None
     tilt: Array | None = None
     friction_law: FrictionLaw = field(default_factory=Coulomb)
+
+    def __post_init__(self) -> None:
+        """Leave free what is not given."""
+        free = Given(False, np.zeros_like(self.instants))
+        others = dict.fromkeys([side for side in SIDES if side not in self.sides], Side(free, free))
+        object.__setattr__(self, "sides", {**self.sides, **others})
+
+    def modulus(self, body: int) -> float:
+        """Give Young's modulus of a body over `young`."""
+        return 1.0 if self.stiffness is None else float(self.stiffness[body])

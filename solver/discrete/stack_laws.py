@@ -96,8 +96,8 @@ def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str,
                 weights=areas,
                 around=Bodies(
                     moduli=(
-                        float(scene.stiffness[body]),
-                        np.inf if lower is None else float(scene.stiffness[body - 1]),
+                        scene.modulus(body),
+                        np.inf if lower is None else scene.modulus(body - 1),
                     ),
                     depth=scene.height,
                 ),

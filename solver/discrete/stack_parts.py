@@ -85,7 +85,7 @@ def parts_of(scene: StackData, grid: Grid) -> list[Part]:
             for column in range(scene.substructures[0]):
                 x, y = across[column], up[row]
                 span = int(across[column + 1] - x), int(up[row + 1] - y)
-                shape = *span, float(scene.stiffness[body])
+                shape = *span, scene.modulus(body)
                 if shape not in shapes:
                     elastic = elastic_matrix(shape[2], scene.poisson, scene.state)
                     size = span[0] // scene.order, span[1] // scene.order

@@ -69,7 +69,7 @@ def _substructure(
     scene: StackData, part: Part, skeleton: Indices, shared: dict[tuple[object, ...], Elasticity]
 ) -> Substructure:
     rectangle = part.rectangle
-    modulus = float(scene.stiffness[part.place[2]])
+    modulus = scene.modulus(part.place[2])
     density = modulus / np.sqrt(
         rectangle.columns * rectangle.width * rectangle.rows * rectangle.height
     )

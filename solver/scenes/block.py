@@ -15,7 +15,7 @@ from solver.discrete.loops import Loop
 from solver.discrete.probes import side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Stack
-from solver.discrete.stack_data import Given, Side, Support
+from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Entry
@@ -117,14 +117,11 @@ class BlockSettings(SideSettings):
 
 def block(settings: BlockSettings) -> Stack:
     """Make the block that the settings describe; one metre thick."""
-    rest = np.zeros(settings.instants)
-    free = Given(False, rest, rest)
     sides = {side: settings.side(side) for side in ("left", "right", "top")}
     gap = _gap(settings, np.linspace(0.0, settings.length, settings.nodes[0]))
     return settings.stack(
-        stiffness=np.ones(1),
         support=Support(gap, settings.friction),
-        sides={**sides, "bottom": Side(free, free)},
+        sides=sides,
         body_force=_body_force(settings),
     )
 

@@ -18,7 +18,7 @@ from solver.discrete.loops import Loop
 from solver.discrete.probes import constant
 from solver.discrete.problem import Problem
 from solver.discrete.stack import Stack
-from solver.discrete.stack_data import Given, Side, Spring, Support
+from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
 from solver.scenes.entry import Entry
 from solver.scenes.plane import PlaneSettings
@@ -118,14 +118,10 @@ class InclineSettings(PlaneSettings):
 
 def incline(settings: InclineSettings) -> Stack:
     """Make the block on its slope that the settings describe; one metre thick."""
-    rest = np.zeros(settings.instants)
-    free = Side(Given(False, rest, rest), Given(False, rest, rest))
     angle = np.radians(settings.path("slope_load"))
     density = settings.weight / (settings.length * settings.height)
     return settings.stack(
-        stiffness=np.ones(1),
         support=Support(np.zeros(settings.nodes[0]), settings.friction),
-        sides=dict.fromkeys(("left", "right", "top", "bottom"), free),
         body_force=-density * np.stack([np.sin(angle), np.cos(angle)]) if density else None,
         spring=Spring(settings.slack, settings.spring),
         tilt=angle,

@@ -159,12 +159,12 @@ class LayersSettings(PlaneSettings):
 def layers(settings: LayersSettings) -> Stack:
     """Make the stack that the settings describe; its left end is clamped; one metre thick."""
     rest = np.zeros(settings.instants)
-    held, free = Given(True, rest, rest), Given(False, rest, rest)
+    held, free = Given(True, rest), Given(False, rest)
     pressing = settings.path("pressure_load")
     pull = settings.path("pull_load")
     if settings.bending == "deflection":
-        bent = Given(True, settings.path("bend_load"), rest)
-        right = Side(Given(False, pull, rest), bent)
+        bent = Given(True, settings.path("bend_load"))
+        right = Side(Given(False, pull), bent)
     else:
         # A linear traction of this extreme over one layer has the moment extreme * thickness^2 / 6.
         moment = settings.path("bend_load")
@@ -172,14 +172,12 @@ def layers(settings: LayersSettings) -> Stack:
         right = Side(Given(False, pull, extreme, each_body=True), free)
     return settings.stack(
         stiffness=np.where(np.arange(settings.layers) % 2, settings.contrast, 1.0),
-        support=None,
         sides={
             "left": Side(held, held),
             "right": right,
-            "top": Side(free, Given(False, -pressing, rest)),
-            "bottom": Side(free, Given(False, pressing, rest)),
+            "top": Side(free, Given(False, -pressing)),
+            "bottom": Side(free, Given(False, pressing)),
         },
-        body_force=None,
     )
 
 
