@@ -16,7 +16,8 @@ from app.worker.shown import has_reference
 from solver.definitions import Curve, Parameter, SettingError, about
 from solver.scenes import loads_of
 from solver.settings import Settings
-from solver.study.quantities import QUANTITIES, Quantity, reading
+from solver.study.quantities import QUANTITIES, reading
+from solver.study.quantity import Quantity
 from solver.study.sweep import Plan, plan_of
 from solver.study.sweep.plan import axis_of
 

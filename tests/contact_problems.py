@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from solver.discrete.problem import Elasticity, Problem, Scales, Substructure
+from solver.discrete.problem import Problem, Scales
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Given, Side, Support
+from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import Bodies, Component, Contact, Dirichlet, Sliders, Unilateral
 
 COURSES = ("random", "reversal", "open and close", "wander")

@@ -17,7 +17,7 @@ from contact_problems import (
 )
 
 from solver.laws import Component, Dirichlet
-from solver.reference import contact as module
+from solver.reference import newton as module
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError

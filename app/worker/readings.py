@@ -9,7 +9,8 @@ from app.worker.words import number, percent
 from solver.latin import Solution
 from solver.latin.status import CANCELLED
 from solver.study.finished import FinishedRun
-from solver.study.quantities import Quantity, reading
+from solver.study.quantities import reading
+from solver.study.quantity import Quantity
 
 OPEN = "…"
 """What only the rest of the run will tell."""

@@ -18,6 +18,7 @@ from scipy import sparse
 
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.inside import Inside
+from solver.discrete.substructure import Substructure
 from solver.laws import Contact, Given, Interface
 
 
@@ -34,58 +35,6 @@ class Scales:
     displacement: float
     force: float
     time: float
-
-
-@dataclass(frozen=True)
-class Elasticity:
-    """The elastic operator that identical substructures share.
-
-    Attributes
-    ----------
-    stiffness
-        Shape (n_dofs, n_dofs), symmetric, positive semi-definite; sparse, or dense where the inside
-        is condensed.
-    trace
-        Degree of freedom of each boundary row, shape (n_boundary,). Rows of two interfaces that
-        meet at a point share a degree of freedom.
-    direction
-        The paper's search direction k of each boundary row, shape (n_boundary,), positive.
-    """
-
-    stiffness: sparse.csr_array | Array
-    trace: Indices
-    direction: Array
-
-    @cached_property
-    def boundary(self) -> tuple[Indices, Indices, sparse.csr_array | Array]:
-        """Degrees of freedom at the boundary, place of every boundary row in them, their stiffness.
-
-        Shapes (n,), (n_boundary,) and (n, n_dofs); the degrees of freedom ascend.
-        """
-        own, place = np.unique(self.trace, return_inverse=True)
-        return own, place, self.stiffness[own]
-
-
-@dataclass(frozen=True)
-class Substructure:
-    """One part of the structure.
-
-    Attributes
-    ----------
-    elasticity
-        Shared by identity with all substructures of the same shape.
-    dofs
-        Its degrees of freedom in the whole structure, shape (n_dofs,).
-    rows
-        Its boundary rows, shape (n_boundary,).
-    body_force
-        Nodal forces inside, shape (n_dofs, n_instants), or None.
-    """
-
-    elasticity: Elasticity
-    dofs: Indices
-    rows: Indices
-    body_force: Array | None
 
 
 @dataclass(frozen=True)

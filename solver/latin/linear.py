@@ -9,7 +9,8 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from solver.arrays import Array, Indices, space_time
-from solver.discrete.problem import Problem, Substructure
+from solver.discrete.problem import Problem
+from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL, Blocks, at_once
 from solver.latin.coarse import CoarseProblem
 from solver.latin.iterate import Checkpoint

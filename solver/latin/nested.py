@@ -11,7 +11,8 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from solver.arrays import Array, Indices
-from solver.discrete.problem import Problem, Substructure
+from solver.discrete.problem import Problem
+from solver.discrete.substructure import Substructure
 from solver.latin.acceleration import Anderson
 from solver.latin.cycle import Cycle, Everywhere, Parts
 from solver.latin.direction import automatic

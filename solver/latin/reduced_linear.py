@@ -13,7 +13,8 @@ from functools import partial
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.problem import Problem, Substructure
+from solver.discrete.problem import Problem
+from solver.discrete.substructure import Substructure
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis

@@ -8,7 +8,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
-from solver.discrete.problem import Elasticity
+from solver.discrete.substructure import Elasticity
 
 DENSE_UP_TO = 150
 """Boundary rows up to which a dense product is no slower than a sparse solution.

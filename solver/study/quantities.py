@@ -6,7 +6,6 @@ the error of the contact force at iteration 10.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,29 +15,7 @@ from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study import measures
 from solver.study.finished import FinishedRun
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """The number that a quantity may be asked with.
-
-    Attributes
-    ----------
-    words
-        What it adds to the title, with a place for the number.
-    bounds
-        Smallest and largest.
-    whole
-        Whether only whole numbers have a meaning.
-    needed
-        Whether the quantity has no meaning without it.
-    """
-
-    words: str
-    bounds: tuple[float, float]
-    whole: bool = False
-    needed: bool = False
-
+from solver.study.quantity import Parameter, Quantity
 
 ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
 CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
@@ -66,47 +43,6 @@ def _over_a_displacement(settings: Settings) -> bool:
 
 def _with_a_broken_wire(settings: Settings) -> bool:
     return bool(settings.values().get("broken"))
-
-
-@dataclass(frozen=True, eq=False)
-class Quantity:
-    """A number that a finished run has.
-
-    Attributes
-    ----------
-    title
-        What it is called, in words.
-    unit
-        SI unit, empty for a pure number.
-    of
-        Gives it, with the parameter or None: NaN where the run has none, infinity where what is
-        waited for never comes.
-    parameter
-        What it may be asked with.
-    reads
-        What the records must hold for it, which takes its time: distances to a reference, or the
-        indicators of every iteration.
-    is_share
-        Whether it is a share of a whole, which is told in per cent.
-    is_of_course
-        Whether it follows from how the run went, not only from what it came to: then a run that
-        starts elsewhere has another.
-    applies
-        Whether runs of these settings may have it.
-    at_instant
-        Gives what it would be at an instant, for one that is taken at the largest load.
-    """
-
-    name: str
-    title: str
-    unit: str
-    of: Callable[[FinishedRun, float | None], float]
-    parameter: Parameter | None = None
-    reads: Literal["errors", "indicators"] | None = None
-    is_share: bool = False
-    is_of_course: bool = False
-    applies: Callable[[Settings], bool] = lambda settings: True
-    at_instant: Callable[[FinishedRun, int], float] | None = None
 
 
 @dataclass(frozen=True)

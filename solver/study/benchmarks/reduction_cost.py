@@ -15,7 +15,8 @@ from scipy.fft import idct
 
 from solver.arrays import Array, space_time
 from solver.discrete import Problem
-from solver.discrete.problem import Elasticity, Scales, Substructure
+from solver.discrete.problem import Scales
+from solver.discrete.substructure import Elasticity, Substructure
 from solver.latin import Paper, iterations
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear import FullLinearStage, LinearStage
