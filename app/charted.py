@@ -9,7 +9,7 @@ from typing import Any
 from app.views.colors import VIRIDIS
 from solver.settings import Settings
 from solver.study.figure_data import HUES
-from solver.study.sweep import Axis, Plan, Row
+from solver.study.sweep import Plan, Row, Varied
 from solver.study.sweep.chart import DECADES
 
 MOST_CURVES = 6
@@ -96,12 +96,12 @@ def is_comparable(plan: Plan, other: Plan) -> bool:
     return same and plan.readings[0].name == other.readings[0].name
 
 
-def _ordered(plan: Plan) -> list[Axis]:
+def _ordered(plan: Plan) -> list[Varied]:
     """Put the axis first that goes across: of a number and names, the number."""
     return sorted(plan.axes, key=lambda axis: not axis.is_numeric)
 
 
-def _described(plan: Plan, axis: Axis) -> dict[str, Any]:
+def _described(plan: Plan, axis: Varied) -> dict[str, Any]:
     place = plan.axes.index(axis)
     return {
         "name": axis.name,

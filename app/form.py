@@ -13,7 +13,7 @@ import param
 
 from app.innards import Plain
 from app.panes import script
-from solver.definitions import Curve, Parameter, about
+from solver.definitions import CurveParameter, Parameter, about
 
 POINTS, USUAL = "table of points", "usual value"
 """What stands for values that the browser does not know."""
@@ -95,7 +95,7 @@ def item_of(name: str, definition: Parameter) -> dict[str, Any] | None:
     label = f"{record.title} ({record.unit})" if record.unit else record.title
     item = {"name": name, "label": label, "help": definition.doc, "more": not record.essential}
     item["group"] = record.group if record.essential else ""
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         titles = zip((definition.abscissa, definition.ordinate), definition.units, strict=True)
         columns = [f"{title} ({unit})" if unit else title for title, unit in titles]
         options = [[value, value] for value in (*definition.presets, POINTS)]

@@ -76,7 +76,7 @@ def part_of(on: str, users: int) -> str:
 LENDER = Lender()
 
 
-class Course:
+class SweepThread:
     """One sweep, on a thread of its own until its end.
 
     Attributes
@@ -134,7 +134,7 @@ class Inquiry:
 
     def __init__(self, lent: Callable[[], AbstractContextManager[Pool]] = LENDER.lent) -> None:
         self._lent = lent
-        self._course: Course | None = None
+        self._course: SweepThread | None = None
         self._began = self._looked = 0.0
         self.plan: Plan | None = None
         self.rows: list[Row] = []
@@ -161,7 +161,7 @@ class Inquiry:
             self.before = self.plan, self.rows
         self.plan, self.rows, self.notice = plan, [], ""
         self._began = self._looked = time.monotonic()
-        self._course = Course(plan, self._lent)
+        self._course = SweepThread(plan, self._lent)
 
     def cancel(self) -> None:
         """End it; what has come so far stays."""
@@ -184,6 +184,6 @@ class Inquiry:
             self._course, self.notice = None, course.notice
         return is_over or len(self.rows) > before
 
-    def _take(self, course: Course) -> None:
+    def _take(self, course: SweepThread) -> None:
         while course.rows:
             self.rows.append(course.rows.popleft())

@@ -13,7 +13,7 @@ import param
 from app.form import item_of
 from app.refusals import refused, sentence
 from app.worker.shown import has_reference
-from solver.definitions import Curve, Parameter, SettingError, about
+from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import loads_of
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
@@ -189,7 +189,7 @@ def names_of(definition: Parameter) -> list[str]:
     """Give the names among which a setting chooses; none for a number."""
     if isinstance(definition, param.Boolean):
         return ["false", "true"]
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         return list(definition.presets)
     return list(definition.objects) if isinstance(definition, param.Selector) else []
 

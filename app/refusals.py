@@ -9,7 +9,7 @@ from typing import Any
 import param
 
 from app.form import item_of
-from solver.definitions import Curve, Parameter, SettingError, about, allowed
+from solver.definitions import CurveParameter, Parameter, SettingError, about, allowed
 from solver.settings import Settings
 
 CLOSE = 16
@@ -49,7 +49,7 @@ def sentence(remedy: str) -> str:
 
 def allowed_here(definition: Parameter) -> str:
     """Describe which values a setting takes, as its control offers them."""
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         table = f"a table of {definition.abscissa} and {definition.ordinate}"
         return f"{', '.join(definition.presets)}, or {table}"
     return "on or off" if isinstance(definition, param.Boolean) else allowed(definition)

@@ -24,7 +24,7 @@ from app.panes import button, column, select, text
 from app.views.colors import GREY
 from app.views.legend import Key, card_title
 from solver.study.figure_data import HUES, Panel
-from solver.study.page import Plot, Section
+from solver.study.page import PlotSection, Section
 
 COLORS = (GREY, *HUES)
 """Of curves, by their hue."""
@@ -200,7 +200,7 @@ def _drawn(panel: Panel) -> Any:
     return plot(panel)
 
 
-def legend(plot: Plot) -> str:
+def legend(plot: PlotSection) -> str:
     """Write one legend for panels side by side (HTML)."""
     curves = {curve.label: curve for panel in plot.panels for curve in panel.curves}.values()
     keys = [Key(COLORS[one.hue], MARKS.get(one.line, one.line), one.label) for one in curves]

@@ -9,7 +9,7 @@ import numpy as np
 from bokeh.plotting import figure
 
 from app.report import COLORS
-from solver.study.figure_data import Curve, Panel
+from solver.study.figure_data import Panel, PanelCurve
 
 MOST_LABELS = 7
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
@@ -53,11 +53,11 @@ def overlay(panel: Panel) -> hv.Overlay:
     )
 
 
-def _drawn(panel: Panel, curve: Curve) -> list[Any]:
+def _drawn(panel: Panel, curve: PanelCurve) -> list[Any]:
     x, y = panel.x.quantity, panel.y.quantity
     values = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
     has_points = curve.line == "points"
-    line = hv.Curve((curve.x, values), x, y, label=curve.label).opts(
+    line = hv.Line((curve.x, values), x, y, label=curve.label).opts(
         line_dash="solid" if has_points else curve.line,
         line_width=1.0 if has_points else 2.2,
         tools=["hover"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from solver.checked import dump
-from solver.definitions import Curve, SettingError, about
+from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables
 from solver.settings import Settings
 from solver.tables import heads_of, read_table
@@ -46,7 +46,7 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
     paths = {
         name: definition
         for name, definition in settings.definitions().items()
-        if isinstance(definition, Curve)
+        if isinstance(definition, CurveParameter)
         and definition.abscissa == "time"
         and settings.applies(name)
     }

@@ -54,7 +54,7 @@ class About:
     essential: bool = False
 
 
-class Curve(Parameter):
+class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 
     `units` are those of both, empty for a pure number.
@@ -142,9 +142,9 @@ def curve(
     units: tuple[str, str],
     doc: str,
     **record: Any,
-) -> Curve:
+) -> CurveParameter:
     """Define a path: a preset's name or a table of points."""
-    return Curve(
+    return CurveParameter(
         default,
         presets,
         abscissa,
@@ -167,7 +167,7 @@ def redefined(definition: Any, default: object, **record: Any) -> Any:
 def allowed(definition: Parameter) -> str:
     """Describe in words which values a setting takes."""
     unit = f" {about(definition).unit}" if about(definition).unit else ""
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         pairs = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
         return f"{', '.join(definition.presets)}, or {pairs}"
     if isinstance(definition, param.Boolean):
@@ -199,7 +199,7 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
     def refuse(remedy: str) -> SettingError:
         return SettingError(name, value, allowed(definition), remedy)
 
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         return _checked_curve(definition, value, refuse)
     if isinstance(definition, param.Boolean):
         if not isinstance(value, bool):
@@ -224,7 +224,7 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
 
 
 def _checked_curve(
-    definition: Curve, value: object, refuse: Callable[[str], SettingError]
+    definition: CurveParameter, value: object, refuse: Callable[[str], SettingError]
 ) -> str | Pairs:
     if isinstance(value, str):
         if value not in definition.presets:

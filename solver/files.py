@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from solver.definitions import Curve, SettingError, parse
+from solver.definitions import CurveParameter, SettingError, parse
 from solver.discrete.inside import Inside
 from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
@@ -105,7 +105,7 @@ def ends_of_tables(settings: Settings) -> dict[str, float]:
     return {
         name: values[name][-1][0]
         for name, definition in settings.definitions().items()
-        if isinstance(definition, Curve)
+        if isinstance(definition, CurveParameter)
         and definition.abscissa == "time"
         and isinstance(values[name], tuple)
         and settings.applies(name)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from solver.definitions import Curve, Parameter, SettingError, allowed
+from solver.definitions import CurveParameter, Parameter, SettingError, allowed
 from solver.disk import LARGEST, TOO_LARGE, read_text, why
 
 Row = tuple[int, list[str]]
@@ -19,7 +19,7 @@ PREFIXES |= {"k": 1e3, "M": 1e6, "G": 1e9}
 NO_UNIT = "", "-", "1"
 
 
-def read_table(text: str, definition: Curve, name: str, source: str) -> list[list[float]]:
+def read_table(text: str, definition: CurveParameter, name: str, source: str) -> list[list[float]]:
     """Read a table of two columns for a curve setting, as spreadsheets write it.
 
     Parameters
@@ -97,7 +97,7 @@ def _name(cell: str) -> str:
     return UNIT.sub("", cell).strip().lower()
 
 
-def _factors(heads: list[Row], definition: Curve, refuse: Refuse) -> list[float]:
+def _factors(heads: list[Row], definition: CurveParameter, refuse: Refuse) -> list[float]:
     """Give what turns the numbers of both columns into SI, by the units in front of them."""
     found = [1.0, 1.0]
     for place, (line, cells) in enumerate(heads):
@@ -129,7 +129,7 @@ def _factor(said: str, unit: str) -> float | None:
     return next((size for size in sizes if size is not None), None)
 
 
-def _read_file(path: Path, definition: Curve, name: str) -> list[list[float]]:
+def _read_file(path: Path, definition: CurveParameter, name: str) -> list[list[float]]:
     try:
         text = read_text(path)
     except (OSError, ValueError) as problem:  # no text, or no path at all
@@ -143,6 +143,6 @@ def resolve(definition: Parameter, name: str, value: object, folder: Path) -> ob
 
     Reading files is for fronts whose user owns the machine, so nothing else does it.
     """
-    if not isinstance(definition, Curve) or not isinstance(value, str) or not value:
+    if not isinstance(definition, CurveParameter) or not isinstance(value, str) or not value:
         return value
     return value if value in definition.presets else _read_file(folder / value, definition, name)

@@ -12,7 +12,7 @@ from playwright.sync_api import Page, TimeoutError, expect
 from tour import SIZES, Move, back, described, has_choice, one_end, small
 
 from app.form import POINTS
-from solver.definitions import Curve, Parameter, SettingError, about
+from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.settings import Settings
 
 ITERATIONS = 10
@@ -59,7 +59,7 @@ def applying(base: Settings) -> set[str]:
 
 def kind(definition: Parameter) -> str:
     """Tell controls apart that a page makes and hears otherwise."""
-    if isinstance(definition, Curve | param.Boolean | param.Selector):
+    if isinstance(definition, CurveParameter | param.Boolean | param.Selector):
         return type(definition).__name__
     return f"{type(definition).__name__}, logarithmic: {about(definition).logarithmic}"
 
@@ -125,7 +125,7 @@ class Tour:
         place = self.page.locator(f".setting-{name}")
         if isinstance(definition, param.Boolean):
             place.get_by_role("switch").press("Space")
-        elif isinstance(definition, param.Selector | Curve):
+        elif isinstance(definition, param.Selector | CurveParameter):
             # Also one that does not apply, and is hidden, as it is brought back last.
             place.locator("select").evaluate(
                 """(select, value) => {
@@ -156,7 +156,7 @@ class Tour:
         """Wait until a control has gone back to what holds."""
         value = getattr(settings, name)
         place = self.page.locator(f".setting-{name}")
-        if isinstance(settings.definitions()[name], param.Selector | Curve):
+        if isinstance(settings.definitions()[name], param.Selector | CurveParameter):
             shown = value if isinstance(value, str) else POINTS
             expect(place.locator("select")).to_have_value(shown)
         elif isinstance(value, bool):

@@ -15,7 +15,7 @@ from app.refusals import refused
 from app.session import Session
 from app.sidebar import Sidebar
 from app.worker.bench import Bench
-from solver.definitions import Curve, SettingError, about
+from solver.definitions import CurveParameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
@@ -155,6 +155,6 @@ def test_columns_of_a_table_have_units() -> None:
     assert made["columns"] == ["time (s)", "force (N)"]
     for entry in CATALOGUE.values():
         for definition in entry.settings.definitions().values():
-            if isinstance(definition, Curve):
+            if isinstance(definition, CurveParameter):
                 assert definition.units[0] == {"time": "s", "position": "m"}[definition.abscissa]
                 assert bool(definition.units[1]) == (definition.ordinate != "factor")

@@ -12,7 +12,7 @@ import pytest
 
 from solver import report_commands
 from solver.cli import main
-from solver.study.figure_data import Axis, Curve, Finding, Panel, PaperFigure
+from solver.study.figure_data import Finding, Panel, PanelAxis, PanelCurve, PaperFigure
 from solver.study.paper_figures import paper_figures
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -21,7 +21,14 @@ SIGNATURE = b"\x89PNG\r\n\x1a\n"
 SMALL = PaperFigure(
     3,
     "A <small> figure",
-    (Panel("Panel", Axis("Place", "m"), Axis("Force", "N"), (Curve("c", *np.eye(2), 1),)),),
+    (
+        Panel(
+            "Panel",
+            PanelAxis("Place", "m"),
+            PanelAxis("Force", "N"),
+            [PanelCurve("c", *np.eye(2), 1)],
+        ),
+    ),
     "It is < the paper's.",
     (Finding("One is 1.", {"one": 1.0}, True), Finding("Two is 1.", {"two": 1.0}, False)),
     "Caption.",

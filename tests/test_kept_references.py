@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.worker.rivals import References
+from app.worker.rivals import KeptReferences
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.fingerprint import fingerprint
@@ -94,7 +94,7 @@ def test_what_the_solution_depends_on_changes_the_fingerprint(scene: str, name: 
 def test_reference_found_after_the_cuts_have_changed_is_that_of_the_problem(
     scene: str, cuts: int
 ) -> None:
-    references = References()
+    references = KeptReferences()
     references.of(*made(scene), never)
     settings, problem = made(scene, substructures=cuts)
     kept, fresh = references.of(settings, problem, never), reference_of(problem)
@@ -118,15 +118,15 @@ def test_a_reference_is_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
         found.append(reference_of(*arguments))
         return found[-1]
 
-    monkeypatch.setattr(sys.modules[References.__module__], "reference_of", count)
-    references = References()
+    monkeypatch.setattr(sys.modules[KeptReferences.__module__], "reference_of", count)
+    references = KeptReferences()
     for changes in ({}, {"k_scale": 2.0}, {"friction": 0.2}, {"acceleration": "none"}):
         references.of(*made("block", **changes), never)
     assert len(found) == 2
 
 
 def test_what_is_kept_keeps_no_problem_alive() -> None:
-    references = References()
+    references = KeptReferences()
     settings, problem = made("block")
     references.of(settings, problem, never)
     watched = weakref.ref(problem)
@@ -142,7 +142,7 @@ def test_the_budget_counts_all_fields_that_are_kept() -> None:
     arrays = (found.displacement, found.contact_force, found.status, found.converged)
     whole = sum(array.nbytes for array in (*arrays, found.ambiguous))
     for budget, kept in ((whole, 1), (whole - 1, 0), (2 * whole, 2)):
-        references = References(budget=budget)
+        references = KeptReferences(budget=budget)
         references.of(settings, problem, never)
         references.of(*made("bar", friction=0.2), never)
         assert len(references) == kept

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections import defaultdict
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -128,6 +129,15 @@ def test_files_and_functions_are_of_a_size_to_read():
         assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST_FILE, path
         long = {name: lines for name, lines in functions(path) if lines > LONGEST_FUNCTION}
         assert long == {}, path
+
+
+def test_a_class_name_has_one_meaning():
+    places = defaultdict(list)
+    for name, path in (SOLVER | modules("app")).items():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                places[node.name].append(name)
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
 
 
 def test_the_code_is_linted_formatted_and_typed():

@@ -10,7 +10,7 @@ import pytest
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.lessons.lesson import Checkpoint, Control, Value, pieces
+from solver.lessons.lesson import Claim, Control, Value, pieces
 from solver.lessons.reading import lesson_from_file
 
 PARTS: dict[str, str] = {
@@ -160,7 +160,7 @@ def test_a_value_holds_within_what_is_expected_and_not_beyond(
     path = tmp_path / "small.toml"
     path.write_text(written({}, claim), encoding="utf-8")
     (one,) = lesson_from_file(path).checkpoints
-    assert isinstance(one, Checkpoint)
+    assert isinstance(one, Claim)
     assert all(one.expected.holds(value) for value in holds)
     assert not any(one.expected.holds(value) for value in fails)
 

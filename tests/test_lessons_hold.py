@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.views.catalogue import VIEWS, fitting
-from solver.lessons.checking import Outcome, Said, check
+from solver.lessons.checking import CheckedClaim, Said, check
 from solver.lessons.command import line
 from solver.lessons.lesson import Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
@@ -27,7 +27,7 @@ PAIRED = re.compile(r"\*\*[^*]+\*\*|\*[^*]+\*")
 
 
 @functools.cache
-def outcomes(name: str) -> list[Outcome | Said]:
+def outcomes(name: str) -> list[CheckedClaim | Said]:
     """Give all of a lesson's at once, because they share runs."""
     return list(check(LESSONS[name]))
 

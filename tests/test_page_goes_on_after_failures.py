@@ -30,7 +30,7 @@ from app.worker.link import Link
 from app.worker.orders import Run, Seek, Step
 from app.worker.reports import Died, Facts, Picture, Report
 from app.worker.words import REPLAYED
-from solver.running import seats
+from solver.running import calls
 from solver.scenes.bar import BarSettings
 
 BROKEN: list[list[Report]] = [
@@ -174,7 +174,7 @@ def no_fork_server(*arguments: Any, **options: Any) -> Any:
 
 
 def test_a_job_whose_process_does_not_start_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(seats, "start_process", no_fork_server)
+    monkeypatch.setattr(calls, "start_process", no_fork_server)
     errand = Errand(Bench())
     errand.ask("any", print)
     await_end(errand)

@@ -28,7 +28,7 @@ from app.worker.bench import Bench
 from app.worker.desk import SECTIONS, Desk, said
 from app.worker.studies import figures_of_the_paper
 from solver.study.figure_data import Panel
-from solver.study.page import Plot, Section
+from solver.study.page import PlotSection, Section
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,9 @@ def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: lis
 
 @pytest.fixture(scope="module")
 def panels(found: Found) -> list[Panel]:
-    return [panel for plot in found.sections if isinstance(plot, Plot) for panel in plot.panels]
+    return [
+        panel for plot in found.sections if isinstance(plot, PlotSection) for panel in plot.panels
+    ]
 
 
 @pytest.fixture(autouse=True)
@@ -173,7 +175,7 @@ def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
     assert not view._start.visible
     assert view._card.visible
     for pane, section in zip(view._sheet, found.sections, strict=True):
-        if isinstance(section, Plot):
+        if isinstance(section, PlotSection):
             legend = re.sub("</?abbr[^>]*>", "", pane[0].object)
             assert all(escape(c.label) in legend for p in section.panels for c in p.curves)
         else:

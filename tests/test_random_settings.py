@@ -14,7 +14,7 @@ import param
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
-from solver.definitions import Curve, SettingError
+from solver.definitions import CurveParameter, SettingError
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -87,7 +87,7 @@ def paired(values, extent):
 
 
 def values_of(name, definition, extents):
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         extent = extents[definition.abscissa]
         is_section = name == "section_profile"
         points = paired(sizes(*SECTION), extent) if is_section else tables(definition, extent)

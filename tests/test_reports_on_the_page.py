@@ -24,7 +24,7 @@ from solver.scenes.layers import LayersSettings
 from solver.study.audit.audit import Audited, Verdict, audit
 from solver.study.audit.cases import Case
 from solver.study.audit.stability import stability_report
-from solver.study.page import Plot
+from solver.study.page import PlotSection
 
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
@@ -38,10 +38,10 @@ def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
     assert set(found) == {"curves.csv", "levels.csv", "study.html"}
     rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
     assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
-    assert sum(isinstance(section, Plot) for section in errand.last.sections) == 1
+    assert sum(isinstance(section, PlotSection) for section in errand.last.sections) == 1
     page = found["study.html"].decode()
     for section in errand.last.sections:
-        assert isinstance(section, Plot) or section in page
+        assert isinstance(section, PlotSection) or section in page
     assert "Scene: bar (" in page
     assert all(f"{name} = {value}" in page for name, value in TINY.items())
     assert page.count("BLAS threads: 1;") == 1

@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from solver.checked import dump
-from solver.definitions import Curve, SettingError, allowed, parse
+from solver.definitions import CurveParameter, SettingError, allowed, parse
 from solver.files import settings_from_command, settings_from_toml
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
@@ -28,7 +28,9 @@ NUMBERS = [
     for name, definition in DEFINITIONS.items()
     if isinstance(definition, param.Number) and not isinstance(definition, param.Boolean)
 ]
-CURVES = [name for name, definition in DEFINITIONS.items() if isinstance(definition, Curve)]
+CURVES = [
+    name for name, definition in DEFINITIONS.items() if isinstance(definition, CurveParameter)
+]
 CHOICES = [name for name, kind in DEFINITIONS.items() if isinstance(kind, param.Selector)]
 
 
@@ -44,7 +46,7 @@ def curves(definition):
 
 def values_of(definition):
     """Give a strategy of all values that a definition allows."""
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         return curves(definition)
     if isinstance(definition, param.Boolean):
         return st.booleans()
@@ -72,7 +74,7 @@ def valid_settings(draw):
 
 def another(definition):
     """Give a valid value that is not the very object that the settings hold."""
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         return "ramp"
     if isinstance(definition, param.Boolean):
         return not definition.default

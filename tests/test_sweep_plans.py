@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from solver.definitions import SettingError
 from solver.scenes.bar import BarSettings
-from solver.study.sweep import Axis, plan_from_plain, plan_of
+from solver.study.sweep import Varied, plan_from_plain, plan_of
 from solver.study.sweep.order import snake
 from solver.study.sweep.plan import axis_of
 
@@ -117,9 +117,9 @@ def test_a_plan_survives_as_json_and_another_has_another_digest() -> None:
 
 
 def test_names_have_no_place_on_a_scale() -> None:
-    assert not Axis("load", ("sine",)).is_numeric
-    assert not Axis("multiscale", (True, False)).is_numeric
-    assert Axis("elements", (1, 2)).is_numeric
+    assert not Varied("load", ("sine",)).is_numeric
+    assert not Varied("multiscale", (True, False)).is_numeric
+    assert Varied("elements", (1, 2)).is_numeric
 
 
 @ANY

@@ -11,7 +11,7 @@ from studios import ALL, Shown
 
 from app.views.deformed import fitting
 from app.views.scales import held
-from app.worker.frames import Fields
+from app.worker.frames import DrawnFields
 from app.worker.meshes import MOST_QUADS, Thinned
 from app.worker.orders import Watch
 from app.worker.sampler import Sampler
@@ -97,7 +97,7 @@ def test_a_run_before_keeps_its_fields_without_its_problem() -> None:
     shown.run(2, "bar", SIZES["bar"])
     before = shown.scene().before
     assert before is not None
-    assert type(before.frame) is Fields
+    assert type(before.frame) is DrawnFields
 
 
 def test_mesh_shows_the_chosen_instant_and_stress() -> None:

@@ -10,7 +10,7 @@ import param
 
 from app.form import item_of
 from app.worker.shown import has_reference
-from solver.definitions import Curve, Parameter, SettingError
+from solver.definitions import CurveParameter, Parameter, SettingError
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NotHeldError
 from solver.scenes import CATALOGUE, discretise, points_of
@@ -90,7 +90,7 @@ def has_choice(definition: Parameter) -> bool:
 def all_values(settings: Settings, name: str) -> list[Any]:
     """Give both ends of a slider, and all that can be chosen, a table of points included."""
     definition = settings.definitions()[name]
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         tables = [] if not isinstance(getattr(settings, name), str) else [points_of(settings, name)]
         return [*definition.presets, *tables]
     if isinstance(definition, param.Boolean):

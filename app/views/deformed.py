@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.views.colors import GHOST, GREY
-from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, is_plane
+from app.views.drawing import Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import around, decimal_scale, round_up
 from app.worker.portrait import rims
@@ -38,7 +38,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing | None:
     reach = round_up(factor * reach_of(scene)) if field.largest > 0.0 else 0.0
     outlines, ghosts = ghosts_of(scene, factor)
     return Drawing(
-        bodies=Bodies(mesh.quads, moved, field.stress / np.float32(unit), _box(scene, reach)),
+        bodies=QuadMesh(mesh.quads, moved, field.stress / np.float32(unit), _box(scene, reach)),
         colors=Colors(low, high, (low, 0.5 * (low + high), high), name),
         keys=(
             Key(GREY, "bare", scene.look.stress),

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from app.views.handles import Handle
 from app.views.legend import Key
-from app.worker.frames import Fields
+from app.worker.frames import DrawnFields
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
@@ -80,7 +80,7 @@ class Scene:
         return max(float(one.settings.values()["length"]) for one in compared)
 
     @property
-    def ghost(self) -> tuple[Recording, Fields, int] | None:
+    def ghost(self) -> tuple[Recording, DrawnFields, int] | None:
         """The run before, its fields and its instant, where they are of the same interface."""
         fields = self.before.frame if self.before else None
         if self.before is None or fields is None or fields.interface != self.frame.fields.interface:
@@ -134,7 +134,7 @@ class Image:
 
 
 @dataclass(frozen=True, eq=False)
-class Bodies:
+class QuadMesh:
     """Quadrilaterals: corners (n_quads, 4), places (n_nodes, 2), values (n_quads,).
 
     Attributes
@@ -194,7 +194,7 @@ class Drawing:
     marks: Sequence[Marks] = ()
     words: Sequence[Word] = ()
     image: Image | None = None
-    bodies: Bodies | None = None
+    bodies: QuadMesh | None = None
     colors: Colors | None = None
     keys: Sequence[Key] = ()
     handles: Sequence[Handle] = ()

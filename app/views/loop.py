@@ -12,7 +12,7 @@ from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned
-from app.worker.frames import Fields
+from app.worker.frames import DrawnFields
 from app.worker.recording import Recording
 from app.worker.shown import Axes
 
@@ -66,7 +66,7 @@ def _limits(
     return across, up
 
 
-def _pair(run: Recording, fields: Fields) -> Pair:
+def _pair(run: Recording, fields: DrawnFields) -> Pair:
     """Give displacement and force of an iterate or a reference."""
     load = run.stand.load if fields.load is None else fields.load
     assert load is not None

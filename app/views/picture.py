@@ -10,7 +10,7 @@ import numpy as np
 from app.views import sketch
 from app.views.colors import BACKWARD, FORCE, FORWARD, GHOST, GIVEN, GREY, VERMILION, shaded
 from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
-from app.views.drawing import Bodies, Colors, Curve, Drawing, Plot, Scene, View, Word
+from app.views.drawing import Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, Word
 from app.views.handles import Handle, choices, on_arrow, on_bodies
 from app.views.legend import Key
 from app.views.scales import decimal_scale
@@ -65,7 +65,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
     width = 7 if portrait.chains.max() == 0 else 4
     slips = [Curve(*artist.placed(artist.band(status)), color, width) for status, color in SLIPS]
     return Drawing(
-        bodies=Bodies(
+        bodies=QuadMesh(
             portrait.mesh.quads,
             np.stack(artist.placed(artist.nodes), axis=1).astype(np.float32),
             portrait.mesh.parts.astype(np.float32),

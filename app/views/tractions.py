@@ -8,7 +8,7 @@ from app.views.colors import BLUE, GREY, ORANGE, PURPLE
 from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned, upright
-from app.worker.frames import Fields
+from app.worker.frames import DrawnFields
 
 KEYS = (
     Key(PURPLE, "line", "pressure p"),
@@ -51,7 +51,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
 
 def _pair(
     places: np.ndarray,
-    fields: Fields,
+    fields: DrawnFields,
     instant: int,
     factor: float,
     color: str = "",

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from app.worker.studies import Work
+from solver.running.calls import when_deserted
 from solver.running.executors import Processes, executor_of_the_server, opened
 from solver.running.pool import EndedError
-from solver.running.seats import when_deserted
 
 _log = logging.getLogger(__name__)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.views.catalogue import fitting
 from app.views.colors import VERMILION
-from app.views.drawing import POSITION, Axis, Bodies, Drawing, Image, Marks, Scene, View
+from app.views.drawing import POSITION, Axis, Drawing, Image, Marks, QuadMesh, Scene, View
 from app.views.legend import card_title
 from app.views.scales import upright
 from app.worker.block import Attributes, Packer, Quads
@@ -178,7 +178,7 @@ def _image(image: Image) -> Attributes:
     }
 
 
-def _bodies(bodies: Bodies) -> Iterator[tuple[str, Attributes]]:
+def _bodies(bodies: QuadMesh) -> Iterator[tuple[str, Attributes]]:
     yield "bodies", {"quads": Quads(bodies.corners, bodies.places), "value": bodies.values}
     if bodies.along is not None:
         yield "along", {"x": bodies.along}

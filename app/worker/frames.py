@@ -62,7 +62,7 @@ class Stand:
 
 
 @dataclass(frozen=True)
-class Fields:
+class DrawnFields:
     """What is drawn of an iterate and of a reference alike, thinned, in SI.
 
     Attributes

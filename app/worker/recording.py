@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.worker.frames import Fields, Stand
+from app.worker.frames import DrawnFields, Stand
 from app.worker.shown import Counts, thinned
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
@@ -100,13 +100,13 @@ class Recording:
     label: str
     notice: str
     stand: Stand
-    reference: Fields | None = None
+    reference: DrawnFields | None = None
     reference_seconds: float = math.nan
     last: Record | None = None
     history: History = field(default_factory=History)
     beside: History = field(default_factory=History)
     sizes: list[Counts] = field(default_factory=list)
-    frame: Fields | None = None
+    frame: DrawnFields | None = None
     shown: int = 0
     status: Status | None = None
     is_warm: bool = False

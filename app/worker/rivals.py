@@ -18,7 +18,7 @@ from solver.reference.solution import Reference
 from solver.settings import Settings
 
 
-class References:
+class KeptReferences:
     """The references last used, by what they depend on.
 
     They are kept without their problems, whose matrices take many times as much.

@@ -11,13 +11,13 @@ from app.worker.bases import sizes
 from app.worker.beside import Beside
 from app.worker.orders import Pace, Run, Seek, Step
 from app.worker.recording import Recording
-from app.worker.rivals import References
+from app.worker.rivals import KeptReferences
 from app.worker.sampler import Frame, Sampler
 from app.worker.seeking import Found, Seeking
 from app.worker.shown import Look
 from app.worker.tempo import Tempo
 from solver.files import scene_settings
-from solver.latin import Checkpoint, Ending, Iterate, StopRules, Verdict, record
+from solver.latin import Checkpoint, Decision, Ending, Iterate, StopRules, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.warm import Start, choose_start, fits, iterations_from
 from solver.reference.distance import Distance, distance_to
@@ -65,7 +65,7 @@ class WorkerRun:
         order: Run,
         look: Look,
         urgent: Callable[[], bool],
-        references: References,
+        references: KeptReferences,
         previous: Iterate | None = None,
     ) -> None:
         self.ticket, self.follows_hand = order.ticket, order.follows_hand
@@ -261,7 +261,7 @@ class WorkerRun:
             self.recording.status = verdict.status
             self._take(newest, finished, verdict)
 
-    def _take(self, newest: Iterate, iterate: Iterate, verdict: Verdict) -> Iterate:
+    def _take(self, newest: Iterate, iterate: Iterate, verdict: Decision) -> Iterate:
         """Record an iterate, which becomes the newest."""
         if iterate is not newest:
             self._before = newest.checkpoint

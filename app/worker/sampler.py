@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.worker.bases import Bases, bases_of
-from app.worker.frames import Fields as Shown
-from app.worker.frames import Stand
+from app.worker.frames import DrawnFields, Stand
 from app.worker.meshes import Thinned
 from app.worker.portrait import Pose, Sitter
 from app.worker.shown import (
@@ -28,7 +27,7 @@ from app.worker.shown import (
 from app.worker.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
-from solver.discrete.loops import Fields
+from solver.discrete.loops import LoopFields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
 from solver.reference.solution import Reference
@@ -120,7 +119,7 @@ class Sampler:
             return replace(stand, wires=self._wires.completed(exact, self._columns))
         return stand
 
-    def reference(self, found: Reference) -> Shown:
+    def reference(self, found: Reference) -> DrawnFields:
         """Show a reference."""
         fields = found.contact(self.interface)
         return self._shown(found, fields.tangential_force, fields.normal_force, fields.status)
@@ -157,13 +156,13 @@ class Sampler:
 
     def _shown(
         self,
-        fields: Fields,
+        fields: LoopFields,
         friction: NDArray[np.float64],
         pressure: NDArray[np.float64] | None,
         status: NDArray[np.int8],
-    ) -> Shown:
+    ) -> DrawnFields:
         force = self.loop.force
-        return Shown(
+        return DrawnFields(
             interface=self.interface,
             friction=self._density(friction),
             pressure=None if pressure is None else self._density(pressure),
@@ -183,7 +182,7 @@ class Sampler:
 class Frame:
     """One iterate as views see it; what only some of them show is computed when one looks."""
 
-    fields: Shown
+    fields: DrawnFields
     iterate: Iterate
     before: Checkpoint | None
     look: Look

@@ -14,7 +14,7 @@ from app.worker.easel import TAKE_AWAY, Easel
 from app.worker.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.worker.recording import Recording
 from app.worker.reports import Facts, File, Picture
-from app.worker.rivals import References
+from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
 from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
@@ -43,7 +43,7 @@ class Studio:
     def __init__(self, send: Callable[[Picture | File], None], urgent: Callable[[], bool]) -> None:
         self._send = send
         self._urgent = urgent
-        self._references = References()
+        self._references = KeptReferences()
         self._easel = Easel()
         self._look = Look()
         self._run: WorkerRun | None = None

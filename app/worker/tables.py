@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 import numpy as np
 
 from app.views.drawing import Scene
-from app.worker.frames import Fields
+from app.worker.frames import DrawnFields
 from app.worker.recording import COLUMNS, History, Recording
 from app.worker.shown import instant_of
 from solver.checked import dump
@@ -56,7 +56,7 @@ def _runs(scene: Scene) -> list[tuple[str, Recording]]:
     return found if scene.before is None else [*found, (scene.other, scene.before)]
 
 
-def _fields(scene: Scene) -> Iterator[tuple[str, Recording, Fields]]:
+def _fields(scene: Scene) -> Iterator[tuple[str, Recording, DrawnFields]]:
     """Give the fields that are drawn, each with its name and what it stands on."""
     yield scene.name, scene.run, scene.frame.fields
     if scene.ghost is not None:

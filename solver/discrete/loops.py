@@ -14,7 +14,7 @@ from solver.discrete.probes import Probe, reaction
 from solver.discrete.problem import Problem
 
 
-class Fields(Protocol):
+class LoopFields(Protocol):
     """What a loop is taken from: an iterate, or a reference; SI, shape (n, n_instants)."""
 
     @property
@@ -44,7 +44,7 @@ class Loop:
     across: tuple[str, str]
     up: tuple[str, str]
     displacement: Probe
-    force: Array | Callable[[Fields], Array]
+    force: Array | Callable[[LoopFields], Array]
 
 
 def loop_of_ends(problem: Problem, title: str) -> Loop:
@@ -54,7 +54,7 @@ def loop_of_ends(problem: Problem, title: str) -> Loop:
     count = len(law.rows)
     weights = np.full(count, 1.0 / count)
     ends = Probe(problem.row_dofs[law.rows], weights)
-    force: Array | Callable[[Fields], Array]
+    force: Array | Callable[[LoopFields], Array]
     if pulled is not None:
         force = weights @ pulled.values * problem.scales.force
     else:

@@ -19,7 +19,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices, as_slice
 from solver.discrete.inside import Inside
 from solver.discrete.substructure import Substructure
-from solver.laws import Contact, Given, Interface
+from solver.laws import Contact, Interface, RowValues
 
 
 @dataclass(frozen=True)
@@ -116,13 +116,13 @@ class Problem:
         return weights
 
     @cached_property
-    def given_forces(self) -> list[Given]:
+    def given_forces(self) -> list[RowValues]:
         """Forces that are prescribed, interface by interface."""
         found = (law.given_force for law in self.interfaces.values())
         return [one for one in found if one is not None]
 
     @cached_property
-    def given_displacements(self) -> list[Given]:
+    def given_displacements(self) -> list[RowValues]:
         """Displacements that are prescribed, interface by interface."""
         found = (law.given_displacement for law in self.interfaces.values())
         return [one for one in found if one is not None]

@@ -13,7 +13,7 @@ from solver.latin.solve import Record, Solution, judged, record, solve
 from solver.latin.stages import PGD, Full, References
 from solver.latin.status import Ending, Status
 from solver.latin.status_step import StatusStep
-from solver.latin.stop import StopRules, Verdict
+from solver.latin.stop import Decision, StopRules
 
 __all__ = [
     "PGD",
@@ -22,6 +22,7 @@ __all__ = [
     "Auto",
     "Checkpoint",
     "Criterion",
+    "Decision",
     "Ending",
     "FromStatus",
     "Full",
@@ -38,7 +39,6 @@ __all__ = [
     "Status",
     "StatusStep",
     "StopRules",
-    "Verdict",
     "iterations",
     "judged",
     "record",

@@ -17,7 +17,7 @@ DENSE_UP_TO = 50
 """Macro unknowns up to which one dense product is no slower than the sparse factor (measured)."""
 
 
-class Response(Protocol):
+class BoundaryResponse(Protocol):
     """What the coarse problem asks of a substructure's boundary response."""
 
     def force_rows(self, rows: Indices) -> Array:
@@ -33,7 +33,7 @@ class Member(Protocol):
     body: Array | None
 
     @property
-    def response(self) -> Response:
+    def response(self) -> BoundaryResponse:
         """The boundary response that the group shares."""
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.iterate import Course
+from solver.latin.iterate import UpdateProgress
 from solver.refusal import check_range
 
 
@@ -23,7 +23,7 @@ class ConstantDirection:
     """
 
     is_due = False
-    course: Course | None = None
+    course: UpdateProgress | None = None
 
     def __init__(self, k: Array) -> None:
         self.k = k
@@ -78,7 +78,7 @@ class SearchDirection(ABC):
         k.flags.writeable = False
         return k
 
-    def at_work(self, problem: Problem, course: Course | None) -> ConstantDirection:
+    def at_work(self, problem: Problem, course: UpdateProgress | None) -> ConstantDirection:
         """Give k of a problem to a run."""
         return ConstantDirection(self.of(problem))
 

@@ -10,7 +10,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.direction import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
-from solver.latin.iterate import Course
+from solver.latin.iterate import UpdateProgress
 
 SETTLED, CALM = 0.1, 25
 """The status has settled when no larger share of all points and instants than this changed between
@@ -46,7 +46,7 @@ class FromStatus:
         """Give k of every row at the start, shape (n_rows,), scaled, read-only."""
         return self.first.of(problem)
 
-    def at_work(self, problem: Problem, course: Course | None) -> DirectionUpdate:
+    def at_work(self, problem: Problem, course: UpdateProgress | None) -> DirectionUpdate:
         """Give k of a problem to a run, on a course that a checkpoint may remember."""
         return DirectionUpdate(problem, self.of(problem), course)
 
@@ -71,13 +71,13 @@ class DirectionUpdate:
         From a checkpoint, if the run goes on from one.
     """
 
-    def __init__(self, problem: Problem, k: Array, course: Course | None) -> None:
+    def __init__(self, problem: Problem, k: Array, course: UpdateProgress | None) -> None:
         self._problem = problem
         self._first = k
         self._gives_way = any(
             law.tangential.softness is not None for law in problem.rubbing.values()
         )
-        self.course = course or Course("first", k)
+        self.course = course or UpdateProgress("first", k)
 
     @property
     def k(self) -> Array:
@@ -129,15 +129,17 @@ class DirectionUpdate:
         violation = behaviour_of(self._problem, displacement, force)
         kept = (displacement, force)
         if course.status is not None:
-            self.course = Course("updated", self._updated(course), kept=kept, violation=violation)
+            self.course = UpdateProgress(
+                "updated", self._updated(course), kept=kept, violation=violation
+            )
             return kept
         if violation < course.violation:
             self.course = replace(course, count=0, kept=kept, violation=violation)
             return None
-        self.course = Course("returned", self._first)
+        self.course = UpdateProgress("returned", self._first)
         return course.kept
 
-    def _updated(self, course: Course) -> Array:
+    def _updated(self, course: UpdateProgress) -> Array:
         assert course.status is not None
         share = np.count_nonzero(course.status, axis=1) / course.status.shape[1]
         k, first = automatic(self._problem), 0

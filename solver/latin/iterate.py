@@ -21,7 +21,7 @@ by, so that an early iterate shows where it slips."""
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class UpdateProgress:
     """How far the update of k has come.
 
     Attributes
@@ -80,7 +80,7 @@ class Checkpoint:
     references: ReferencePoints | None = None
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
-    course: Course | None = None
+    course: UpdateProgress | None = None
 
     @property
     def nbytes(self) -> int:
@@ -139,7 +139,7 @@ class Iterate:
     local_error: float = 0.0
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
-    course: Course | None = None
+    course: UpdateProgress | None = None
     residual: float | None = None
     force: Array | None = None
 

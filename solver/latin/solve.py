@@ -12,7 +12,7 @@ from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
 from solver.latin.method import Latin
 from solver.latin.status import CANCELLED, Ending, Status
-from solver.latin.stop import StopRules, Verdict
+from solver.latin.stop import Decision, StopRules
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
 
@@ -67,7 +67,7 @@ class Solution:
 
 
 def record(
-    iterate: Iterate, verdict: Verdict, distance: Distance | None, *, watch: bool = True
+    iterate: Iterate, verdict: Decision, distance: Distance | None, *, watch: bool = True
 ) -> Record:
     """Gather the scalars of an iterate; what the rules did not need is off the run's clock.
 
@@ -109,7 +109,7 @@ def judged(
     spent: float = 0.0,
     *,
     resumable: bool = True,
-) -> Iterator[tuple[Iterate, Verdict]]:
+) -> Iterator[tuple[Iterate, Decision]]:
     """Iterate, and judge every iterate; where a status step holds, the last one is its solution.
 
     Parameters

@@ -37,7 +37,7 @@ _CERTIFIED = (
 
 
 @dataclass(frozen=True, eq=False)
-class Verdict:
+class Decision:
     """What the stop rules make of an iterate.
 
     Attributes
@@ -63,11 +63,11 @@ class Verdict:
     finished: Iterate | None = None
 
 
-def proven(finish: Iterate, certificate: Certificate | None, seconds: float) -> Verdict:
+def proven(finish: Iterate, certificate: Certificate | None, seconds: float) -> Decision:
     """Say of an iterate that is a certified solution that the run ends with it."""
     residual = finish.residual or 0.0
     status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
-    return Verdict(seconds, math.nan, math.nan, residual, status, certificate)
+    return Decision(seconds, math.nan, math.nan, residual, status, certificate)
 
 
 class StopRules:
@@ -101,27 +101,27 @@ class StopRules:
         self._is_first = True
         self.seconds = spent
 
-    def judge(self, iterate: Iterate) -> Verdict:
+    def judge(self, iterate: Iterate) -> Decision:
         """Say whether the run ends after an iterate, and how."""
         began = time.perf_counter()
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             seconds = self._billed(iterate, began)
-            return Verdict(seconds, math.nan, math.nan, math.nan, _diverged(iterate.number))
+            return Decision(seconds, math.nan, math.nan, math.nan, _diverged(iterate.number))
         numbers, status = self._ending(iterate)
         certificate = self._estimate.certificate
         indicator, behaviour = numbers.known("indicator"), numbers.known("behaviour")
         seconds = self._billed(iterate, began)
         if certificate is None or not self._may_finish:
             estimated = numbers.known("estimated_error")
-            return Verdict(seconds, indicator, behaviour, estimated, status, certificate)
+            return Decision(seconds, indicator, behaviour, estimated, status, certificate)
         began = time.perf_counter()
         estimated = certificate.distance.of_friction_force(iterate)
         number, spent = iterate.number + 1, iterate.seconds
         finish = finished(iterate.problem, iterate.k, certificate, number, spent)
         self._billed(iterate, began)
-        return Verdict(seconds, indicator, behaviour, estimated, None, certificate, finish)
+        return Decision(seconds, indicator, behaviour, estimated, None, certificate, finish)
 
-    def close(self, finish: Iterate) -> Verdict:
+    def close(self, finish: Iterate) -> Decision:
         """Judge the certified solution that ends a run."""
         verdict = proven(finish, self._estimate.certificate, finish.seconds + self.seconds)
         behaviour = behaviour_indicator(finish)

@@ -6,7 +6,7 @@ from solver.laws.compliant import Compliant
 from solver.laws.contact import OPEN, Contact
 from solver.laws.coulomb import Coulomb, Sliders
 from solver.laws.frictionless import Frictionless
-from solver.laws.interface import Component, Given, Interface
+from solver.laws.interface import Component, Interface, RowValues
 from solver.laws.perfect import Perfect
 from solver.laws.slack_spring import SlackSpring
 from solver.laws.tangential import FrictionLaw, Tangential
@@ -22,11 +22,11 @@ __all__ = [
     "Dirichlet",
     "FrictionLaw",
     "Frictionless",
-    "Given",
     "Interface",
     "Neumann",
     "Perfect",
     "Rod",
+    "RowValues",
     "SlackSpring",
     "Sliders",
     "Tangential",

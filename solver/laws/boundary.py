@@ -8,7 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.laws.interface import Gaps, Given, Interface, MacroPart, Region, Rule, beyond, squared
+from solver.laws.interface import (
+    Gaps,
+    Interface,
+    MacroPart,
+    Region,
+    RowValues,
+    Rule,
+    beyond,
+    squared,
+)
 
 
 @dataclass(frozen=True)
@@ -41,9 +50,9 @@ class Dirichlet(Interface):
         return Gaps(displacement=squared(missed))
 
     @property
-    def given_displacement(self) -> Given:
+    def given_displacement(self) -> RowValues:
         """The displacement."""
-        return Given(self.rows, self.displacement)
+        return RowValues(self.rows, self.displacement)
 
     @property
     def acts(self) -> bool:
@@ -88,9 +97,9 @@ class Neumann(Interface):
         yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
 
     @property
-    def given_force(self) -> Given:
+    def given_force(self) -> RowValues:
         """The force."""
-        return Given(self.rows, self.force)
+        return RowValues(self.rows, self.force)
 
     @property
     def acts(self) -> bool:

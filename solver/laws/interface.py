@@ -38,7 +38,7 @@ class Component(NamedTuple):
         return (self.above,) if self.below is None else (self.above, self.below)
 
 
-class Given(NamedTuple):
+class RowValues(NamedTuple):
     """What is given at rows.
 
     Attributes
@@ -159,12 +159,12 @@ class Interface(ABC):
         return iter(())
 
     @property
-    def given_force(self) -> Given | None:
+    def given_force(self) -> RowValues | None:
         """Forces that are prescribed here, or None."""
         return None
 
     @property
-    def given_displacement(self) -> Given | None:
+    def given_displacement(self) -> RowValues | None:
         """Displacements that are prescribed here, or None."""
         return None
 

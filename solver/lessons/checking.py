@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from solver.checked import dump
-from solver.lessons.lesson import Checkpoint, Lesson, Verdict
+from solver.lessons.lesson import Claim, EndingClaim, Lesson
 from solver.study.finished import FinishedRun, finished_run
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class CheckedClaim:
     """A checkpoint, and what was measured, in the unit of its quantity.
 
     Attributes
@@ -21,7 +21,7 @@ class Outcome:
         The same at the instant at which the plots of the lesson stand, for what is of one instant.
     """
 
-    checkpoint: Checkpoint
+    checkpoint: Claim
     value: float
     seen: float | None = None
 
@@ -36,7 +36,7 @@ class Outcome:
 class Said:
     """A verdict, and what the status of the run says."""
 
-    checkpoint: Verdict
+    checkpoint: EndingClaim
     words: str
 
     @property
@@ -45,11 +45,11 @@ class Said:
         return self.checkpoint.says in self.words
 
 
-def check(lesson: Lesson) -> Iterator[Outcome | Said]:
+def check(lesson: Lesson) -> Iterator[CheckedClaim | Said]:
     """Measure what a lesson claims, in order; checkpoints of equal settings share a run."""
     wanted: defaultdict[str, set[str | None]] = defaultdict(set)
     for one in lesson.checkpoints:
-        reads = one.reading.quantity.reads if isinstance(one, Checkpoint) else None
+        reads = one.reading.quantity.reads if isinstance(one, Claim) else None
         wanted[dump(one.settings)].add(reads)
     runs: dict[str, FinishedRun] = {}
     for one in lesson.checkpoints:
@@ -62,9 +62,9 @@ def check(lesson: Lesson) -> Iterator[Outcome | Said]:
         yield _outcome(one, runs[key], lesson.instant)
 
 
-def _outcome(one: Checkpoint | Verdict, run: FinishedRun, instant: float) -> Outcome | Said:
-    if isinstance(one, Verdict):
+def _outcome(one: Claim | EndingClaim, run: FinishedRun, instant: float) -> CheckedClaim | Said:
+    if isinstance(one, EndingClaim):
         return Said(one, run.solution.status.advice)
     taken = one.reading.quantity.at_instant
     place = round(instant * (run.problem.n_instants - 1))
-    return Outcome(one, one.reading(run), None if taken is None else taken(run, place))
+    return CheckedClaim(one, one.reading(run), None if taken is None else taken(run, place))

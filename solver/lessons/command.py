@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from solver.lessons.checking import Outcome, Said, check
+from solver.lessons.checking import CheckedClaim, Said, check
 from solver.lessons.reading import lesson_from_file
 
 
@@ -29,7 +29,7 @@ def _lesson(chosen: argparse.Namespace) -> int:
     return int(missed > 0)
 
 
-def line(outcome: Outcome | Said) -> str:
+def line(outcome: CheckedClaim | Said) -> str:
     """Say in a line what was claimed, measured and expected."""
     sign = "+" if outcome.holds else "-"
     if isinstance(outcome, Said):

@@ -51,7 +51,7 @@ class Expected:
 
 
 @dataclass(frozen=True, eq=False)
-class Checkpoint:
+class Claim:
     """A claim of a lesson, and how it is tested.
 
     Attributes
@@ -71,7 +71,7 @@ class Checkpoint:
 
 
 @dataclass(frozen=True, eq=False)
-class Verdict:
+class EndingClaim:
     """A claim of a lesson about how a run ends: words that its status has to say."""
 
     claim: str
@@ -123,7 +123,7 @@ class Lesson:
     views: tuple[str, ...]
     text: tuple[str, ...]
     explanation: tuple[str, ...]
-    checkpoints: tuple[Checkpoint | Verdict, ...]
+    checkpoints: tuple[Claim | EndingClaim, ...]
     instant: float
     interface: str
 

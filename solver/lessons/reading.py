@@ -14,10 +14,10 @@ from solver.disk import read_text, why
 from solver.files import scene_settings
 from solver.lessons.lesson import (
     PLACEHOLDER,
-    Checkpoint,
+    Claim,
+    EndingClaim,
     Expected,
     Lesson,
-    Verdict,
     kind_of_place,
 )
 from solver.settings import Settings
@@ -176,7 +176,7 @@ def _paragraphs(text: str, controls: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(" ".join(part.split()) for part in text.split("\n\n") if part.strip())
 
 
-def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Checkpoint | Verdict]:
+def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Claim | EndingClaim]:
     if not values:
         raise SettingError("checkpoints", values, "at least one", "say what the lesson claims")
     for number, entry in enumerate(values, start=1):
@@ -186,16 +186,16 @@ def _checkpoints(values: list[Any], settings: Settings) -> Iterator[Checkpoint |
             yield _checkpoint(entry, settings)
 
 
-def _checkpoint(entry: dict[str, Any], settings: Settings) -> Checkpoint | Verdict:
+def _checkpoint(entry: dict[str, Any], settings: Settings) -> Claim | EndingClaim:
     if "says" in entry:
         _check_keys(entry, OF_VERDICT, optional=("settings",))
     else:
         _check_keys(entry, OF_CHECKPOINT, optional=("settings", "tolerance"))
     claim, own = entry["claim"], settings.replace(**entry.get("settings", {}))
     if "says" in entry:
-        return Verdict(claim, own, entry["says"])
+        return EndingClaim(claim, own, entry["says"])
     expected = _expected(entry["expected"], entry.get("tolerance"))
-    return Checkpoint(claim, own, reading(entry["quantity"]), expected)
+    return Claim(claim, own, reading(entry["quantity"]), expected)
 
 
 def _expected(value: Any, tolerance: float | None) -> Expected:

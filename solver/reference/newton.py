@@ -21,7 +21,7 @@ from solver.reference.condensation import Condensation
 from solver.reference.contact_states import states_at
 from solver.reference.response import Response
 from solver.reference.starts import Starts
-from solver.reference.states import HELD, Sides, States, Step
+from solver.reference.states import HELD, Increment, Sides, States
 from solver.reference.unloading import unload
 
 NEWTON_LIMIT = 30
@@ -88,7 +88,7 @@ class Newton:
         self._motion += step.motion[:, 0]
         return Marched(slip, self._force, step.strained[:, 0], step.motion[:, 0])
 
-    def _together(self, sides: Sides, instant: int) -> Step:
+    def _together(self, sides: Sides, instant: int) -> Increment:
         """Solve an instant until jumps that depend on each other are together."""
         condensed, stresses = self._condensed, self._condensed.stresses
         done, from_guess = self.response.solutions, self._starts.from_guess
@@ -118,7 +118,7 @@ class Newton:
         gap = self._rules.gap[self._rules.normal]
         return not self._condensed.load[:, : instant + 1].any() and bool(np.all(gap >= 0.0))
 
-    def _solved(self, sides: Sides, instant: int) -> tuple[States, Step] | None:
+    def _solved(self, sides: Sides, instant: int) -> tuple[States, Increment] | None:
         """Find the states of the jumps and the step, or None."""
         guesses = [self._states]
         if self._guesses is not None:
@@ -134,7 +134,7 @@ class Newton:
         states = unload(self.response, self._rules, sides)
         return None if states is None else self._iterate(states, sides)
 
-    def _iterate(self, states: States, sides: Sides) -> tuple[States, Step] | None:
+    def _iterate(self, states: States, sides: Sides) -> tuple[States, Increment] | None:
         """Seek the states from a guess, or give None where they cycle."""
         seen = set()
         for _ in range(NEWTON_LIMIT):
@@ -149,7 +149,7 @@ class Newton:
                 break
         return None
 
-    def _corrected(self, states: States, step: Step, sides: Sides) -> States:
+    def _corrected(self, states: States, step: Increment, sides: Sides) -> States:
         """Give the states that jump and force call for; what is up to rounding calls for none."""
         rules, response, force = self._rules, self.response, step.force[:, 0]
         inside = response.inside(self._strained + step.strained[:, 0])

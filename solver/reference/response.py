@@ -13,7 +13,7 @@ from solver.arrays import ROUNDING, Array, Indices
 from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors
-from solver.reference.states import HELD, Sides, States, Step
+from solver.reference.states import HELD, Increment, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is free."""
@@ -54,7 +54,7 @@ class Response:
         self.solutions = 0
         self.unbalanced, self.turned, self.singular = 0.0, False, False
 
-    def __call__(self, states: States, sides: Sides) -> Step:
+    def __call__(self, states: States, sides: Sides) -> Increment:
         """Solve for the step from the instant before."""
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
@@ -80,7 +80,7 @@ class Response:
         carried[self._sprung] = force[rows[self._sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))
         force[rows] = carried
-        return Step(self._ends(strained, motion, force, sides.held), force, strained, motion)
+        return Increment(self._ends(strained, motion, force, sides.held), force, strained, motion)
 
     def _forces(self, strained: Array, load: Array, others: Array) -> Array:
         """Give the forces of all jumps, those that follow from others given."""

@@ -52,7 +52,7 @@ class Sides:
     held: Array
 
 
-class Step(NamedTuple):
+class Increment(NamedTuple):
     """What an instant adds to the one before, and the forces at its end.
 
     Attributes

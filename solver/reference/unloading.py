@@ -35,7 +35,7 @@ def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
     response, rules, sides
         The instant, one column.
     """
-    walk = _Walk(response, rules, sides)
+    walk = _PathFollower(response, rules, sides)
     for _ in range(CHANGES * len(rules.gap)):
         if walk.step():
             return walk.states
@@ -44,7 +44,7 @@ def unload(response: Response, rules: Rules, sides: Sides) -> States | None:
     return None
 
 
-class _Walk:
+class _PathFollower:
     """Where the walk is: states, lambda (`_level`), and whether it goes up or down."""
 
     def __init__(self, response: Response, rules: Rules, sides: Sides) -> None:

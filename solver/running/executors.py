@@ -15,8 +15,8 @@ from functools import partial
 from typing import Any
 
 from solver.definitions import SettingError
+from solver.running.calls import Call, ProcessSlot
 from solver.running.pool import Pool
-from solver.running.seats import Call, Seat
 
 __all__ = ["FORMS", "VARIABLE", "Pool", "Processes", "executor_of_the_server", "opened"]
 VARIABLE = "SLIPFRONT_EXECUTOR"
@@ -94,22 +94,22 @@ class Processes(Pool):
 
     def _live(self) -> None:
         """Do calls, one after the other, in a process that lasts as long as it is sound."""
-        seat = Seat(self._limit)
+        slot = ProcessSlot(self._limit)
         while (call := self._calls.get()) is not None:
             if call.set_running_or_notify_cancel():
                 self._at_work.add(call)
                 if self._ends_all:
                     call.cancel()
                 try:
-                    result = seat.do(call)
+                    result = slot.do(call)
                 except Exception as trouble:
                     call.set_exception(trouble)
                 else:
                     call.set_result(result)
                 self._at_work.discard(call)
                 if not self._lasting:
-                    seat.clear()
-        seat.clear()
+                    slot.clear()
+        slot.clear()
 
 
 def processors() -> int:

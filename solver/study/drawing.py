@@ -27,7 +27,7 @@ from solver.arrays import Array
 from solver.disk import write
 from solver.study.figure_data import HUES, Line, Panel, PaperFigure
 from solver.study.figure_page import TITLE, WORDS, figure_sections
-from solver.study.page import Plot, Section, page
+from solver.study.page import PlotSection, Section, page
 from solver.study.sweep.chart import Map
 
 COLORS = ("#404040", *HUES)
@@ -86,13 +86,13 @@ def write_page(file: Path, title: str, report: Sequence[Section]) -> list[bytes]
     OSError
         When the file cannot be written.
     """
-    images = {plot: png(plot) for plot in report if isinstance(plot, Plot)}
+    images = {plot: png(plot) for plot in report if isinstance(plot, PlotSection)}
     parts = [one if isinstance(one, str) else inline(images[one], one.heading) for one in report]
     write(file, page(title, parts))
     return list(images.values())
 
 
-def png(plot: Plot) -> bytes:
+def png(plot: PlotSection) -> bytes:
     """Draw panels side by side under their heading, as a PNG."""
     panels = plot.panels
     width = WIDTH * max(len(panels), 1.5)
@@ -128,7 +128,7 @@ def _small(sheet: Figure) -> bytes:
 
 def chart_png(chart: Panel | Map) -> bytes:
     """Draw a chart of a sweep, as a PNG."""
-    return png(Plot("", [chart])) if isinstance(chart, Panel) else map_png(chart)
+    return png(PlotSection("", [chart])) if isinstance(chart, Panel) else map_png(chart)
 
 
 def map_png(chart: Map) -> bytes:

@@ -18,7 +18,7 @@ Line = Literal["solid", "dashed", "dotted", "points"]
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class PanelAxis:
     """A quantity, its unit (empty for a pure number), and whether decades are evenly spaced.
 
     Attributes
@@ -47,7 +47,7 @@ class Axis:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class PanelCurve:
     """One line of a panel.
 
     Attributes
@@ -74,9 +74,9 @@ class Panel:
     """One pair of axes with its curves."""
 
     title: str
-    x: Axis
-    y: Axis
-    curves: tuple[Curve, ...]
+    x: PanelAxis
+    y: PanelAxis
+    curves: tuple[PanelCurve, ...]
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from solver.study.figure_data import PaperFigure
-from solver.study.page import Plot, Section
+from solver.study.page import PlotSection, Section
 
 TITLE = "The paper's figures, drawn again"
 WORDS = """<p>Computed by Slipfront. The paper prints curves without numbers; each figure here
@@ -21,7 +21,7 @@ def figure_sections(figure: PaperFigure) -> list[Section]:
     )
     return [
         f"<h2>{escape(heading)}</h2>",
-        Plot(heading, figure.panels),
+        PlotSection(heading, figure.panels),
         f"<p><b>The paper's claim:</b> {escape(figure.claim)} <b>Here it {figure.verdict}.</b></p>"
         f'\n<ul>\n{findings}\n</ul>\n<p class="caption">{escape(figure.caption)}</p>',
     ]

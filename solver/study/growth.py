@@ -17,7 +17,7 @@ from solver.study.exponent import Exponent, exponent_of
 from solver.study.finished import BROKEN, REFUSED
 from solver.study.progress import Tell, silent
 from solver.study.quantities import reading
-from solver.study.sweep.plan import Axis, Plan
+from solver.study.sweep.plan import Plan, Varied
 from solver.study.sweep.point import run_point
 
 MEASURED = (
@@ -84,7 +84,7 @@ def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
 
 def _swept(form: Settings, setting: str, sizes: tuple[int, ...]) -> Iterator[Size]:
     """Measure a form of LATIN, one run after the other: others beside them would slow them down."""
-    plan = Plan(form.replace(**LONG), (Axis(setting, sizes, logarithmic=True),), READINGS)
+    plan = Plan(form.replace(**LONG), (Varied(setting, sizes, logarithmic=True),), READINGS)
     for number, size in enumerate(sizes):
         row = run_point(plan, number)
         if row.ending not in (REFUSED, BROKEN):

@@ -13,14 +13,14 @@ from solver.study.figure_data import Panel
 
 
 @dataclass(frozen=True, eq=False)
-class Plot:
+class PlotSection:
     """Panels side by side, and words for those who cannot see them."""
 
     heading: str
     panels: Sequence[Panel]
 
 
-Section = str | Plot
+Section = str | PlotSection
 """Words and tables are HTML."""
 PAGE = """<!DOCTYPE html>
 <html lang="en">

@@ -13,7 +13,7 @@ from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, front_decay
 from solver.reference.distance import Fields
 from solver.study import paper_findings as findings
-from solver.study.figure_data import Axis, Curve, Line, Panel, PaperFigure
+from solver.study.figure_data import Line, Panel, PanelAxis, PanelCurve, PaperFigure
 from solver.study.paper_runs import EARLY, LONG, PaperRuns
 
 LOAD = (
@@ -24,8 +24,8 @@ SHOWN = 300
 """Iterations that Fig. 3 shows."""
 INSTANTS = (0.5, 1.0)
 """Instants of Fig. 4, s."""
-PLACE = Axis("Position x", "m")
-MODE = Axis("Space mode", "1/√m")
+PLACE = PanelAxis("Position x", "m")
+MODE = PanelAxis("Space mode", "1/√m")
 
 
 def paper_figures(runs: PaperRuns | None = None) -> list[PaperFigure]:
@@ -37,12 +37,14 @@ def paper_figures(runs: PaperRuns | None = None) -> list[PaperFigure]:
 def figure_3(runs: PaperRuns) -> PaperFigure:
     """Draw the LATIN indicator, mono- and multiscale, with the true errors beside it."""
     multi, mono = runs.multiscale.records, runs.monoscale.records
-    iterations = Axis("Iteration")
+    iterations = PanelAxis("Iteration")
     numbers = np.arange(1.0, SHOWN + 1.0)
 
-    def curves(name: str, word: str, line: Line) -> list[Curve]:
+    def curves(name: str, word: str, line: Line) -> list[PanelCurve]:
         return [
-            Curve(f"{word}, {version}", numbers, findings.column(records, name)[:SHOWN], hue, line)
+            PanelCurve(
+                f"{word}, {version}", numbers, findings.column(records, name)[:SHOWN], hue, line
+            )
             for hue, (version, records) in enumerate(
                 {"multiscale": multi, "monoscale": mono}.items(), start=1
             )
@@ -51,13 +53,13 @@ def figure_3(runs: PaperRuns) -> PaperFigure:
     indicator = Panel(
         "What the method computes",
         iterations,
-        Axis("LATIN indicator η", logarithmic=True),
+        PanelAxis("LATIN indicator η", logarithmic=True),
         tuple(curves("indicator", "η", "dashed")),
     )
     errors = Panel(
         "What is true",
         iterations,
-        Axis("Relative error", logarithmic=True),
+        PanelAxis("Relative error", logarithmic=True),
         (
             *curves("error_force", "friction force", "solid"),
             *curves("error_displacement", "displacement", "dotted"),
@@ -100,9 +102,9 @@ def figure_4(runs: PaperRuns) -> PaperFigure:
         Panel(
             f"t = {instant:g} s",
             PLACE,
-            Axis("Friction force per length", "N/m"),
+            PanelAxis("Friction force per length", "N/m"),
             tuple(
-                Curve(label, law.positions[1:], force[:, moment] / lengths, hue)
+                PanelCurve(label, law.positions[1:], force[:, moment] / lengths, hue)
                 for hue, (label, force) in enumerate(forces.items())
             ),
         )
@@ -137,16 +139,16 @@ def figure_5(runs: PaperRuns) -> PaperFigure:
     noise = runs.five.records[-1].error_force
     orders = np.arange(1.0, len(found[-1].values) + 1.0)
     curves = [
-        Curve(f"substructure {number}", orders, each.values / largest, number, "points")
+        PanelCurve(f"substructure {number}", orders, each.values / largest, number, "points")
         for number, each in enumerate(found, start=1)
     ]
-    front = Curve("1/(2n − 1)", orders, front_decay(len(orders)), 0, "dotted")
-    error = Curve("error of the solution", orders, np.full(len(orders), noise), 0, "dashed")
+    front = PanelCurve("1/(2n − 1)", orders, front_decay(len(orders)), 0, "dotted")
+    error = PanelCurve("error of the solution", orders, np.full(len(orders), noise), 0, "dashed")
     panels = tuple(
         Panel(
             title,
-            Axis("Mode n", whole=True),
-            Axis("Singular value / largest", logarithmic=True, limits=limits),
+            PanelAxis("Mode n", whole=True),
+            PanelAxis("Singular value / largest", logarithmic=True, limits=limits),
             (*shown, front, *below),
         )
         for title, limits, shown, below in (
@@ -182,11 +184,11 @@ def figure_6(runs: PaperRuns) -> PaperFigure:
     panels = tuple(
         Panel(
             f"Mode {order + 1}",
-            Axis("Position in the substructure", "m"),
-            Axis(MODE.quantity, MODE.unit, limits=(-top, top)),
+            PanelAxis("Position in the substructure", "m"),
+            PanelAxis(MODE.quantity, MODE.unit, limits=(-top, top)),
             (
-                Curve("substructure 4", inside, fourth.space_modes[:, order], 4),
-                Curve("substructure 5", inside, turned[:, order], 5, "dashed"),
+                PanelCurve("substructure 4", inside, fourth.space_modes[:, order], 4),
+                PanelCurve("substructure 5", inside, turned[:, order], 5, "dashed"),
             ),
         )
         for order in (0, 2, 4)
@@ -214,7 +216,7 @@ def figure_7(runs: PaperRuns) -> PaperFigure:
         PLACE,
         MODE,
         tuple(
-            Curve(f"mode {order}", found.positions, found.space_modes[:, order - 1], order)
+            PanelCurve(f"mode {order}", found.positions, found.space_modes[:, order - 1], order)
             for order in (1, 2, 3)
         ),
     )
@@ -275,15 +277,17 @@ def _orthonormalised(modes: Array, weights: Array) -> Array:
     return found
 
 
-def _beside_svd(exact: Decomposition, modes: Array) -> list[Curve]:
+def _beside_svd(exact: Decomposition, modes: Array) -> list[PanelCurve]:
     """Draw modes at length one, turned to the side of the SVD modes that are dotted."""
     turned = modes * np.sign(exact.correlations(modes)) / np.sqrt(exact.space_weights @ modes**2)
     curves = []
     for place in range(modes.shape[1]):
         order = place + 1
         curves += [
-            Curve(f"PGD {order}", exact.positions, turned[:, place], order),
-            Curve(f"SVD {order}", exact.positions, exact.space_modes[:, place], order, "dotted"),
+            PanelCurve(f"PGD {order}", exact.positions, turned[:, place], order),
+            PanelCurve(
+                f"SVD {order}", exact.positions, exact.space_modes[:, place], order, "dotted"
+            ),
         ]
     return curves
 

@@ -15,7 +15,7 @@ from solver.latin import Record
 from solver.reduction.svd import Decomposition, against_front
 from solver.reference.distance import Fields
 from solver.study.figure_data import Finding
-from solver.study.paper_runs import EARLY, Run
+from solver.study.paper_runs import EARLY, PaperRun
 
 GAIN = 2.0
 """Factor from which the multiscale version counts as much better."""
@@ -239,7 +239,7 @@ def correlation(exact: Decomposition, modes: Array, name: str, words: str) -> Fi
     )
 
 
-def reduced_errors(run: Run, displacement: Decomposition, force: Decomposition) -> Finding:
+def reduced_errors(run: PaperRun, displacement: Decomposition, force: Decomposition) -> Finding:
     """Give the size of the bases, and what they miss, at the end of a run with PGD.
 
     The decompositions are those of the last substructure, to compare its basis with.

@@ -26,7 +26,7 @@ REDUCED = 100
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class PaperRun:
     """A run by its records and two of its iterates.
 
     Attributes
@@ -53,22 +53,22 @@ class PaperRuns:
         return incremental(discretise(self.settings))
 
     @cached_property
-    def multiscale(self) -> Run:
+    def multiscale(self) -> PaperRun:
         """Ten substructures with the coarse problem."""
         return self._run(substructures=10, multiscale=True, tolerance=1e-30, max_iterations=LONG)
 
     @cached_property
-    def monoscale(self) -> Run:
+    def monoscale(self) -> PaperRun:
         """Ten substructures without it."""
         return self._run(substructures=10, multiscale=False, tolerance=1e-30, max_iterations=LONG)
 
     @cached_property
-    def five(self) -> Run:
+    def five(self) -> PaperRun:
         """Five substructures, converged."""
         return self._run(substructures=5, tolerance=CONVERGED, max_iterations=10 * LONG)
 
     @cached_property
-    def five_reduced(self) -> Run:
+    def five_reduced(self) -> PaperRun:
         """Five substructures with the PGD in the linear stage, at its default settings."""
         return self._run(substructures=5, linear_stage="pgd", max_iterations=REDUCED)
 
@@ -82,11 +82,11 @@ class PaperRuns:
         """The converged displacement, decomposed in each of five substructures."""
         return decompositions(self.five.last, InterfaceField.DISPLACEMENT)
 
-    def _run(self, **changes: object) -> Run:
+    def _run(self, **changes: object) -> PaperRun:
         settings = self.settings.replace(**changes)
         problem: Problem = discretise(settings)
         distance = distance_to(self.reference, problem)
         early = solve(problem, method_of(settings.replace(max_iterations=EARLY)), distance=distance)
         checkpoint = early.iterate.checkpoint
         late = solve(problem, method_of(settings), distance=distance, start=checkpoint)
-        return Run([*early.records, *late.records], early.iterate, late.iterate)
+        return PaperRun([*early.records, *late.records], early.iterate, late.iterate)

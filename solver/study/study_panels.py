@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.study.error_against_time import INCREMENTAL, ErrorCurve, Study
-from solver.study.figure_data import HUES, Axis, Curve, Line, Panel
+from solver.study.figure_data import HUES, Line, Panel, PanelAxis, PanelCurve
 from solver.study.growth import MEASURED, Growth
 from solver.study.peers import PEERS
 
@@ -40,21 +40,21 @@ def error_panels(study: Study) -> list[Panel]:
         panels.append(
             Panel(
                 title,
-                Axis("Time", "s", logarithmic=True),
-                Axis("Relative error", logarithmic=True, limits=SPAN),
+                PanelAxis("Time", "s", logarithmic=True),
+                PanelAxis("Relative error", logarithmic=True, limits=SPAN),
                 tuple(curves),
             )
         )
     return panels
 
 
-def _curve(course: ErrorCurve, errors: Array, hue: int) -> Curve:
+def _curve(course: ErrorCurve, errors: Array, hue: int) -> PanelCurve:
     """Give a method's line: a vertical one where the solver itself is the reference."""
     if course.kind == "incremental":
         seconds = np.repeat(course.seconds, 2)
-        return Curve(course.method, seconds, np.array(SPAN), 0, "dashed")
+        return PanelCurve(course.method, seconds, np.array(SPAN), 0, "dashed")
     line: Line = "solid" if course.kind == "latin" else "points"
-    return Curve(course.method, course.seconds, np.maximum(errors, SMALLEST), hue, line)
+    return PanelCurve(course.method, course.seconds, np.maximum(errors, SMALLEST), hue, line)
 
 
 def growth_panels(found: Sequence[Growth]) -> list[Panel]:
@@ -63,10 +63,10 @@ def growth_panels(found: Sequence[Growth]) -> list[Panel]:
     return [
         Panel(
             setting.capitalize(),
-            Axis(f"Number of {setting}", logarithmic=True, whole=True),
-            Axis("Time", "s", logarithmic=True),
+            PanelAxis(f"Number of {setting}", logarithmic=True, whole=True),
+            PanelAxis("Time", "s", logarithmic=True),
             tuple(
-                Curve(
+                PanelCurve(
                     one.method,
                     np.array([float(size.size) for size in one.sizes]),
                     np.array([size.seconds for size in one.sizes]),

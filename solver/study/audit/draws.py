@@ -15,7 +15,7 @@ import numpy as np
 import param
 from numpy.random import Generator
 
-from solver.definitions import Curve, Parameter, SettingError, about
+from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.audit.random_loads import LOADS
@@ -110,7 +110,7 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     loads = LOADS.get(kind.scene)
     sizes = loads({**usual, **values}, generator) if loads is not None else {}
     for name, size in sizes.items():
-        if isinstance(definitions[name], Curve):
+        if isinstance(definitions[name], CurveParameter):
             if generator.random() < CHANGED:
                 values[name] = _path(size, values.get("duration", 1.0), generator)
         else:
@@ -163,7 +163,7 @@ def _stretch(
 
 def _drawn(name: str, definition: Any, generator: Generator) -> object:
     """Draw a value by the definition alone."""
-    if isinstance(definition, Curve):
+    if isinstance(definition, CurveParameter):
         if definition.abscissa == "position" and generator.random() < 0.4:
             return _profile(name, generator)
         return str(generator.choice(definition.presets))

@@ -20,13 +20,13 @@ would take twice as long to start.
 
 from solver.running.executors import opened
 from solver.study.sweep.drive import sweep
-from solver.study.sweep.plan import Axis, Plan, plan_from_plain, plan_of
+from solver.study.sweep.plan import Plan, Varied, plan_from_plain, plan_of
 from solver.study.sweep.point import Row, VersionsDifferError, patience, run_point
 
 __all__ = [
-    "Axis",
     "Plan",
     "Row",
+    "Varied",
     "VersionsDifferError",
     "opened",
     "patience",

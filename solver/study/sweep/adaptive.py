@@ -18,7 +18,7 @@ from solver.arrays import Array
 from solver.definitions import SettingError
 from solver.running.pool import Pool
 from solver.study.sweep.chart import is_wide
-from solver.study.sweep.drive import AHEAD, Course
+from solver.study.sweep.drive import AHEAD, Schedule
 from solver.study.sweep.plan import Plan
 from solver.study.sweep.point import Row
 
@@ -64,7 +64,7 @@ def sweep_adaptively(
     chooser = Chooser(plan, most)
     for row in known:
         chooser.tell(row)
-    course = Course(plan, pool, limit, fields, False, deque())
+    course = Schedule(plan, pool, limit, fields, False, deque())
     try:
         while True:
             course.waiting.extend(chooser.ask(AHEAD * pool.width - len(course.pieces)))

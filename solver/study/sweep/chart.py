@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.figure_data import Axis as Scale
-from solver.study.figure_data import Curve, Panel
-from solver.study.sweep.plan import Axis, Plan
+from solver.study.figure_data import Panel, PanelAxis, PanelCurve
+from solver.study.sweep.plan import Plan, Varied
 from solver.study.sweep.point import Row
 
 DECADES = 30.0
@@ -33,11 +32,11 @@ class Map:
     """
 
     title: str
-    x: Scale
-    y: Scale
+    x: PanelAxis
+    y: PanelAxis
     x_values: Array
     y_values: Array
-    scale: Scale
+    scale: PanelAxis
     z: Array
     is_sampled: bool = False
 
@@ -105,9 +104,9 @@ def _panel(plan: Plan, rows: Sequence[Row], place: int) -> Panel:
         zip(np.atleast_2d(good), np.atleast_2d(other), strict=True)
     ):
         label = plan.readings[place].title if names is None else str(names.values[number])
-        curves.append(Curve(label, x, line, number + 1, "points"))
+        curves.append(PanelCurve(label, x, line, number + 1, "points"))
         if np.isfinite(missed).any():
-            curves.append(Curve(NOT_CONVERGED, x, missed, 0, "points"))
+            curves.append(PanelCurve(NOT_CONVERGED, x, missed, 0, "points"))
     return Panel(
         plan.readings[place].title if names is None else plan.title(names),
         _scale_of(plan, along),
@@ -116,14 +115,14 @@ def _panel(plan: Plan, rows: Sequence[Row], place: int) -> Panel:
     )
 
 
-def _scale_of(plan: Plan, axis: Axis) -> Scale:
-    return Scale(plan.title(axis), plan.unit(axis), axis.logarithmic)
+def _scale_of(plan: Plan, axis: Varied) -> PanelAxis:
+    return PanelAxis(plan.title(axis), plan.unit(axis), axis.logarithmic)
 
 
-def _scale(plan: Plan, place: int, values: Array) -> Scale:
+def _scale(plan: Plan, place: int, values: Array) -> PanelAxis:
     """Give the scale of a reading: of decades, where it goes over several."""
     reading = plan.readings[place]
-    return Scale(reading.title, reading.quantity.unit, is_wide(values[np.isfinite(values)]))
+    return PanelAxis(reading.title, reading.quantity.unit, is_wide(values[np.isfinite(values)]))
 
 
 def is_wide(values: Array) -> bool:

@@ -74,7 +74,7 @@ def sweep(
     GoneError
         Where there is no cluster any more; the same sweep can go on in another.
     """
-    course = Course(plan, pool, limit, fields, warm, _waiting(plan, done))
+    course = Schedule(plan, pool, limit, fields, warm, _waiting(plan, done))
     try:
         while not cancelled() and course.send():
             yield from course.hear()
@@ -88,7 +88,7 @@ def _waiting(plan: Plan, done: Collection[int]) -> deque[int]:
 
 
 @dataclass(eq=False)
-class Course:
+class Schedule:
     """What of a sweep waits, and what is under way.
 
     Attributes

@@ -33,7 +33,7 @@ FORM = "NAME=LOW:HIGH:COUNT, NAME=LOW:HIGH:COUNT:log, or NAME=VALUE,VALUE,..."
 
 
 @dataclass(frozen=True)
-class Axis:
+class Varied:
     """A setting and the values that it takes, each once.
 
     Attributes
@@ -75,7 +75,7 @@ class Plan:
     """
 
     settings: Settings
-    axes: tuple[Axis, ...]
+    axes: tuple[Varied, ...]
     readings: tuple[Reading, ...]
 
     @property
@@ -93,11 +93,11 @@ class Plan:
         """What of the settings is not as it would be unsaid; a varied method brings the rest."""
         return self.settings.changed()
 
-    def title(self, axis: Axis) -> str:
+    def title(self, axis: Varied) -> str:
         """Give what a setting that varies is called, in words."""
         return about(self.settings.definitions()[axis.name]).title
 
-    def unit(self, axis: Axis) -> str:
+    def unit(self, axis: Varied) -> str:
         """Give the SI unit of a setting that varies, empty for a pure number."""
         return about(self.settings.definitions()[axis.name]).unit
 
@@ -180,12 +180,12 @@ def plan_from_plain(plain: Mapping[str, Any]) -> Plan:
     """Make a plan again of what `Plan.plain` gave."""
     settings = CATALOGUE[plain["scene"]].settings.checked(plain["settings"])
     axes = tuple(
-        Axis(one["name"], tuple(one["values"]), one["logarithmic"]) for one in plain["axes"]
+        Varied(one["name"], tuple(one["values"]), one["logarithmic"]) for one in plain["axes"]
     )
     return Plan(settings, axes, tuple(reading(name) for name in plain["of"]))
 
 
-def axis_of(settings: Settings, text: str) -> Axis:
+def axis_of(settings: Settings, text: str) -> Varied:
     """Read one setting and its values.
 
     Raises
@@ -204,7 +204,7 @@ def axis_of(settings: Settings, text: str) -> Axis:
     else:
         found, logarithmic = [parse(value.strip()) for value in values.split(",")], False
     checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
-    return Axis(name, tuple(checked), logarithmic)
+    return Varied(name, tuple(checked), logarithmic)
 
 
 def _range(definition: Parameter, name: str, text: str) -> tuple[list[object], bool]:

@@ -54,7 +54,7 @@ class Call(Future[Any]):
                 process.kill()
 
 
-class Seat:
+class ProcessSlot:
     """One process at a time, started when it is needed."""
 
     def __init__(self, limit: float | None) -> None:
