@@ -194,7 +194,7 @@ def _add_colors(made: Plot, view: View) -> None:
             background_fill_color=None,
             width=10,
             padding=4,
-            name=f"{slug}.bar",
+            name=f"{slug}.color-bar",
         )
         made.add_layout(bar, "right")
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from solver.checked import dump
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables
@@ -76,7 +74,7 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
 
 def cut_off(settings: Settings) -> str:
     """Say which tables go on after the run has ended, or nothing."""
-    duration, definitions = settings.values().get("duration", math.inf), settings.definitions()
+    duration, definitions = settings.duration, settings.definitions()
     return " ".join(
         f"{about(definitions[name]).title} goes on to {end:g} s, but the run ends at {duration:g}"
         " s."

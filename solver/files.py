@@ -90,7 +90,7 @@ def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
         for name in dict.fromkeys(assignment.partition("=")[0] for assignment in assignments)
         if not settings.applies(name) and getattr(settings, name) != idle[name]
     ]
-    duration = settings.values().get("duration", math.inf)
+    duration = settings.duration
     return found + [
         f"{name} goes on to {end:g} s, but the run ends at {duration:g} s: "
         f"set duration={end:g} to run all of it"

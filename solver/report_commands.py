@@ -17,7 +17,7 @@ from solver.study.audit.audit import Audited, Trial, audit
 from solver.study.audit.report import HEAD, line, prepare
 from solver.study.audit.stability import cases_of, stability_report, trials_of
 from solver.study.audit.survey import draws, survey_report
-from solver.study.audit.units import invariance, is_same
+from solver.study.audit.units import SCENE, invariance, is_same
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.benchmarks.reduction_cost import print_reduction_cost
 from solver.study.benchmarks.sweep_overhead import print_overhead
@@ -161,7 +161,7 @@ def _stability(chosen: argparse.Namespace) -> int:
     matrix = trials_of(cases_of(scene, quick=chosen.quick))
     with writing(chosen.out):
         rows = list(_audited(matrix, chosen.out, "stability"))
-        apart = invariance() if scene in (None, "bar") else {}
+        apart = invariance() if scene in (None, SCENE) else {}
         report = stability_report(rows, apart)
         files = report.write(chosen.out)
     print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))

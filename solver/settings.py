@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+import param
+
 from solver.checked import Checked
 from solver.definitions import choice, count, quantity, switch
 
@@ -25,6 +27,12 @@ class Settings(Checked):
 
     `Settings.checked` is the one edge at which values are verified.
     """
+
+    duration: param.Number[float]
+    instants: param.Integer[int]
+    length: param.Number[float]
+    friction: param.Number[float]
+    """Every scene defines these, where it shows them."""
 
     METHODS: ClassVar[Mapping[str, Mapping[str, object]]] = {
         "fast": {
@@ -298,3 +306,18 @@ class Settings(Checked):
     def is_reduced(self) -> bool:
         """Whether the linear stage works on separated bases."""
         return bool(self.linear_stage == "pgd")
+
+    @property
+    def may_finish(self) -> bool:
+        """Whether a status step may end the run."""
+        return bool(self.finish == "status") and not self.is_reduced
+
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the force of the scene's loop stands over a displacement, m."""
+        return True
+
+    @property
+    def has_break(self) -> bool:
+        """Whether a body is broken."""
+        return False

@@ -77,7 +77,7 @@ class Scene:
     def length(self) -> float:
         """Length of the bodies, m, or of those of the ghost, if these are longer."""
         compared = [self.run, self.before] if self.before and self.ghost else [self.run]
-        return max(float(one.settings.values()["length"]) for one in compared)
+        return max(one.settings.length for one in compared)
 
     @property
     def ghost(self) -> tuple[Recording, DrawnFields, int] | None:
@@ -254,7 +254,7 @@ def is_plane(settings: Settings) -> bool:
 
 def has_instants(settings: Settings) -> bool:
     """Tell whether there are several instants: one makes no loop, and has one singular value."""
-    return int(settings.values()["instants"]) > 1
+    return settings.instants > 1
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,7 @@ def _rules(places: ArrayLike, axis: Axis, *, upright: bool, **style: Any) -> Cur
 
 def length_of(settings: Settings) -> float:
     """Give the length of a scene, m, which all axes along it show from end to end."""
-    return float(settings.values()["length"])
+    return settings.length
 
 
 def spanned(low: float, high: float, **options: Any) -> Axis:

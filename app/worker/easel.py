@@ -106,7 +106,7 @@ def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
         found["colors"] = {"low": drawing.colors.low, "high": drawing.colors.high}
         found["scale"] = {"ticks": list(drawing.colors.ticks)}
         if drawing.colors.title is not None:
-            found["bar"] = {"title": drawing.colors.title}
+            found["color-bar"] = {"title": drawing.colors.title}
     return {f"{view.slug}.{name}": attributes for name, attributes in found.items()}
 
 

@@ -67,14 +67,15 @@ class Sampler:
         self._curve = thinned(problem.n_instants, LONGEST_CURVE)
         self._lengths = law.by_point(law.weights)[self._rows]
         self.loop = loop_of(settings, problem)
+        described = structure_of(settings).described()
         self._mesh: Thinned | None = None
         self._wires: ShownWires | None = None
         if problem.inside is not None:
             self._mesh = Thinned(problem.inside, settings)
         elif kind_of(settings) == "wires":
-            self._wires = ShownWires(problem, settings.values()["broken"])
+            self._wires = ShownWires(problem, described.broken[0] + 1 if described.broken else 0)
         mesh = self._mesh.mesh if self._mesh else None
-        self._sitter = Sitter(problem, structure_of(settings).described(), mesh)
+        self._sitter = Sitter(problem, described, mesh)
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""

@@ -92,6 +92,11 @@ class InclineSettings(PlaneSettings):
     elements = redefined(PlaneSettings.param["elements"], 24)
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
 
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the loop is over a displacement: it is over the angle of the slope."""
+        return False
+
     def _candidates(self) -> Mapping[str, str]:
         return {"body": "weight"}
 

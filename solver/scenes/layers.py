@@ -141,6 +141,11 @@ class LayersSettings(PlaneSettings):
         """Number of bodies."""
         return self.layers
 
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the loop is over a displacement; that of a moment is over a rotation."""
+        return bool(self.bending != "moment")
+
     def bends_by(self, kind: str) -> bool:
         """Tell whether the end is bent so, as far as a preset and not a table says."""
         return self.bending == kind and isinstance(self.bend_load, str)

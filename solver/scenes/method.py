@@ -27,16 +27,15 @@ from solver.settings import Settings
 
 def method_of(settings: Settings) -> Latin:
     """Give the method that checked settings describe."""
-    is_reduced = settings.is_reduced
     goal = Accuracy(settings.accuracy) & Indicator(settings.tolerance)
     return Latin(
         direction=_direction(settings),
-        linear=_bases(settings) if is_reduced else Full(),
+        linear=_bases(settings) if settings.is_reduced else Full(),
         multiscale=settings.multiscale,
         relaxation=settings.relaxation,
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
         start=Nested(partial(coarser_problems, settings)) if settings.start == "nested" else None,
-        finish=StatusStep() if settings.finish == "status" and not is_reduced else None,
+        finish=StatusStep() if settings.may_finish else None,
         stop=goal | Iterations(settings.max_iterations),
         threads=settings.threads,
     )

@@ -123,6 +123,11 @@ class StrandSettings(SceneSettings):
         return self.wires * max(self.substructures, 2 if self.broken else 1)
 
     @property
+    def has_break(self) -> bool:
+        """Whether a wire is broken."""
+        return bool(self.broken)
+
+    @property
     def n_jumps(self) -> int:
         """Points of all contacts, which a reference condenses."""
         return int((self.wires - 1) * (self.elements + 1))

@@ -177,7 +177,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
-    if settings.finish != "status" or settings.is_reduced or not fits:
+    if not settings.may_finish or not fits:
         return None
     costs = costs_of(problem)
     if not costs.afford(ALONE):

@@ -14,7 +14,7 @@ from solver.latin import Record
 from solver.laws import OPEN
 from solver.reduction.svd import InterfaceField, decompositions
 from solver.reference.distance import determinate_forces
-from solver.scenes.strand import StrandSettings, strand
+from solver.scenes import structure_of
 from solver.study.finished import FinishedRun
 from solver.study.memory import memory_of
 
@@ -114,7 +114,7 @@ def holding_friction(run: FinishedRun, at: float | None) -> float:
     All its friction over all that presses, at the worst instant. NaN where one slides: the run
     then cannot tell how much more it would take.
     """
-    needed, friction = 0.0, float(run.settings.values()["friction"])
+    needed, friction = 0.0, run.settings.friction
     if not friction:
         return math.nan
     # A point that a clamp holds, too, never slips.
@@ -239,15 +239,15 @@ def recovery_length_at(run: FinishedRun, instant: int) -> float:
 
     NaN without a broken wire, or without tension; infinite if it does so on neither side.
     """
-    settings = run.settings
-    scene = strand(settings) if isinstance(settings, StrandSettings) else None
-    if scene is None or scene.broken is None or not run.force[instant]:
+    described = structure_of(run.settings).described()
+    if described.broken is None or not run.force[instant]:
         return math.nan
-    wire, node = scene.broken
+    wire, place = described.broken
     axial = AxialForce(run.problem)
-    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire - 1]
+    force = axial(run.iterate.displacement[:, instant])[axial.wires == wire]
     share = force / run.force[instant]
-    size = scene.length / scene.elements
+    size = described.length / len(share)
+    node = round(place / size)
     sides = share[node:], share[:node][::-1]
     return min(size * _reached(side, REGAINED) / REGAINED for side in sides)
 

@@ -37,12 +37,11 @@ def _in_the_plane(settings: Settings) -> bool:
 
 
 def _over_a_displacement(settings: Settings) -> bool:
-    """Tell where the loop of the scene goes over a displacement, not over an angle."""
-    return settings.scene != "incline" and settings.values().get("bending") != "moment"
+    return settings.loop_is_over_displacement
 
 
 def _with_a_broken_wire(settings: Settings) -> bool:
-    return bool(settings.values().get("broken"))
+    return settings.has_break
 
 
 @dataclass(frozen=True)

@@ -90,7 +90,7 @@ def _without_idle(settings: Settings) -> Settings:
     """Take back what does nothing beside the other settings, so that a row says what matters."""
     idle = [name for name in settings.changed() if not settings.applies(name)]
     values = {name: value for name, value in settings.changed().items() if name not in idle}
-    return type(settings).checked({"method": settings.values()["method"], **values})
+    return type(settings).checked({"method": settings.method, **values})
 
 
 def _values(kind: Any, generator: Generator) -> dict[str, Any]:

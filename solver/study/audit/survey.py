@@ -73,7 +73,7 @@ def drawn(settings: Settings, seed: int, number: int) -> Trial:
             "seed": seed,
             "row": number,
             "foolish_k": is_foolish(settings),
-            "may_finish": settings.finish == "status" and not settings.is_reduced,
+            "may_finish": settings.may_finish,
             "accuracy": settings.accuracy,
             "settings": json.dumps(changed),
         },
@@ -86,7 +86,7 @@ def method_name(settings: Settings) -> str:
     if settings.is_reduced:
         return "pgd"
     own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
-    return f"{settings.values()['method']}{', mixed' if own - {'tolerance'} else ''}"
+    return f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"
 
 
 def command(settings: Settings) -> str:
