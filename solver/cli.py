@@ -165,6 +165,7 @@ def _distance(problem: Problem) -> Distance | None:
     lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
     if lost:
         found = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+        found += ": friction softens until the structure jumps" if reference.jumps else ""
         print(f"slipfront: no errors are known: {found}", file=sys.stderr)
         return None
     if several:

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.discrete.problem import Problem
-from solver.reference import incremental as module
+from solver.reference import search as module
 from solver.reference.incremental import Interrupted, Reference, incremental
 from solver.scenes.bar import BarSettings, bar
 

@@ -84,7 +84,7 @@ class Sampler:
         if law.opens:
             coefficient = _floats(law.mean_by_point(law.tangential.friction)[self._rows])
         else:
-            whole = law.by_point(law.tangential.bound)[self._rows]
+            whole = law.by_point(law.tangential.most)[self._rows]
             bound = _floats(whole * problem.scales.force / self._lengths)
         load = loop.force if isinstance(loop.force, np.ndarray) else None
         return Stand(

@@ -84,6 +84,11 @@ class ErrorEstimate:
         return self.certificate.distance.of_friction_force(iterate)
 
     @property
+    def jumps(self) -> bool:
+        """Whether a status step came to an instant to which no solution goes on."""
+        return self._step is not None and self._step.jumps
+
+    @property
     def is_proven(self) -> bool:
         """Whether the last estimate was the distance to a certified solution."""
         return self.certificate is not None

@@ -69,10 +69,17 @@ class StatusStep:
 
 
 class StatusSolver:
-    """The status step of one problem; what it condenses is kept for the next."""
+    """The status step of one problem; what it condenses is kept for the next.
+
+    Attributes
+    ----------
+    jumps
+        Whether the last one came to an instant to which no solution goes on.
+    """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
+        self.jumps = False
 
     def __call__(self, states: States, most: int) -> Certificate | None:
         """Try to certify states, mended; None where they are too far from right.
@@ -90,6 +97,7 @@ class StatusSolver:
             If the problem has no incremental solver, or none that is worth its size.
         """
         found = self._solver.march(guess=states, most=most)
+        self.jumps = found.jumps
         if not found.converged.all():
             return None
         distance = distance_to(found, self._problem)

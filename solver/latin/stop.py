@@ -35,6 +35,12 @@ _CERTIFIED = (
     "this solution on this mesh"
 )
 
+JUMPS = (
+    "At some instant no equilibrium goes on from the one before: friction falls with slip faster "
+    "than the structure unloads, so that it jumps. Lower the load, raise friction_ratio or "
+    "slip_length, or prescribe displacements."
+)
+
 
 @dataclass(frozen=True, eq=False)
 class Decision:
@@ -148,6 +154,8 @@ class StopRules:
         if status is not None and status.ending is not Ending.CONVERGED:
             _ = numbers.behaviour
             self._try_at_last(iterate)
+        if self._estimate.jumps:
+            return numbers, Status(Ending.STALLED, JUMPS)
         if status is not None and status.ending is Ending.EXHAUSTED:
             return numbers, replace(status, advice=self._exhausted_advice(numbers))
         return numbers, status

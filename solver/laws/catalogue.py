@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from solver.laws.compliant import Compliant
 from solver.laws.coulomb import Coulomb
+from solver.laws.slip_dependent import SlipDependent
 from solver.laws.tangential import FrictionLaw
 
 FRICTION_LAWS: dict[str, type[FrictionLaw]] = {
     "coulomb": Coulomb,
     "compliant": Compliant,
+    "slip-dependent": SlipDependent,
 }
 """Their attributes are named like the settings that choose them."""

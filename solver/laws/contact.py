@@ -198,14 +198,19 @@ class Contact(Pairs):
         no, yes = np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
         bound = self.by_point(self.tangential.bound)
         friction = self.mean_by_point(self.tangential.friction)
+        ratio, length = np.ones(size), np.full(size, np.inf)
+        ages = ratio, length
+        along = self.tangential
+        if along.ratio is not None and along.slip_length is not None:
+            ages = self.mean_by_point(along.ratio), self.mean_by_point(along.slip_length)
         if self.normal is None:
-            return [Rules(no, none, own, friction, bound, self.compliance)]
+            return [Rules(no, none, own, friction, bound, self.compliance, *ages)]
         gap = self.mean_by_point(self.normal.gap)
         soft = self._by_point_in_parallel(self.normal.softness)
         # Without friction what is in series along changes nothing, and tells the jump from others.
-        along = self.compliance if bound.any() or friction.any() else soft
-        tangential = Rules(no, none, own, friction, bound, along)
-        return [Rules(yes, gap, own, none, none, soft), tangential]
+        sprung = self.compliance if bound.any() or friction.any() else soft
+        tangential = Rules(no, none, own, friction, bound, sprung, *ages)
+        return [Rules(yes, gap, own, none, none, soft, ratio, length), tangential]
 
     @property
     def acts(self) -> bool:

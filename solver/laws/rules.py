@@ -30,6 +30,9 @@ class Rules:
     compliance
         Displacement in series with the jump, per force, scaled; 0 of normal jumps. What is said of
         the jump is then said of the jump and it together.
+    ratio, slip_length
+        Factor on the bound in the end, and the accumulated slip, scaled, on the way to which it
+        goes there from 1 in proportion; 1 and infinity where slip changes nothing.
     """
 
     normal: NDArray[np.bool_]
@@ -38,6 +41,8 @@ class Rules:
     friction: Array
     bound: Array
     compliance: Array
+    ratio: Array
+    slip_length: Array
 
     @property
     def smooth(self) -> NDArray[np.bool_]:
@@ -59,6 +64,8 @@ class Rules:
             friction,
             self.bound[moving],
             self.compliance[moving],
+            self.ratio[moving],
+            self.slip_length[moving],
         )
 
     def bounds(self, force: Array) -> Array:

@@ -65,12 +65,17 @@ class Tangential(ABC):
         Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
     softness
         Displacement before slip per friction force, (n_pairs,), scaled; None if there is none.
+    ratio, slip_length
+        Factor on the bound, in the end, and the accumulated slip, scaled, on the way to which it
+        grows from 1 in proportion; (n_pairs,) each, None where slip changes nothing.
     """
 
     component: Component
     bound: Array
     friction: Array
     softness: Array | None = None
+    ratio: Array | None = None
+    slip_length: Array | None = None
 
     of_pairs: ClassVar[tuple[str, ...]] = ()
     """Attributes of shape (n_pairs,) of its dataclass."""

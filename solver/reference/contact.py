@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.discrete.problem import Problem
-from solver.reference.condensation import Condensation, TooLargeError
+from solver.reference.condensation import Condensation, NoReferenceError, TooLargeError
 from solver.reference.contact_states import all_forces, status_of
 from solver.reference.newton import CONVERGED, Marched, Newton
 from solver.reference.residual import Shown, unbalanced_of
@@ -50,6 +50,8 @@ class IncrementalContact:
     ------
     TooLargeError
         If there are more than `MOST_JUMPS` jumps.
+    NoReferenceError
+        If friction changes with slip.
     NotHeldError
         If the structure can move with all contacts closed and stuck.
     """
@@ -60,6 +62,11 @@ class IncrementalContact:
             raise TooLargeError(
                 f"a reference would condense {n_jumps} components of contact (at most "
                 f"{MOST_JUMPS}); take fewer elements, layers or wires to have one"
+            )
+        if any(law.tangential.ratio is not None for law in problem.rubbing.values()):
+            raise NoReferenceError(
+                "Friction that changes with slip has a reference on rods that rub on a rigid "
+                "support alone."
             )
         self._problem = problem
         self._condensed, self._rules = Condensation(problem), rules_of(problem)

@@ -43,6 +43,8 @@ def _arrays(problem: Problem) -> Iterator[NDArray[np.generic]]:
         rules.friction,
         rules.bound,
         rules.compliance,
+        rules.ratio,
+        rules.slip_length,
     )
     for matrix in (assembled_stiffness(problem), jumps(problem)):
         matrix.sort_indices()

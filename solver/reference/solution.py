@@ -54,6 +54,9 @@ class Reference:
     deformation
         Displacement but for rigid motions of bodies that contact alone holds, which would hide it;
         shape (n_dofs, n_instants), m. None where nothing moves so.
+    jumps
+        Whether the first instant that is not solved has no solution that goes on from the instant
+        before: friction falls with slip faster than the structure unloads.
     """
 
     problem: Problem
@@ -68,6 +71,7 @@ class Reference:
     seconds: float
     rounding: float = 0.0
     deformation: Array | None = None
+    jumps: bool = False
 
     @property
     def friction_force(self) -> Array:

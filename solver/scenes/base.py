@@ -43,6 +43,27 @@ class SceneSettings(Settings):
         logarithmic=True,
     )
 
+    friction_ratio = quantity(
+        1.5,
+        (0.0, 1e3),
+        (0.5, 2.0),
+        "Last friction over the first: above 1 it hardens with slip, below it softens.",
+        group="Contact",
+        title="Last friction over first",
+        applies=lambda settings: settings.friction_law == "slip-dependent",
+    )
+    slip_length = quantity(
+        1e-4,
+        (1e-12, 1e6),
+        (1e-6, 1e-2),
+        "Accumulated slip of a point at which its friction is the last.",
+        group="Contact",
+        title="Slip length",
+        unit="m",
+        applies=lambda settings: settings.friction_law == "slip-dependent",
+        logarithmic=True,
+    )
+
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
     LOADS: ClassVar[Sequence[str]] = ()

@@ -1,0 +1,108 @@
+"""Rods whose friction hardens or softens with slip: one instant (solver/README.md, 14).
+
+Below the slip length the bound is linear in the slip increment v, b + g |v|, so that
+
+    phi(v) = 1/2 v' (K + G) v - g' v + sum b |v|,
+
+with G = diag(g): the same minimum, of a structure that is stiffer, or softer, where it slips. Which
+points pass the slip length within the instant is found by trial; their bound is the last.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.linalg import LinAlgError
+
+from solver.arrays import Array, Indices
+from solver.discrete.problem import Problem
+from solver.reference.band import Band
+from solver.reference.search import Minimum, Search
+from solver.reference.states import rules_of
+
+TRIALS = 50
+"""Sets of points that pass the slip length, at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Friction bounds of degrees of freedom, shape (n_dofs,) each, scaled.
+
+    Attributes
+    ----------
+    first, last
+        Before any slip, and after the slip length.
+    length
+        Slip length; infinite where slip changes nothing.
+    """
+
+    first: Array
+    last: Array
+    length: Array
+
+    @property
+    def stay(self) -> bool:
+        """Whether slip changes nothing."""
+        return bool(np.array_equal(self.first, self.last))
+
+    @property
+    def slope(self) -> Array:
+        """Growth of the bound per slip, below the slip length."""
+        return np.asarray((self.last - self.first) / self.length)
+
+    def at(self, gone: Array, some: Indices) -> Array:
+        """Give the bounds of some after slip, both of shape (n,)."""
+        share = np.minimum(gone / self.length[some], 1.0)
+        return np.asarray(self.first[some] + (self.last - self.first)[some] * share)
+
+
+def bounds_of(problem: Problem) -> Bounds:
+    """Give the bounds of the only interface, which is on a support."""
+    law, rules = problem.friction, rules_of(problem)
+    rubbing = problem.row_dofs[law.tangent.above]
+    first, ratio = np.zeros(problem.n_dofs), np.ones(problem.n_dofs)
+    length = np.full(problem.n_dofs, np.inf)
+    np.add.at(first, rubbing, law.tangential.bound)
+    ratio[rubbing], length[rubbing] = rules.ratio[law.points], rules.slip_length[law.points]
+    return Bounds(first, first * ratio, length)
+
+
+def least_with_changing_bound(
+    band: Band, bounds: Bounds, movable: Array, force: Array, status: Array, gone: Array
+) -> Minimum | None:
+    """Find the minimum that the instant before goes over into.
+
+    Returns
+    -------
+    None where there is none: friction falls faster with slip than the structure unloads, so that it
+    jumps.
+    """
+    passes = gone >= bounds.length
+    for _ in range(TRIALS):
+        slope = np.where(passes, 0.0, bounds.slope) * movable
+        bound = np.where(passes, bounds.last, bounds.first + bounds.slope * gone) * movable
+        softer = band.stiffened(slope)
+        found = _least(Search(softer, bound, movable), force, status)
+        band.solutions += softer.solutions
+        if found is None:
+            return None
+        slip = np.abs(found.increment)
+        corrected = gone + slip >= bounds.length
+        if np.array_equal(corrected, passes):
+            pull = found.pull + slope * found.increment
+            return Minimum(found.increment, pull, found.status, found.violation, found.residual)
+        passes, status = corrected, found.status
+    return None
+
+
+def _least(search: Search, force: Array, status: Array) -> Minimum | None:
+    """Seek the minimum from the statuses, and where softening forbids these, from rest."""
+    status = status * search.rubs
+    ways = (search, status), (search.released, status), (search.released, np.zeros_like(status))
+    for seek, begin in ways:
+        try:
+            return seek(force, begin)
+        except LinAlgError:
+            continue
+    return None
