@@ -137,7 +137,7 @@ def test_nothing_is_drawn_and_only_the_text_is_measured_until_a_choice_is_made(
 
 def test_a_control_in_a_sentence_moves_the_run_and_shows_what_holds(page: Dashboard) -> None:
     tell(page, CHOICE, NO_CHOICE)
-    assert set(page._teaching.view.shown) == {"", "multiscale"}
+    assert {"", "multiscale"} <= set(page._teaching.view.shown)
     tell(page, "multiscale", False)
     assert page.session.wanted.values()["multiscale"] is False
     assert page._teaching.view.shown["multiscale"] is False

@@ -171,7 +171,7 @@ def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_
         expect(page).to_have_url(re.compile("^(?!.*theme=)"))
         assert violations(page) == []
     expect(page.get_by_role("figure", name="Friction force")).to_have_accessible_description(
-        re.compile(r"LATIN, reference.*; bar, t = 0.8 s, iteration \d+")
+        re.compile(r"LATIN from .* reference from .* bar, t = 0.8 s, iteration \d+")
     )
     page.get_by_role("button", name="Toggle theme").click()
     expect(page.locator(".mui-dark").first).to_be_visible()
@@ -191,7 +191,7 @@ def test_whoever_has_no_mouse_is_soon_at_the_run_and_is_told_what_plots_show(
     page.keyboard.press("Tab")
     expect(page.get_by_role("link", name="Go to the run")).to_be_focused()
     page.keyboard.press("Enter")
-    expect(page.get_by_role("button", name="Run or pause")).to_be_focused()
+    expect(page.get_by_role("button", name="Replay the run")).to_be_focused()
     instant = page.get_by_role("slider", name="Instant", exact=True)
     expect(instant).to_have_attribute("aria-valuetext", "t = 0.8 s")
     live = page.get_by_role("button", name="Live", exact=True)

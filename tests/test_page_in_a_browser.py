@@ -123,6 +123,6 @@ def test_settings_are_saved_opened_and_brought_back(open_page: Visit, tmp_path: 
     expect(status(page)).to_contain_text("7 substructures")
     page.get_by_role("button", name="Defaults", exact=True).click()
     expect(status(page)).to_contain_text("10 substructures")
-    file.write_bytes(b"\xff\xfe")
+    file.write_bytes(b"\xff\xfe\0")
     page.locator("input[type=file]").set_input_files(file)
     expect(page.get_by_text("The file is not text")).to_be_visible()

@@ -203,6 +203,9 @@ def axis_of(settings: Settings, text: str) -> Varied:
         found, logarithmic = _range(definitions[name], name, values)
     else:
         found, logarithmic = [parse(value.strip()) for value in values.split(",")], False
+    for end in (found[-1], found[0]):
+        # What was typed is refused before what lies between.
+        checked_value(definitions[name], name, end)
     checked = dict.fromkeys(checked_value(definitions[name], name, value) for value in found)
     return Varied(name, tuple(checked), logarithmic)
 
