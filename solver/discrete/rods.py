@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from solver.discrete.loops import Loop, loop_of_ends
 from solver.discrete.problem import Problem
 from solver.discrete.rods_data import RodsData
 from solver.discrete.rods_problem import discretise_rods
@@ -21,6 +22,10 @@ class Rods(RodsData):
     def discretise(self) -> Problem:
         """Make the discrete problem."""
         return discretise_rods(self)
+
+    def loop(self, problem: Problem) -> Loop:
+        """Give the force on the loaded ends over their displacement."""
+        return loop_of_ends(problem, "Force" if self.wires == 1 else "Tension")
 
     def described(self) -> Description:
         """Say what there is, for whoever draws it."""

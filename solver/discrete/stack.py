@@ -6,8 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.discrete.stack_data import Given, Side, StackData
+from solver.discrete.stack_loops import loop_of_stack
 from solver.discrete.stack_problem import discretise_stack
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, ends_of
 
@@ -18,6 +20,10 @@ class Stack(StackData):
     def discretise(self) -> Problem:
         """Make the discrete problem."""
         return discretise_stack(self)
+
+    def loop(self, problem: Problem) -> Loop:
+        """Give the force that answers what drives it."""
+        return loop_of_stack(self, problem)
 
     def described(self) -> Description:
         """Say what there is, for whoever draws it."""

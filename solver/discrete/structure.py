@@ -9,6 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 
 OUTWARD = {
@@ -121,6 +122,9 @@ class Structure(Protocol):
 
     def discretise(self) -> Problem:
         """Make the discrete problem."""
+
+    def loop(self, problem: Problem) -> Loop:
+        """Give the hysteresis loop that it shows; forces in the plane for a metre of thickness."""
 
     def described(self) -> Description:
         """Say what there is, for whoever draws it."""

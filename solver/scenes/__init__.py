@@ -62,7 +62,7 @@ def coarser_problems(settings: Settings) -> list[Problem]:
 
 def loop_of(settings: Settings, problem: Problem) -> Loop:
     """Give the loop of a scene; forces of plane bodies are those on a metre of thickness."""
-    return entry_of(settings).loop(settings, problem)
+    return structure_of(settings).loop(problem)
 
 
 def closed_form_of(settings: Settings) -> ClosedForm | None:

@@ -10,7 +10,6 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, curve, quantity
-from solver.discrete.loops import loop_of_ends
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.loads import PRESETS, interpolate
@@ -258,7 +257,6 @@ BAR = Entry(
     settings=BarSettings,
     kind="rod",
     structure=bar,
-    loop=lambda settings, problem: loop_of_ends(problem, "Force"),
     sizes=shared.ROD_SIZES,
     coarser=_coarser,
     closed_form=lambda settings: closed_form(bar(settings)),

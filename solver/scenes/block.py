@@ -11,15 +11,12 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, curve, quantity, redefined
 from solver.discrete.equilibrium import loss_of_equilibrium
-from solver.discrete.loops import Loop
-from solver.discrete.probes import side_mean
-from solver.discrete.problem import Problem
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Entry
-from solver.scenes.sides import AT_REST, SideSettings
+from solver.scenes.sides import SideSettings
 
 GAPS = ("flat", "parabola")
 
@@ -140,24 +137,11 @@ def _body_force(settings: BlockSettings) -> Array | None:
     return sizes[:, None] * settings.path("body_load") if sizes.any() else None
 
 
-def _loop(settings: BlockSettings, problem: Problem) -> Loop:
-    """Give the shear force on the support over the horizontal displacement of the moved side."""
-    moved = [side for side in ("top", "left", "right") if getattr(settings, side) not in AT_REST]
-    side = moved[0] if moved else "top"
-    return Loop(
-        (f"Displacement of the {side}", "m"),
-        ("Shear force", "N"),
-        side_mean(problem, side, 0),
-        lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
-    )
-
-
 BLOCK = Entry(
     title="Block pressed and sheared",
     source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
     settings=BlockSettings,
     kind="plane",
     structure=block,
-    loop=_loop,
     sizes=shared.PLANE_SIZES,
 )

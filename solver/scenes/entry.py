@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
-from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
 from solver.reference.broken_wire import BrokenWire
@@ -31,8 +30,6 @@ class Entry(Generic[S]):
         What there is to see: a rod on its support, wires beside each other, or plane bodies.
     structure
         Makes what the scene is made of.
-    loop
-        Gives the loop that it shows.
     coarser
         Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
         where no run starts from them.
@@ -47,7 +44,6 @@ class Entry(Generic[S]):
     settings: type[S]
     kind: Kind
     structure: Callable[[S], Structure]
-    loop: Callable[[S, Problem], Loop]
     sizes: Mapping[str, tuple[int, ...]]
     coarser: Callable[[S], Iterable[Problem]] | None = None
     closed_form: Callable[[S], ClosedForm | None] | None = None

@@ -14,9 +14,6 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, curve, quantity, redefined
 from solver.discrete.equilibrium import loss_of_equilibrium
-from solver.discrete.loops import Loop
-from solver.discrete.probes import constant
-from solver.discrete.problem import Problem
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
@@ -133,22 +130,11 @@ def incline(settings: InclineSettings) -> Stack:
     )
 
 
-def _loop(settings: InclineSettings, _problem: Problem) -> Loop:
-    """Give the spring's force over the angle: it lags behind on the way back."""
-    return Loop(
-        ("Angle of the slope", "°"),
-        ("Spring force", "N"),
-        constant(settings.path("slope_load")),
-        lambda fields: np.asarray(fields.contact("spring").normal_force)[0],
-    )
-
-
 INCLINE = Entry(
     title="Block on an inclined plane",
     source="closed form: Coulomb, Théorie des machines simples, 1785",
     settings=InclineSettings,
     kind="plane",
     structure=incline,
-    loop=_loop,
     sizes=shared.PLANE_SIZES,
 )

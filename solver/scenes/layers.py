@@ -9,9 +9,6 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import choice, count, curve, quantity, redefined
-from solver.discrete.loops import Loop
-from solver.discrete.probes import end_rotation, reaction, side_mean
-from solver.discrete.problem import Problem
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
@@ -186,25 +183,11 @@ def layers(settings: LayersSettings) -> Stack:
     )
 
 
-def _loop(settings: LayersSettings, problem: Problem) -> Loop:
-    if settings.bending == "moment":
-        moment = settings.path("bend_load")
-        return Loop(("Rotation of the end", ""), ("Moment", "N m"), end_rotation(problem), moment)
-    held = reaction(problem, "right")
-    return Loop(
-        ("Deflection of the end", "m"),
-        ("Transverse force", "N"),
-        side_mean(problem, "right", 1),
-        lambda fields: held(fields.displacement),
-    )
-
-
 LAYERS = Entry(
     title="Stack of layers, bent",
     source="a leaf spring, or the section of a cable laid flat",
     settings=LayersSettings,
     kind="plane",
     structure=layers,
-    loop=_loop,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
 )

@@ -9,7 +9,6 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, curve, quantity
-from solver.discrete.loops import loop_of_ends
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.rods_data import COARSEST, neighbours
@@ -233,7 +232,6 @@ STRAND = Entry(
     settings=StrandSettings,
     kind="wires",
     structure=strand,
-    loop=lambda settings, problem: loop_of_ends(problem, "Tension"),
     sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     coarser=_coarser,
     broken_wire=lambda settings: broken_wire(strand(settings)),
