@@ -70,7 +70,7 @@ class Dashboard:
         self.session = session
         self._asked_for = session.wanted
         self._loaded = False
-        self._notes = Notes()
+        self._notes = Notes(session)
         self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
         self._presence, self._log = Presence(session, self.pulse), RunLog(session)
         session.watch(complaint=complaint)
@@ -153,6 +153,7 @@ class Dashboard:
         self._presence.check()
         self._tabs.catch_up(is_news=self.session.attend())
         self._sidebar.obey()
+        self._notes.follow()
         self._banner.catch_up()
         self._teaching.catch_up()
         self.pulse.leads = self.session.attendance.ticket

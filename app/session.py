@@ -5,7 +5,6 @@ All of it happens on the page's own event loop; pictures go through as bytes.
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +14,7 @@ from app.inquiry import Inquiry
 from app.keeper import AGAIN, GIVEN_UP, Hire, Keeper
 from app.labels import changes_of, label_of
 from app.pages import Pages
+from app.pending import Pending
 from app.uploads import cut_off
 from app.worker.bench import Bench
 from app.worker.block import said
@@ -27,8 +27,6 @@ from solver.files import scene_settings
 from solver.settings import Settings
 
 DEFAULT_PACE = 20.0
-HELD_STILL = 0.5
-"""Seconds after which a slider that does not move counts as let go."""
 
 
 class Session:
@@ -60,8 +58,7 @@ class Session:
     running, pace
         Whether iterations go on by themselves, and how many a second (None: all it can).
     warm_start
-        Whether a changed setting starts from the run before, where that is better; a run that is
-        reset never does. It is no setting of the method: a run alone has none before it.
+        Whether a changed setting starts from the run before, where that is better.
     follows_hand, is_held
         Whether the run is one of many while a slider is dragged, and whether it stands still for a
         study that is timed.
@@ -89,8 +86,7 @@ class Session:
         self._asked = self.figures, self.study, self.stability, self.inquiry
         self._left: dict[str, Settings] = {}
         self._label = ""
-        self._pending: Settings | None = None
-        self._pending_by_hand, self._moved_at = False, 0.0
+        self._pending = Pending()
         self._pages = pages
         pages.add(self)
 
@@ -113,7 +109,7 @@ class Session:
             self._label, self.twin = "", None
         self.settings = settings
         self.ticket += 1
-        self.facts, self._pending = None, None
+        self.facts = self._pending.settings = None
         self.keeper.renew()
         self.follows_hand = follows_hand and self._is_free
         self._work(**how)
@@ -134,18 +130,15 @@ class Session:
         """Take new settings as a whole; those of another scene start at once."""
         if settings.scene != self.settings.scene:
             self.start(settings)
-            return
-        if settings.values() == self.settings.values() and self._pending is None:
-            return
-        self._pending, self._pending_by_hand = settings, by_hand
-        self._moved_at = time.monotonic()
-        self._start_pending()
+        elif settings.values() != self.settings.values() or self._pending.settings is not None:
+            self._pending.put(settings, by_hand=by_hand)
+            self._start_pending()
 
     def let_go(self) -> None:
         """Replay the iteration of what a hand has chosen."""
-        self._pending_by_hand = False
+        self._pending.by_hand = False
         if self.follows_hand:
-            self._pending = self.wanted
+            self._pending.settings = self.wanted
             self._start_pending()
 
     def choose_scene(self, scene: str) -> None:
@@ -229,7 +222,7 @@ class Session:
         """Do what is due: hear the reports, hold the run while one is timed; tell if it is new."""
         if self.keeper.give_back():
             self.facts = None
-        if self.follows_hand and time.monotonic() - self._moved_at > HELD_STILL:
+        if self.follows_hand and self._pending.is_still:
             self.let_go()
         heard = [one.collect() for one in self._asked]
         if self.study.is_begun != self.is_held:
@@ -258,7 +251,7 @@ class Session:
     @property
     def wanted(self) -> Settings:
         """The settings that the user sees: of the run at work, or of the one about to start."""
-        return self._pending or self.settings
+        return self._pending.settings or self.settings
 
     @property
     def _is_free(self) -> bool:
@@ -267,8 +260,9 @@ class Session:
 
     def _start_pending(self) -> None:
         """Start with what is wanted, once the run before was shown."""
-        if self._pending is not None and (self.facts is not None or self.ticket == 0):
-            self.start(self._pending, warm=self.warm_start, follows_hand=self._pending_by_hand)
+        wanted = self._pending.settings
+        if wanted is not None and (self.facts is not None or self.ticket == 0):
+            self.start(wanted, warm=self.warm_start, follows_hand=self._pending.by_hand)
 
     def _replay(self) -> None:
         self.start(notice=REPLAYED if self.facts and self.facts.is_over else "")

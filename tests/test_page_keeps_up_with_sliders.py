@@ -162,7 +162,7 @@ def test_a_slider_that_stands_still_counts_as_let_go(monkeypatch: pytest.MonkeyP
     session.change("peak", 910.0, by_hand=True)
     shown(session, link)
     assert link.orders[-1].follows_hand
-    monkeypatch.setattr("app.session.HELD_STILL", -1.0)
+    monkeypatch.setattr("app.pending.HELD_STILL", -1.0)
     session.attend()
     assert not link.orders[-1].follows_hand
     assert link.orders[-1].values["peak"] == 910.0
