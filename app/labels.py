@@ -7,6 +7,9 @@ from typing import Any
 from solver.definitions import about
 from solver.settings import Settings
 
+FEW = 2
+"""Changes by which a run is called where there is little room."""
+
 
 def changes_of(settings: Settings, other: Settings) -> dict[str, Any]:
     """Give what differs from other settings of the same scene, by name."""
@@ -14,7 +17,7 @@ def changes_of(settings: Settings, other: Settings) -> dict[str, Any]:
     return {name: value for name, value in settings.values().items() if value != before[name]}
 
 
-def label_of(settings: Settings, changed: dict[str, Any], most: int = 2) -> str:
+def label_of(settings: Settings, changed: dict[str, Any], most: int = FEW) -> str:
     """Name settings by what is new in them, or by the first few of it."""
     definitions = settings.definitions()
     parts = []

@@ -1,4 +1,4 @@
-"""Notes that come up on the page: of what was done for a while, of what was refused till a change."""
+"""Notes that come up: of what was done for a while, of what was refused until a change."""
 
 from __future__ import annotations
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from html import unescape
 from typing import Any
 
 import numpy as np
@@ -166,3 +167,14 @@ def test_a_run_a_that_is_refused_is_told() -> None:
     shown.studio.obey(Run(1, "bar", BRIEF, twin={"elements": 0}))
     shown.work()
     assert "elements = 0 is refused" in shown.words
+
+
+def test_a_run_of_many_changes_is_named_in_whole_for_who_asks() -> None:
+    shown = Shown()
+    many = BarSettings.checked({**LONG, "friction": 0.4, "young": 3e9}).values()
+    shown.run(1, "bar", BRIEF, twin=many)
+    text = unescape(shown.page["figures"]["text"])
+    whole = text.split('aria-label="A (')[1].split('"')[0]
+    assert all(word in whole for word in ("friction 0.4", "young 3e+09", "max iterations 30"))
+    assert "..." not in whole
+    assert f'title="A ({whole}"' in text

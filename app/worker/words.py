@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from html import escape
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from app.glossary import explained
-from app.labels import changes_of, label_of
+from app.labels import FEW, changes_of, label_of
 from app.views.drawing import Scene
 from app.worker.recording import Recording
 from app.worker.sampler import Frame
@@ -127,11 +127,12 @@ def key_figures(scene: Scene) -> str:
     Errors are those beside a reference; where there is none, they are left out.
     """
     run, before, iteration = scene.run, scene.before, scene.frame.iteration
-    rows = [("this run", _cells(run, iteration))]
+    rows = [_Row("this run", _cells(run, iteration))]
     if before is not None and scene.is_paired:
         rows = _paired(run, before, iteration)
     elif before is not None:
-        rows.append((f"run before ({escape(before.title)})", _cells(before, before.iteration)))
+        name = f"run before ({escape(before.title)})"
+        rows.append(_Row(name, _cells(before, before.iteration)))
     shown = [
         place
         for place, text in enumerate(HEADS)
@@ -140,8 +141,9 @@ def key_figures(scene: Scene) -> str:
     chief = CHIEF if CHIEF in (HEADS[place] for place in shown) else ESTIMATE
     head = "".join(f"<th{_mark(place, chief)}>{explained(HEADS[place])}</th>" for place in shown)
     body = "".join(
-        f'<tr><th title="{name}">{name}</th>{_row(cells, shown, chief)}</tr>'
-        for name, cells in rows
+        f'<tr><th title="{row.whole or row.name}" aria-label="{row.whole or row.name}">{row.name}'
+        f"</th>{_row(row.cells, shown, chief)}</tr>"
+        for row in rows
     )
     return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
 
@@ -156,27 +158,43 @@ def _mark(place: int, chief: str) -> str:
     return ' class="chief"' if HEADS[place] == chief else ""
 
 
-def _paired(run: Recording, twin: Recording, iteration: int) -> list[tuple[str, Sequence[str]]]:
+class _Row(NamedTuple):
+    """A run's name (HTML) and figures; its whole name, where that is longer than there is room."""
+
+    name: str
+    cells: Sequence[str]
+    whole: str = ""
+
+
+def _paired(run: Recording, twin: Recording, iteration: int) -> list[_Row]:
     """Give the figures of run B, and of run A as far as B in iterations, and in time."""
-    own = label_of(run.settings, changes_of(run.settings, twin.settings))
-    other = label_of(twin.settings, changes_of(twin.settings, run.settings))
     return [
-        (f"B ({escape(own or 'as A')})", _cells(run, iteration)),
-        (f"A ({escape(other or 'as B')})", _cells(twin, twin.shown)),
+        _compared("B", run, twin, "as A", iteration),
+        _compared("A", twin, run, "as B", twin.shown),
         _at_equal_time(run, twin, iteration),
     ]
 
 
-def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> tuple[str, Sequence[str]]:
+def _compared(name: str, run: Recording, other: Recording, alike: str, iteration: int) -> _Row:
+    """Give the figures of a run, which is called by what it has other than the other one."""
+    changes = changes_of(run.settings, other.settings)
+    few, all_of_them = (
+        f"{name} ({escape(label_of(run.settings, changes, most) or alike)})"
+        for most in (FEW, len(changes))
+    )
+    return _Row(few, _cells(run, iteration), all_of_them)
+
+
+def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> _Row:
     """Give A after the run time of B, or B after that of A where A has not run as long yet."""
     now, last = run.figures_of(iteration), twin.figures_of(twin.iteration)
     if now is None or last is None:
-        return "at equal run time", _cells(twin, 0)
+        return _Row("at equal run time", _cells(twin, 0))
     if twin.status is None and last["seconds"] < now["seconds"]:
         name, slower, done = "B at A's run time", run, run.last_within(last["seconds"])
     else:
         name, slower, done = "A at B's run time", twin, twin.last_within(now["seconds"])
-    return name, _cells(slower, done) if done else ()
+    return _Row(name, _cells(slower, done) if done else ())
 
 
 def _cells(run: Recording, iteration: int) -> Sequence[str]:
