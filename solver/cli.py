@@ -27,6 +27,7 @@ from solver.files import (
     summary,
 )
 from solver.latin import Ending, Solution, solve
+from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
@@ -108,10 +109,10 @@ def _run(chosen: argparse.Namespace) -> int:
     spent = time.perf_counter() - began
     if nothing_acts(problem):
         print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
+    method = method_of(settings)
+    _announce(run_cost(problem, method, settings.max_iterations, with_reference=chosen.reference))
     distance = _distance(problem) if chosen.reference else None
-    solution = solve(
-        problem, method_of(settings), distance=distance, watch=chosen.reference, spent=spent
-    )
+    solution = solve(problem, method, distance=distance, watch=chosen.reference, spent=spent)
     if chosen.out is not None:
         try:
             save_result(chosen.out, settings, solution)
@@ -127,6 +128,17 @@ def _run(chosen: argparse.Namespace) -> int:
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
         _print_figures(settings, solution, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
+
+
+def _announce(cost: RunCost) -> None:
+    """Say what a long or large run will take, before it begins."""
+    if not cost.is_large:
+        return
+    line = f"slipfront: this will take about {cost}"
+    if cost.reference > 0.2 * cost.seconds:
+        share = round(100.0 * cost.reference / cost.seconds)
+        line += f", {share} % of the time for the reference, which --no-reference leaves out"
+    print(line, file=sys.stderr, flush=True)
 
 
 def _check_file(path: Path) -> None:

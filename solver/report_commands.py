@@ -22,6 +22,7 @@ from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_o
 from solver.study.benchmarks.reduction_cost import print_reduction_cost
 from solver.study.benchmarks.sweep_overhead import print_overhead
 from solver.study.benchmarks.thread_gain import print_thread_gain
+from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
 from solver.study.paper_figures import paper_figures
@@ -46,6 +47,9 @@ def add_reports(commands: Any) -> None:
     )
     cost.add_argument(
         "--sweep", action="store_true", help="400 runs of a sweep against their own time instead"
+    )
+    cost.add_argument(
+        "--whole", action="store_true", help="what runs take against what they say before, instead"
     )
     cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
@@ -100,6 +104,9 @@ def _benchmark(chosen: argparse.Namespace) -> int:
         return 0
     if chosen.sweep:
         print_overhead(SIDE)
+        return 0
+    if chosen.whole:
+        print_whole_cost()
         return 0
     measure = print_reduction_cost if chosen.reduction else print_iteration_cost
     measure(chosen.repeats)

@@ -35,8 +35,8 @@ class Shown:
 
     Attributes
     ----------
-    pictures, files
-        All that it sent.
+    pictures, files, said
+        All that it sent, and what it said between pictures.
     models
         What the page has after each of them.
     """
@@ -44,6 +44,7 @@ class Shown:
     def __init__(self, look: Look = ALL) -> None:
         self.pictures: list[Picture] = []
         self.files: list[list[Any]] = []
+        self.said: list[str] = []
         self.models: list[Models] = []
         self.studio = Studio(self._paint, lambda: False)
         self.studio.obey(Watch(look))
@@ -90,8 +91,12 @@ class Shown:
 
     def _paint(self, picture: Picture | File) -> None:
         if isinstance(picture, File):
-            self.files.append(unpack(picture.block)["take-away"]["file"])
-            self.studio.obey(Ready())
+            found = unpack(picture.block)
+            if "take-away" in found:
+                self.files.append(found["take-away"]["file"])
+                self.studio.obey(Ready())
+            else:
+                self.said.append(found["status"]["text"])
             return
         self.pictures.append(picture)
         before = self.models[-1] if self.models else {}

@@ -55,7 +55,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class File:
-    """Something to be saved, for this page alone and not for a class that follows it.
+    """Something to be saved or said now, for this page alone and not for a class that follows it.
 
     Attributes
     ----------

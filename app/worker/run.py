@@ -14,11 +14,12 @@ from app.worker.recording import Recording
 from app.worker.rivals import KeptReferences
 from app.worker.sampler import Frame, Sampler
 from app.worker.seeking import Found, Seeking
-from app.worker.shown import Look
+from app.worker.shown import Look, has_reference
 from app.worker.tempo import Tempo
 from solver.files import scene_settings
 from solver.latin import Checkpoint, Decision, Ending, Iterate, StopRules, record
 from solver.latin.indicators import latin_indicator
+from solver.latin.run_cost import run_cost
 from solver.latin.warm import Start, choose_start, fits, iterations_from
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted, Reference
@@ -53,6 +54,8 @@ class WorkerRun:
         What is kept of it.
     has_news
         Whether something has changed since this was last set to False.
+    cost
+        What it is expected to take.
 
     Raises
     ------
@@ -73,6 +76,8 @@ class WorkerRun:
         self._references = references
         self._settings = scene_settings(order.scene).checked(order.values)
         self._problem = discretise(self._settings)
+        own, most = self._settings, self._settings.max_iterations
+        self.cost = run_cost(self._problem, method_of(own), most, with_reference=has_reference(own))
         self._sampler = Sampler(self._problem, self._settings, look)
         self.recording = Recording(
             order.ticket,

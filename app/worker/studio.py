@@ -20,7 +20,7 @@ from app.worker.sampler import Frame
 from app.worker.shown import Look, instant_of
 from app.worker.tables import table
 from app.worker.twin import Twin
-from app.worker.words import key_figures, status_line
+from app.worker.words import before_a_run, key_figures, status_line
 from solver.latin import Iterate
 from solver.refusal import RefusedError
 
@@ -109,6 +109,8 @@ class Studio:
     def _begin(self, order: Run) -> None:
         previous = self._last if order.warm else None
         self._run = WorkerRun(order, self._look, self._urgent, self._references, previous)
+        if self._run.cost.is_large and not order.follows_hand:
+            self._send(File(self._easel.say({"status": before_a_run(self._run.cost)})))
         self._pair(order)
         settings, before = self._run.recording.settings, self._before
         # Runs of another scene are nothing to compare with.

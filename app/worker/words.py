@@ -15,6 +15,7 @@ from app.worker.sampler import Frame
 from app.worker.shown import has_reference
 from solver.definitions import about
 from solver.latin import Ending
+from solver.latin.run_cost import RunCost
 from solver.settings import Settings
 
 ENDINGS = {
@@ -49,6 +50,11 @@ HEADS = (
 ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
 CHIEF, ESTIMATE = "Friction force error", "Estimated force error"
 """What is left where all is folded to a line, with a reference and without one."""
+
+
+def before_a_run(cost: RunCost) -> str:
+    """Say what a long or large run will take, until its first picture comes (HTML)."""
+    return f"<b>starting</b>: this will take about {cost}"
 
 
 def status_line(

@@ -1,0 +1,114 @@
+"""What a whole run takes, told before it begins.
+
+Estimated from counts, as the status step's cost is (`solver.latin.step_cost`), with its rates.
+`python -m solver benchmark --whole` sets estimates beside what is measured.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solver.discrete.problem import Problem
+from solver.latin.acceleration import MEMORY, MOST_VALUES
+from solver.latin.estimate import WAIT
+from solver.latin.method import Latin
+from solver.latin.step_cost import SYSTEMS, costs_of
+from solver.reference.choice import is_alone
+from solver.reference.contact import MOST_JUMPS, jumps_in
+
+ITERATIONS, MORE = 30, 2.5
+"""That a run takes, and how many more with every interface but the first: the scenes' defaults take
+4 to 55, strands of 10, 20 and 40 wires 31, 65 and 147, 50 layers 81 (measured)."""
+PLAIN = 5.0
+"""Times as many without acceleration (measured on the bar)."""
+WATCHED = 2.0
+"""Time of an iteration with its indicators, estimate and errors, over that of its stages."""
+BEGINNING = 0.05
+"""Seconds for what comes before the first iteration, that no size makes less (measured)."""
+FIELDS = 25
+"""Boundary fields that a run holds at a time, besides those that the acceleration remembers: 22 on
+a block of 768 x 384 elements, 33 on a bar of 16 000 (measured)."""
+SQUARES = 6
+"""Matrices between all jumps that a condensation holds at a time."""
+ANSWERS = 2
+"""Matrices of all degrees of freedom and jumps that it holds at a time."""
+NUMBER = 8
+"""Bytes."""
+LONG, LARGE = 20.0, 1e9
+"""Seconds and bytes from which a run says before it begins what it will take."""
+
+
+@dataclass(frozen=True)
+class RunCost:
+    """Estimated, by a factor of three.
+
+    Attributes
+    ----------
+    seconds, memory
+        Of the whole, s and B.
+    reference
+        Seconds of these for the reference; 0 without one.
+    """
+
+    seconds: float
+    memory: float
+    reference: float
+
+    @property
+    def is_large(self) -> bool:
+        """Whether one would like to know before."""
+        return self.seconds > LONG or self.memory > LARGE
+
+    def __str__(self) -> str:
+        return f"{_duration(self.seconds)} and {self.memory / 1e9:.1g} GB"
+
+
+def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool) -> RunCost:
+    """Estimate what a run takes from a problem to its end.
+
+    Parameters
+    ----------
+    problem, latin
+        What is solved, and how.
+    most
+        Iterations that it may take.
+    with_reference
+        Whether the incremental reference is found before, where there is one.
+    """
+    costs, n_jumps = costs_of(problem), jumps_in(problem)
+    has_solver = is_alone(problem) or n_jumps <= MOST_JUMPS
+    incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
+    iterations = min(_iterations(problem, latin), most)
+    steps = latin.finish is not None and has_solver and costs.afford(iterations, WAIT)
+    seconds = BEGINNING + WATCHED * iterations * costs.iteration + steps * incremental
+    reference = incremental if with_reference and has_solver else 0.0
+    fields, dense = _fields(problem), _dense(problem, n_jumps)
+    memory = max(fields + steps * dense, dense if reference else 0.0)
+    return RunCost(seconds + reference, NUMBER * memory, reference)
+
+
+def _iterations(problem: Problem, latin: Latin) -> float:
+    expected = ITERATIONS + MORE * (len(problem.rubbing) - 1)
+    return expected if latin.acceleration else PLAIN * expected
+
+
+def _fields(problem: Problem) -> float:
+    """Give the numbers in all fields of the iteration."""
+    field = problem.n_rows * problem.n_instants
+    remembered = min(MEMORY, max(1, MOST_VALUES // field - 1)) + 1
+    return float((FIELDS + remembered) * field)
+
+
+def _dense(problem: Problem, n_jumps: int) -> float:
+    """Give the numbers in the matrices of a condensation; a lone support has a band."""
+    if is_alone(problem):
+        return 0.0
+    return n_jumps * (SQUARES * float(n_jumps) + ANSWERS * problem.n_dofs)
+
+
+def _duration(seconds: float) -> str:
+    """Write seconds with one digit, as the estimate has no more."""
+    for size, unit in ((3600.0, "h"), (60.0, "min")):
+        if seconds >= 1.5 * size:
+            return f"{float(f'{seconds / size:.1g}'):g} {unit}"
+    return f"{float(f'{seconds:.1g}'):g} s"

@@ -1,0 +1,54 @@
+"""What whole runs take beside what `solver.latin.run_cost` expects of them."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from solver.latin.run_cost import run_cost
+from solver.reference.choice import reference_of
+from solver.running.machine import machine
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.finished import finished_run
+from solver.study.memory import memory_of, settle
+
+SIZES: tuple[tuple[str, dict[str, Any]], ...] = (
+    *((scene, {}) for scene in CATALOGUE),
+    ("bar", {"elements": 3200, "instants": 401}),
+    ("strand", {"wires": 20}),
+    ("block", {"elements": 192, "elements_up": 96}),
+    ("layers", {"layers": 12}),
+)
+
+
+def print_whole_cost() -> None:
+    """Print seconds of the processor and memory of runs without a reference, and its seconds."""
+    settle()
+    print(machine())
+    print("expected beside measured; the reference apart")
+    print(f"{'run':<40} {'s':>13} {'MB':>13} {'reference, s':>13}")
+    for scene, changes in SIZES:
+        settings = CATALOGUE[scene].settings.checked(changes)
+        label = " ".join([scene, *(f"{name}={value}" for name, value in changes.items())])
+        pairs = zip(expected(settings), measured(settings), strict=True)
+        print(f"{label:<40}", *(f"{one:>6.2g} {other:>6.2g}" for one, other in pairs))
+
+
+def expected(settings: Settings) -> tuple[float, float, float]:
+    """Estimate seconds and MB of a run, and seconds of its reference."""
+    problem, method = discretise(settings), method_of(settings)
+    most = settings.max_iterations
+    alone = run_cost(problem, method, most, with_reference=False)
+    beside = run_cost(problem, method, most, with_reference=True)
+    return alone.seconds, alone.memory / 1e6, beside.reference
+
+
+def measured(settings: Settings) -> tuple[float, float, float]:
+    """Measure the same."""
+    began = time.process_time()
+    finished_run(settings, errors=False)
+    whole = time.process_time()
+    reference_of(discretise(settings))
+    return whole - began, memory_of(settings) / 1e6, time.process_time() - whole
