@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import param
 import pytest
 from lone_link import LoneLink
 
+from app import notes
 from app.form import ENDS, POINTS, USUAL, item_of
 from app.pages import Pages
 from app.refusals import refused
@@ -158,3 +160,23 @@ def test_columns_of_a_table_have_units() -> None:
             if isinstance(definition, CurveParameter):
                 assert definition.units[0] == {"time": "s", "position": "m"}[definition.abscissa]
                 assert bool(definition.units[1]) == (definition.ordinate != "factor")
+
+
+def test_a_refusal_stays_until_something_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    stand: list[str] = []
+
+    def error(text: str, duration: int) -> Any:
+        assert duration == 0, "goes by itself"
+        stand.append(text)
+        return SimpleNamespace(destroy=stand.clear)
+
+    area = SimpleNamespace(notifications=SimpleNamespace(error=error))
+    monkeypatch.setattr(notes.pn, "state", area)
+    session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire)
+    told = notes.Notes(session)
+    told.complain("Friction cannot be this.")
+    told.follow()
+    assert stand == ["Friction cannot be this."]
+    session.change("friction", 0.4)
+    told.follow()
+    assert stand == []
