@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
@@ -22,6 +21,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.benchmarks.timing import medians_of, samples_of
 
 SIZES = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
 
@@ -86,12 +86,8 @@ def iteration_cost(nodes: int, instants: int, repeats: int) -> Cost:
         linear_stage(multi),
         _floor(problem, multi),
     ]
-    number = max(3, int(2e6 / (nodes * instants) ** 1.0))
-    samples: list[list[float]] = [[] for _ in parts]
-    for _ in range(repeats):
-        for part, times in zip(parts, samples, strict=True):
-            times.append(_seconds(part, number))
-    local_s, mono_s, multi_s, floor_s = (statistics.median(times) for times in samples)
+    number = max(3, int(2e6 / (nodes * instants)))
+    local_s, mono_s, multi_s, floor_s = medians_of(parts, repeats, number)
     return Cost(nodes, instants, local_s, max(multi_s - mono_s, 0.0), mono_s, floor_s)
 
 
@@ -121,13 +117,6 @@ def _floor(problem: Problem, stage: FullLinearStage) -> Callable[[], None]:
             np.matmul(matrix, columns, out=out.reshape(len(matrix), -1, order="F"))
 
     return passes
-
-
-def _seconds(part: Callable[[], object], number: int) -> float:
-    start = time.perf_counter()
-    for _ in range(number):
-        part()
-    return (time.perf_counter() - start) / number
 
 
 def print_iteration_cost(repeats: int) -> None:
@@ -192,7 +181,7 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
             rules.judge(iterate)
 
     ways: list[Callable[[], object]] = [bare, kept, judged_without_step]
-    times = [[_seconds(way, 1) for way in ways] for _ in range(repeats)]
+    times = zip(*samples_of(ways, repeats), strict=True)
     own, snapshot, stop = (
         statistics.median(found)
         for found in zip(*((a, (b - a) / a, (c - b) / a) for a, b, c in times), strict=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -26,6 +25,7 @@ from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
+from solver.study.benchmarks.timing import medians_of
 
 MODES = (2, 4, 8, 16, 32, 64)
 BARS = ((51, 101), (201, 101), (1001, 101), (1001, 1001))
@@ -123,7 +123,7 @@ def reduction_cost(
         rules = [Enrichment(threshold, tolerance=1e-14, pairs=1, largest=size) for size in sizes]
         stages += [ReducedLinearStage(problem, k, rule, multiscale=True) for rule in rules]
     steps = [_step(stage, start, target) for stage in stages]
-    full, *rest = _medians(steps, repeats, max(3, int(2e6 / np.prod(shape))))
+    full, *rest = medians_of(steps, repeats, max(3, int(2e6 / np.prod(shape))))
     return ReductionCost(
         operator,
         smallest,
@@ -139,15 +139,6 @@ def reduction_cost(
             for size in sizes
         },
     )
-
-
-def _medians(steps: Sequence[Callable[[], None]], repeats: int, calls: int) -> list[float]:
-    """Measure steps in turns, each so many calls long; give the median seconds of each."""
-    samples: list[list[float]] = [[] for _ in steps]
-    for _ in range(repeats):
-        for step, times in zip(steps, samples, strict=True):
-            times.append(_seconds(step, calls))
-    return [statistics.median(times) for times in samples]
 
 
 WHOLE = ((51, 101), (201, 101), (1001, 101), (1001, 1001), (4001, 401))
@@ -211,13 +202,6 @@ def _step(stage: LinearStage[Any], start: Checkpoint, target: Array) -> Callable
         stage.incoming(state, incoming)
 
     return step
-
-
-def _seconds(stage: Callable[[], None], number: int) -> float:
-    start = time.perf_counter()
-    for _ in range(number):
-        stage()
-    return (time.perf_counter() - start) / number
 
 
 def print_reduction_cost(repeats: int) -> None:
