@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 
 from solver.discrete.problem import Problem
-from solver.reference.rod_structure import Structure
+from solver.reference.assembled_rods import AssembledRods
 from solver.reference.search import Minimum
 from solver.reference.solution import Interrupted, Reference, States
 from solver.reference.starts import Starts
@@ -55,7 +55,7 @@ class IncrementalRod:
         self._problem = problem
         if not problem.friction.is_plain:
             raise ValueError("this solver knows Coulomb's friction of known bound on a support")
-        self._structure = Structure(problem)
+        self._structure = AssembledRods(problem)
 
     def march(
         self,

@@ -13,7 +13,7 @@ from solver.reference.search import Minimum, Search
 from solver.reference.solution import States
 
 
-class Structure:
+class AssembledRods:
     """The assembled structure, and the steps of its load and supports, one row an instant."""
 
     def __init__(self, problem: Problem) -> None:
