@@ -3,13 +3,15 @@
 Balance and closed forms: solver/README.md, 9.
 """
 
+from itertools import islice
+
 import numpy as np
 import pytest
 from contact_problems import block
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.latin import solve
+from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
 from solver.reference.condensation import jumps
@@ -199,3 +201,50 @@ def test_a_spring_on_a_node_that_rubs_follows_from_what_rubs():
     base, ties = base_of(own, rigid)
     assert np.array_equal(base, np.flatnonzero(rigid))
     assert abs(ties @ own[base] - own).max() == 0.0
+
+
+def course_of(values, n):
+    """Give the error of the contact force, iteration by iteration."""
+    problem = discretise(values)
+    distance = distance_to(reference_of(problem), problem)
+    found = islice(iterations(problem, method_of(values), resumable=False), n)
+    return np.array([distance.of_friction_force(one) for one in found])
+
+
+@pytest.mark.parametrize("method", ["paper", "fast"])
+def test_the_iteration_itself_does_not_see_how_soft_the_spring_is(method):
+    """What the body's own deformation takes is all: a shift of the whole body takes nothing."""
+    own = {**SMALL, "young": STEEL, "method": method, "finish": "none"}
+    soft, steel, hard = (
+        course_of(InclineSettings.checked({**own, "spring": spring}), 100)
+        for spring in (2e6, 2e9, 1e18)
+    )
+    for course in (soft, steel, hard):
+        assert course[-1] < 1e-3
+    if method == "paper":  # an acceleration makes much of rounding on its way
+        np.testing.assert_allclose(soft, steel, rtol=0.3, atol=1e-6)
+        np.testing.assert_allclose(hard, steel, rtol=0.3, atol=1e-6)
+
+
+def test_a_shifted_local_stage_balances_the_load_at_every_instant():
+    values = InclineSettings.checked({**SMALL, "method": "paper"})
+    problem = discretise(values)
+    iterate = next(islice(iterations(problem, method_of(values)), 4, None))
+    angle = np.radians(values.path("slope_load"))
+    force = problem.scales.force * iterate.boundary_local_force
+    ground, spring = problem.rubbing["support"], problem.rubbing["spring"]
+    along = force[ground.tangent.above].sum(axis=0) + force[spring.normal.component.above][0]
+    np.testing.assert_allclose(along, values.weight * np.sin(angle), atol=1e-9 * values.weight)
+    own = problem.scales.force * iterate.k[:, None] * (iterate.local_incoming - iterate.incoming)
+    assert np.abs(own).max() > 1e-3 * values.weight  # it had to be shifted for that
+
+
+@pytest.mark.parametrize("finish", ["none", "status"])
+def test_a_run_that_rigid_motion_hides_from_says_what_to_do_and_that_helps(finish):
+    hidden = {**SMALL, "young": STEEL, "spring": 2.0, "method": "paper"}
+    values = InclineSettings.checked({**hidden, "accuracy": 1e-4, "finish": finish})
+    run = solve(discretise(values), method_of(values))
+    assert run.is_certified == (finish == "status")
+    if finish == "none":
+        assert run.status.ending is Ending.STALLED
+        assert "finish=status" in run.status.advice

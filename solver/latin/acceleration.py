@@ -12,6 +12,7 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
 from solver.latin.linear import FullLinearStage, LinearStage
+from solver.latin.slide import slide_of
 from solver.refusal import check_range
 
 MOST_VALUES = 50_000_000
@@ -69,7 +70,15 @@ class Anderson:
         if problem.opens:
             is_held = any(law.is_on_support for law in problem.rubbing.values())
             growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-        return Mixing(weights, self.memory, growth, blocks)
+        way = slide_of(problem)
+        free = None
+        if way is not None:
+            rows = way[problem.row_dofs]
+            free = [
+                np.broadcast_to(rows[group.rows][:, :, None], group.target.shape)
+                for group in stage.groups
+            ]
+        return Mixing(weights, self.memory, growth, blocks, free)
 
 
 class Mixing:
@@ -94,6 +103,9 @@ class Mixing:
         of friction is known 1 is best (twice as much takes up to a third more iterations to 1e-6).
     blocks
         Of instants, the last axis of the parts, in which images are kept and mixed.
+    free
+        A motion, of the shapes of the weights, that the local stage chooses anew whatever the state
+        is: at every instant a residual counts for nothing along it. None where there is none.
 
     Attributes
     ----------
@@ -107,6 +119,7 @@ class Mixing:
         memory: int,
         growth: float = 1.0,
         blocks: Blocks | None = None,
+        free: list[Array] | None = None,
     ) -> None:
         self._growth = growth
         self._blocks = blocks or at_once(weights[0].shape[-1])
@@ -116,6 +129,7 @@ class Mixing:
         sampled = [_flat(part)[own] for part, own in zip(weights, self._chosen, strict=True)]
         self._samples = _in_a_row([len(own) for own in sampled])
         self._root = np.sqrt(np.concatenate(sampled))
+        self._free = free and _Motion(free, self._chosen, self._root)
         self._memory = max(1, min(memory, MOST_VALUES // sum(sizes) - 1))
         # Memory that nothing was written to costs nothing yet.
         self._images = np.zeros((self._memory + 1, sum(sizes)))
@@ -162,6 +176,8 @@ class Mixing:
         self._take(state, residual)
         np.subtract(residual, self._start, out=residual)
         np.multiply(residual, self._root, out=residual)
+        if self._free:
+            self._free.leave_out(residual)
         size = float(np.sqrt(residual @ residual))
         if not size > 0.0 or not np.isfinite(size):
             return False
@@ -229,6 +245,24 @@ class Mixing:
         parts = zip(state, self._chosen, self._samples, strict=True)
         for part, chosen, place in parts:
             out[place] = _flat(part)[chosen]
+
+
+class _Motion:
+    """A motion that residuals are blind to, at the places of a sample."""
+
+    def __init__(self, free: list[Array], chosen: list[slice | Indices], root: Array) -> None:
+        places = [np.arange(part.size)[own] for part, own in zip(free, chosen, strict=True)]
+        pairs = list(zip(free, places, strict=True))
+        self._way = root * np.concatenate([_flat(part)[own] for part, own in pairs])
+        # In order of memory an instant is a run of places.
+        self._instants = np.concatenate([own * part.shape[-1] // part.size for part, own in pairs])
+        size = np.bincount(self._instants, self._way**2)
+        self._dual = self._way / np.where(size > 0.0, size, 1.0)[self._instants]
+
+    def leave_out(self, residual: Array) -> None:
+        """Take out of a weighted residual what it has of the motion, instant by instant."""
+        share = np.bincount(self._instants, self._dual * residual)
+        residual -= self._way * share[self._instants]
 
 
 def _in_a_row(sizes: list[int]) -> list[slice]:

@@ -117,9 +117,10 @@ class AtWork:
 
     def local_stage(self, number: int) -> None:
         """Obey the interface laws."""
-        self._read = self.cycle.incoming
         self._local_error = self.cycle.local_stage(number)
-        self._direction.see(self.cycle.parts.local.stage.displacement, self._read)
+        stage = self.cycle.parts.local.stage
+        self._read = read_only(stage.incoming)
+        self._direction.see(stage.displacement, self._read)
 
     def linear_stage(self, number: int) -> None:
         """Solve the elasticity of all substructures."""

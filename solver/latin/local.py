@@ -7,6 +7,7 @@ import numpy as np
 from solver.arrays import Array, Indices, space_time
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
+from solver.latin.slide import Slide, slide_of
 from solver.laws import Interface
 from solver.laws.interface import Region
 
@@ -32,6 +33,9 @@ class LocalStage:
     ----------
     displacement
         W^ of the last call, shape (n_rows, n_instants); the next call gives a new one.
+    incoming
+        z with which the last call obeyed: as read, but for the shift of a body that slides as a
+        whole.
     """
 
     def __init__(
@@ -47,8 +51,10 @@ class LocalStage:
         region = Region(place, k, instants)
         shape = (len(rows), len(instants))
         self._blocks = blocks or at_once(len(instants))
-        self.displacement = space_time(*shape)
+        self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
+        way = slide_of(problem)
+        self._slide = None if way is None else Slide(problem, way, region)
         laws = together(problem)
         self._remembering = [law.rule(region) for law in laws if law.remembers]
         self._instant = [law.rule(region) for law in laws if not law.remembers]
@@ -65,6 +71,9 @@ class LocalStage:
         -------
         W^ + F^/k, same shape; the next call overwrites it.
         """
+        if self._slide is not None:
+            incoming = self._slide.balanced(incoming)
+        self.incoming = incoming
         found = self.displacement = np.empty_like(self._outgoing)
         for rule in self._remembering:
             rule(incoming, found, ALL)

@@ -213,12 +213,18 @@ class Stall:
         if self._best <= tolerance:
             return (
                 "The LATIN indicator is below its tolerance, yet the k-free indicator shows that "
-                "the contact laws are broken: k is far from what suits. Try another k_scale."
+                "the contact laws are broken: k is far from what suits, or rigid motion so large "
+                f"that it hides how the body deforms. {self._remedy('Try')}"
             )
         if self._latin.relaxation > 0.9:
             return "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
-        remedy = "Accept a larger tolerance, or try another k_scale."
-        return f"The LATIN indicator has stopped falling. {self._latin.linear.remedy or remedy}"
+        remedy = self._latin.linear.remedy or self._remedy("Accept a larger tolerance, or try")
+        return f"The LATIN indicator has stopped falling. {remedy}"
+
+    def _remedy(self, begin: str) -> str:
+        """Say what helps; a status step needs neither k nor the digits of W + F/k."""
+        finishes = self._latin.finish is not None or self._latin.is_reduced
+        return f"{begin} another k_scale{'' if finishes else ', or finish=status'}."
 
 
 def _diverged(iteration: int) -> Status:
