@@ -11,13 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import SettingError
+from solver.discrete.rest import rigid_slide
+from solver.discrete.stack_data import Spring
 from solver.latin import Ending, solve
 from solver.laws import Component, Contact, Frictionless, SlackSpring
 from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise, loop_of
-from solver.scenes.incline import InclineSettings
+from solver.scenes.incline import InclineSettings, incline
 from solver.scenes.method import method_of
 
 SMALL = {"elements": 16, "elements_up": 8, "instants": 41}
@@ -137,6 +139,20 @@ def test_a_slope_that_falls_below_the_horizontal_lets_the_block_go():
     with pytest.raises(SettingError, match="friction cannot hold it"):
         InclineSettings.checked({**SMALL, "slope_load": [[0.0, 0.0], [1.0, -20.0]]})
     assert InclineSettings.checked({**SMALL, "slope_load": [[0.0, 0.0], [1.0, -16.0]]})
+
+
+def test_a_rigid_block_slides_no_farther_than_friction_and_spring_let_it():
+    settings = InclineSettings.checked(SMALL)
+    place = rigid_slide(incline(settings), Spring(settings.slack, settings.spring))
+    angle = np.radians(settings.path("slope_load"))
+    pull = settings.spring * np.maximum(-place - settings.slack, 0.0)
+    left = settings.weight * np.sin(angle) - pull
+    most = 0.3 * settings.weight * np.cos(angle)
+    assert np.all(np.abs(left) <= most * (1.0 + 1e-9))
+    moves = np.diff(place, prepend=0.0)
+    assert np.all(left[moves < 0.0] == pytest.approx(most[moves < 0.0]))
+    assert np.all(left[moves > 0.0] == pytest.approx(-most[moves > 0.0]))
+    assert (moves < 0.0).sum() > 5 < (moves == 0.0).sum()
 
 
 @settings(derandomize=True, deadline=None, max_examples=60)

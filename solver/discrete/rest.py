@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.equilibrium import is_held_up, is_upright, wrench
-from solver.discrete.stack_data import StackData
+from solver.discrete.stack_data import Spring, StackData
 
 BEDDING = 7.0
 """Stiffness of the support per area, times the body's length over E: that of the contact itself,
@@ -52,6 +52,25 @@ def rigid_rest(scene: StackData) -> Array | None:
     last = np.maximum.accumulate(last)
     settled = np.where(last >= 0, settled[:, last], 0.0)
     return settled if settled.any() else None
+
+
+def rigid_slide(scene: StackData, spring: Spring) -> Array:
+    """Give how far the body would slide if it were rigid, to the right, (n_instants,), m.
+
+    It moves no farther than it must: until friction and the spring together hold it.
+    """
+    assert scene.support is not None
+    pushed, pressed, _ = wrench(scene)
+    bound = scene.support.friction * np.maximum(-pressed, 0.0)
+    found, place = np.zeros_like(pushed), 0.0
+    for instant, (load, most) in enumerate(zip(pushed, bound, strict=True)):
+        pull = spring.stiffness * max(-place - spring.slack, 0.0)
+        # What the spring has to pull at least, and at most, for friction to do the rest.
+        wanted = min(max(pull, -load - most), most - load)
+        if wanted != pull:
+            place = -spring.slack - max(wanted, 0.0) / spring.stiffness
+        found[instant] = place
+    return found
 
 
 def _settled(gap: Array, shapes: Array, wanted: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.motions import rigid_motions
 from solver.discrete.problem import Problem, Scales
-from solver.discrete.rest import rigid_rest
+from solver.discrete.rest import rigid_rest, rigid_slide
 from solver.discrete.sides import neighbour
 from solver.discrete.stack_data import StackData
 from solver.discrete.stack_inside import StackInside
@@ -60,7 +60,10 @@ def _rest(scene: StackData, positions: Array, components: Indices) -> Array | No
         return None
     x, y = positions.T
     modes = np.stack([components, np.where(components == 1, x, -y)], axis=1)
-    return np.asarray(modes @ (rigid / np.array([[scene.length], [1.0]])))
+    found = np.asarray(modes @ (rigid / np.array([[scene.length], [1.0]])))
+    if scene.spring is not None:
+        found += np.outer(components == 0, rigid_slide(scene, scene.spring) / scene.length)
+    return found
 
 
 def _substructure(

@@ -14,8 +14,13 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.laws import Contact, SlackSpring
+from solver.laws.compliant import CompliantSliders
+from solver.laws.coulomb import Sliders
+from solver.laws.frictionless import Frictionless
 from solver.laws.interface import Region
 
+BALANCED = (Sliders, CompliantSliders, Frictionless)
+"""Tangential laws whose friction falls with a shift, their bound being known from the pressure."""
 SAME = 1e-9
 """By how much a motion may differ from a slide along the support."""
 
@@ -33,6 +38,8 @@ def slide_of(problem: Problem) -> Array | None:
         return None
     (law,) = ground
     if law.normal is None or not law.is_on_support:
+        return None
+    if type(law.tangential) not in BALANCED:
         return None
     along, across = law.tangent.above, law.normal.component.above
     wanted = np.concatenate([np.ones(len(along)), np.zeros(len(across))])
