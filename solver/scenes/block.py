@@ -51,7 +51,14 @@ class BlockSettings(SideSettings):
         essential=True,
     )
     length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", "Body")
-    height = shared.size(0.05, (0.01, 1.0), "Height", "Height of the body.", "Body")
+    height = shared.size(
+        0.05,
+        (0.01, 1.0),
+        "Height",
+        "Height of the body. Shear bends one as high as long: its foot tilts, and a contact on a "
+        "parabola rolls.",
+        "Body",
+    )
     body_force_x = quantity(
         0.0,
         (-1e15, 1e15),
