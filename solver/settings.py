@@ -5,13 +5,13 @@ A settings object is checked once, at the edge, and cannot be changed; `replace`
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar
 
 import param
 
 from solver.checked import Checked
 from solver.definitions import choice, count, quantity, switch
+from solver.methods import METHODS
 
 
 def _is_reduced(settings: Settings) -> bool:
@@ -23,10 +23,7 @@ def _is_sampled(settings: Settings) -> bool:
 
 
 class Settings(Checked):
-    """Settings of the method, common to all scenes; a scene adds its own.
-
-    `Settings.checked` is the one edge at which values are verified.
-    """
+    """Settings of the method, verified by `checked` alone; a scene adds its own."""
 
     duration: param.Number[float]
     instants: param.Integer[int]
@@ -34,24 +31,7 @@ class Settings(Checked):
     friction: param.Number[float]
     """Every scene defines these, where it shows them."""
 
-    METHODS: ClassVar[Mapping[str, Mapping[str, object]]] = {
-        "fast": {
-            "search_direction": "auto",
-            "acceleration": "anderson",
-            "start": "nested",
-            "relaxation": 0.8,
-            "finish": "status",
-            "tolerance": 1e-3,
-        },
-        "paper": {
-            "search_direction": "paper",
-            "acceleration": "none",
-            "start": "zero",
-            "relaxation": 0.8,
-            "finish": "none",
-            "tolerance": 1e-10,
-        },
-    }
+    METHODS: ClassVar = METHODS
 
     substructures = count(
         10,
@@ -296,10 +276,7 @@ class Settings(Checked):
 
     @property
     def n_jumps(self) -> int:
-        """Components of all contacts that open or lie between bodies, which a reference condenses.
-
-        None on a rigid support of known bound.
-        """
+        """Components of all contacts, none on a rigid support of known bound."""
         return 0
 
     @property

@@ -70,12 +70,14 @@ def test_the_fast_method_finds_the_solution_of_a_hard_bar(command):
 
 
 @pytest.mark.parametrize("elements", [59, 60])
-def test_a_block_without_a_solution_is_not_called_converged(elements):
+def test_a_block_whose_solution_nobody_else_finds_is_called_converged_only_if_certified(elements):
     outcome = outcome_of(
         from_words(BLOCK.replace("height=0.321", "height=0.32"), elements=elements)
     )
     if outcome.doubt:
-        assert outcome.ending != Ending.CONVERGED
+        # Friction is large: an iterate's statuses may lead where those of an instant before do not.
+        assert outcome.ending != Ending.CONVERGED or outcome.certified
+        assert not outcome.certified or outcome.residual <= AT_ROUNDING
     else:
         assert outcome.error_force <= ALLOWED * 0.01
 

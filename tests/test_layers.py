@@ -24,6 +24,7 @@ LAYERS = [
     ["disk"],
     ["tables"],
     ["checked"],
+    ["methods"],
     ["settings"],
     ["loads"],
     ["scenes"],

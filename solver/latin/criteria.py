@@ -138,6 +138,10 @@ class _IndicatorJudge(Judge):
         is_low = numbers.indicator <= self._eta
         return "" if is_low else "The LATIN indicator is still above its tolerance"
 
+    def has(self, numbers: Numbers) -> str:
+        is_low = numbers.indicator <= self._eta
+        return "The LATIN indicator is below its tolerance" if is_low else ""
+
 
 class _Limit(Judge):
     """What ends a run that has not converged."""

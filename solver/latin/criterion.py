@@ -38,6 +38,10 @@ class Judge(ABC):
         """Say what is not met yet, in a sentence without its full stop; or nothing."""
         return ""
 
+    def has(self, numbers: Numbers) -> str:
+        """Say what is met although the run goes on, likewise; or nothing worth saying."""
+        return ""
+
     def judge(self, numbers: Numbers) -> Status | None:
         """Look at an iterate if it is time to; say how the run ends, or None."""
         looks = numbers.are_asked or self.is_due(numbers.number)
@@ -110,7 +114,9 @@ class _AllJudge(Judge):
 
     def lacks(self, numbers: Numbers) -> str:
         # What is looked at last is the dearest to meet, and says the most.
-        return next(filter(None, (part.lacks(numbers) for part in reversed(self._parts))), "")
+        lack = next(filter(None, (part.lacks(numbers) for part in reversed(self._parts))), "")
+        met = next(filter(None, (part.has(numbers) for part in self._parts)), "")
+        return f"{met}, yet {lack[0].lower()}{lack[1:]}" if met and lack else lack
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from solver.laws.compliant import Compliant
 from solver.laws.coulomb import Coulomb
+from solver.laws.friction_law import FrictionLaw
 from solver.laws.slip_dependent import SlipDependent
-from solver.laws.tangential import FrictionLaw
 
 FRICTION_LAWS: dict[str, type[FrictionLaw]] = {
     "coulomb": Coulomb,

@@ -13,9 +13,10 @@ from typing import ClassVar
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.coulomb import SliderRule, Sliders
+from solver.laws.friction_law import FrictionLaw
 from solver.laws.interface import Region
-from solver.laws.tangential import FrictionLaw, Tangential, TangentialRule
+from solver.laws.sliders import SliderRule, Sliders
+from solver.laws.tangential import Tangential, TangentialRule
 from solver.refusal import check_range
 
 

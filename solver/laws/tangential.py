@@ -10,37 +10,13 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.laws.interface import Component, Region
-
-if TYPE_CHECKING:
-    from solver.laws.coulomb import Sliders
-
-
-class FrictionLaw(ABC):
-    """A law of friction, before anything is known of a mesh."""
-
-    words: ClassVar[str]
-    """What it is, for who chooses it."""
-
-    @abstractmethod
-    def on(self, sliders: Sliders, weights: Array, length: float) -> Tangential:
-        """Give the law at pairs.
-
-        Parameters
-        ----------
-        sliders
-            What they would be with Coulomb's law.
-        weights
-            Tributary length or area of each pair, shape (n_pairs,), m or m^2.
-        length
-            Unit of lengths, m.
-        """
 
 
 class TangentialRule(Protocol):

@@ -100,13 +100,8 @@ class IncrementalContact:
         own = rules.kept(condensed.moving)
         guesses = None if guess is None else guess[condensed.moving]
         newton = Newton(condensed, own, problem.rest, guesses)
-        size, n_instants = len(condensed.moving), problem.n_instants
-        done = Marched(
-            np.zeros((size, n_instants)),
-            np.zeros((size, n_instants)),
-            np.zeros((len(condensed.base), n_instants)),
-            np.zeros((condensed.gauge.shape[1], n_instants)),
-        )
+        n_instants = problem.n_instants
+        done = self._nothing_done()
         ambiguous, reached = np.zeros((2, n_instants), dtype=bool)
         for instant in range(n_instants):
             if stop is not None and stop():
@@ -124,6 +119,17 @@ class IncrementalContact:
             steps=newton.response.solutions,
             seconds=time.perf_counter() - start,
         )
+
+    def _nothing_done(self) -> Marched:
+        """Allocate what instants are written into."""
+        condensed = self._condensed
+        sizes = (
+            len(condensed.moving),
+            len(condensed.moving),
+            len(condensed.base),
+            condensed.gauge.shape[1],
+        )
+        return Marched(*(np.zeros((size, self._problem.n_instants)) for size in sizes))
 
     def _judged(self, done: Marched, reached: NDArray[np.bool_]) -> Reference:
         """Give all fields, and how far they are from equilibrium and laws."""

@@ -11,7 +11,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, quantity
 from solver.laws.catalogue import FRICTION_LAWS
-from solver.laws.tangential import FrictionLaw
+from solver.laws.friction_law import FrictionLaw
 from solver.loads import PRESETS, instants_of, load_path
 from solver.settings import Settings
 
