@@ -16,7 +16,7 @@ from test_random_settings import RANDOM, RUNS, WRONG, values_of
 from solver.definitions import SettingError
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
-from solver.reference.condensation import NotHeldError
+from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -83,7 +83,7 @@ def assert_ends(scene, raw):
     problem = discretise(chosen)
     try:
         reference = reference_of(problem)
-    except NotHeldError:
+    except NoReferenceError:
         event("not held")
         reference = None
     distance = None if reference is None else distance_to(reference, problem)

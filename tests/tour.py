@@ -12,7 +12,7 @@ from app.form import item_of
 from app.worker.shown import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError
 from solver.reference.choice import reference_of
-from solver.reference.condensation import NotHeldError
+from solver.reference.condensation import NoReferenceError
 from solver.scenes import CATALOGUE, discretise, points_of
 from solver.settings import Settings
 
@@ -79,7 +79,7 @@ def has_errors(settings: Settings) -> bool:
         return False
     try:
         return bool(reference_of(discretise(settings)).converged.all())
-    except NotHeldError:
+    except NoReferenceError:
         return False
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from app.worker.shown import has_reference
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
-from solver.reference.condensation import NotHeldError
+from solver.reference.condensation import NoReferenceError
 from solver.reference.fingerprint import fingerprint
 from solver.reference.solution import Reference
 from solver.settings import Settings
@@ -70,6 +70,6 @@ def _size(found: Reference) -> int:
 def _find(problem: Problem, stop: Callable[[], bool]) -> Reference | None:
     try:
         found = reference_of(problem, stop)
-    except NotHeldError:
+    except NoReferenceError:
         return None
     return found if found.converged.all() else None

@@ -52,10 +52,8 @@ class WorkerRun:
     ----------
     recording
         What is kept of it.
-    has_news
-        Whether something has changed since this was last set to False.
-    cost
-        What it is expected to take.
+    has_news, cost
+        Whether something has changed since this was last set to False; what it is to take.
 
     Raises
     ------
@@ -76,8 +74,9 @@ class WorkerRun:
         self._references = references
         self._settings = scene_settings(order.scene).checked(order.values)
         self._problem = discretise(self._settings)
-        own, most = self._settings, self._settings.max_iterations
-        self.cost = run_cost(self._problem, method_of(own), most, with_reference=has_reference(own))
+        self._latin, most = method_of(self._settings), self._settings.max_iterations
+        compared = has_reference(self._settings)
+        self.cost = run_cost(self._problem, self._latin, most, with_reference=compared)
         self._sampler = Sampler(self._problem, self._settings, look)
         self.recording = Recording(
             order.ticket,
@@ -88,7 +87,7 @@ class WorkerRun:
             is_warm=order.warm,
         )
         self.has_news = False
-        self._rules = StopRules(method_of(self._settings))
+        self._rules = StopRules(self._latin)
         self._is_compared = False
         self._reference: Reference | None = None
         self._distance: Distance | None = None
@@ -201,17 +200,15 @@ class WorkerRun:
 
     def _open(self) -> None:
         """Do the first iteration, from the start that is better: its picture comes first."""
-        problem, settings = self._problem, self._settings
+        problem = self._problem
         if self._previous is None:
             self._generator = self._iterations(None)
         else:
-            self._start, self._generator = choose_start(
-                problem, method_of(settings), self._previous
-            )
+            self._start, self._generator = choose_start(problem, self._latin, self._previous)
             self._previous = None
         self.recording.choice = self._start.choice if self._start else None
-        reduced = settings.is_reduced
-        self._full_stage = Beside(problem, settings, self._start) if reduced else None
+        reduced = self._latin.is_reduced
+        self._full_stage = Beside(problem, self._settings, self._start) if reduced else None
         newest = next(self._generator)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(
@@ -224,7 +221,7 @@ class WorkerRun:
             self._account(newest, newest)
 
     def _iterations(self, checkpoint: Checkpoint | None) -> Iterator[Iterate]:
-        return iterations_from(self._problem, method_of(self._settings), self._start, checkpoint)
+        return iterations_from(self._problem, self._latin, self._start, checkpoint)
 
     def _compare(self, newest: Iterate) -> None:
         """Find the reference and the closed form, which take longer than the first iteration."""

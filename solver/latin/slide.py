@@ -15,9 +15,9 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.laws import Contact, SlackSpring
 from solver.laws.compliant import CompliantSliders
-from solver.laws.coulomb import Sliders
 from solver.laws.frictionless import Frictionless
 from solver.laws.interface import Region
+from solver.laws.sliders import Sliders
 
 BALANCED = (Sliders, CompliantSliders, Frictionless)
 """Tangential laws whose friction falls with a shift, their bound being known from the pressure."""
