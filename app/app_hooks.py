@@ -17,15 +17,15 @@ def on_server_loaded(_server_context: Any) -> None:
     # Here and not above: what a hook's module does to the path while it loads is undone.
     if ROOT not in sys.path:
         sys.path.insert(0, ROOT)
-    from app.innards import (
+    from app.components.innards import (
         alive_with,
         answer_heads,
         ignore_the_lost,
         open_in_turn,
         stay_on_loop,
     )
-    from app.log import leave_out_the_unsent
-    from app.serve import LATENESS, NAMES, facts, rehearse
+    from app.server.serve import LATENESS, NAMES, facts, rehearse
+    from app.shell.log import leave_out_the_unsent
 
     rehearse()
     alive_with(facts)

@@ -18,8 +18,8 @@ from playwright.sync_api import expect, sync_playwright
 from processes import PATIENCE
 from worker_line import Line
 
-from app.errand import Errand
-from app.worker.bench import Bench
+from app.session.bench import Bench
+from app.session.errand import Errand
 from solver.study.paper_runs import PaperRuns
 
 LONGEST_FIRST = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from processes import wait_for
 
-from app.errand import Errand
+from app.session.errand import Errand
 
 
 def until_idle(errand: Errand) -> None:

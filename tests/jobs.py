@@ -8,7 +8,7 @@ import os
 import time
 from pathlib import Path
 
-from app.worker.desk import Desk
+from app.session.desk import Desk
 
 
 def count_to(number: int, folder: Path) -> None:

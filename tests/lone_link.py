@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from app.worker.orders import Order
-from app.worker.reports import Report
+from app.wire.orders import Order
+from app.wire.reports import Report
 
 
 class LoneLink:

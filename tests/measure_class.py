@@ -30,8 +30,8 @@ from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
 
-from app.form import POINTS
-from app.items import CLASS, SHARE
+from app.components.form import POINTS
+from app.controls.items import CLASS, SHARE
 from solver.scenes import CATALOGUE
 
 EXPIRY = 60.0

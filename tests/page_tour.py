@@ -11,7 +11,7 @@ from pages import Visit, slider
 from playwright.sync_api import Page, TimeoutError, expect
 from tour import SIZES, Move, back, described, has_choice, one_end, small
 
-from app.form import POINTS
+from app.components.form import POINTS
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.settings import Settings
 

@@ -8,14 +8,14 @@ from typing import Any
 
 from unpacking import unpack
 
+from app.picture.recording import Recording
+from app.picture.sampler import Frame
+from app.picture.shown import Look
 from app.views.catalogue import VIEWS
 from app.views.drawing import Drawing, Scene
-from app.worker.orders import Order, Ready, Run, Watch
-from app.worker.recording import Recording
-from app.worker.reports import File, Picture
+from app.wire.orders import Order, Ready, Run, Watch
+from app.wire.reports import File, Picture
 from app.worker.run import WorkerRun
-from app.worker.sampler import Frame
-from app.worker.shown import Look
 from app.worker.studio import Studio
 
 ALL = Look(views=tuple(view.name for view in VIEWS))

@@ -8,17 +8,17 @@ import panel as pn
 import pytest
 from lone_link import LoneLink
 
-from app import banner
-from app.address import class_from_query, query_of
-from app.classroom import ROOMS, Room, Rooms, Seat
-from app.dashboard import Dashboard
-from app.lesson import LESSONS, NO_CHOICE
-from app.pages import Pages
-from app.session import Session
-from app.teaching import CHOICE
-from app.worker.bench import Bench
-from app.worker.orders import Ready, Run
-from app.worker.reports import Facts, Picture, Report
+from app.lessons.lesson import LESSONS, NO_CHOICE
+from app.session.bench import Bench
+from app.session.classroom import ROOMS, Room, Rooms, Seat
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell import banner
+from app.shell.address import class_from_query, query_of
+from app.shell.dashboard import Dashboard
+from app.teaching.teaching import CHOICE
+from app.wire.orders import Ready, Run
+from app.wire.reports import Facts, Picture, Report
 from solver.scenes.bar import BarSettings
 
 BAR = BarSettings.checked({})
@@ -180,7 +180,7 @@ def test_a_class_waits_some_minutes_for_its_leader_who_leads_on_by_its_key(
     leader.close()
     assert again.attendance.leads is room, "the page from before ends nothing"
     again.close()
-    monkeypatch.setattr("app.classroom.KEPT", -1.0)
+    monkeypatch.setattr("app.session.classroom.KEPT", -1.0)
     assert room.is_over
     assert ROOMS.find(code) is None
     assert not again.attendance.resume(ticket)

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 from lone_link import LoneLink
 
-from app.pages import Pages
-from app.session import Session
-from app.takeaway import MOST_PICTURES, Saver
-from app.worker.bench import Bench
-from app.worker.orders import Pace, Seek, Tabulate, Watch
-from app.worker.reports import Facts
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
+from app.takeaway.takeaway import MOST_PICTURES, Saver
+from app.wire.orders import Pace, Seek, Tabulate, Watch
+from app.wire.reports import Facts
 from solver.scenes.bar import BarSettings
 
 Film = tuple[Saver, Session, LoneLink]

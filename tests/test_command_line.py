@@ -258,7 +258,7 @@ def test_the_names_of_the_contract_are_settings_of_the_bar_with_their_defaults()
 
 
 def test_a_file_saved_by_one_front_is_run_by_the_other(tmp_path, capsys):
-    from app.address import query_of, settings_from_query
+    from app.shell.address import query_of, settings_from_query
 
     chosen, _ = settings_from_query(
         "?elements=12&instants=11&substructures=3&load=[[0,0],[1,700]]&friction_profile=rising"

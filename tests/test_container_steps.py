@@ -23,7 +23,7 @@ import yaml
 from packaging.requirements import Requirement
 from processes import PATIENCE
 
-from app.pages import VARIABLE
+from app.session.pages import VARIABLE
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from studios import ALL, SMALL, Shown, keys
 
+from app.picture.portrait import rims
 from app.views import deformed, picture, status_map
 from app.views.catalogue import fitting
 from app.views.colors import FRONT, GHOST
 from app.views.drawing import Drawing
-from app.worker.orders import Seek, Watch
-from app.worker.portrait import rims
+from app.wire.orders import Seek, Watch
 from solver.scenes import CATALOGUE
 
 PLANE = ("block", "layers", "incline")

@@ -68,6 +68,25 @@ def imports(path):
     return found
 
 
+FLOORS = [
+    "picture",
+    "components",
+    "wire",
+    "views",
+    "worker",
+    "lessons",
+    "session",
+    "reports",
+    "takeaway",
+    "controls",
+    "teaching",
+    "whatif",
+    "shell",
+    "server",
+]
+"""Folders of the page; each may import itself and those before it."""
+
+
 def functions(path):
     """Give the name and the length of all functions of a file, docstrings included."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -139,6 +158,21 @@ def test_a_class_name_has_one_meaning():
             if isinstance(node, ast.ClassDef):
                 places[node.name].append(name)
     assert {name: found for name, found in places.items() if len(found) > 1} == {}
+
+
+def test_folders_of_the_page_import_one_way_and_every_folder_has_its_floor():
+    page = {name: path for name, path in modules("app").items() if name.count(".") > 1}
+    assert {name.split(".")[1] for name in page} == set(FLOORS)
+    for name, path in page.items():
+        for other in imports(path) & page.keys():
+            floor, below = (FLOORS.index(one.split(".")[1]) for one in (name, other))
+            assert below <= floor, f"{name} imports {other}"
+
+
+def test_no_module_of_the_page_imports_itself_by_detours():
+    page = modules("app")
+    graph = {name: imports(path) & page.keys() for name, path in page.items()}
+    TopologicalSorter(graph).prepare()
 
 
 def test_the_code_is_linted_formatted_and_typed():

@@ -12,15 +12,15 @@ import pytest
 from lone_link import LoneLink
 from studios import ALL, Shown
 
-from app.address import Sight, query_of, settings_from_query, sight_from_query
-from app.dashboard import Dashboard
-from app.lesson import LESSONS, NO_CHOICE, content, parts, readings
-from app.pages import Pages
-from app.session import Session
-from app.teaching import CHOICE
+from app.lessons.lesson import LESSONS, NO_CHOICE, content, parts, readings
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell.address import Sight, query_of, settings_from_query, sight_from_query
+from app.shell.dashboard import Dashboard
+from app.teaching.teaching import CHOICE
 from app.views.catalogue import VIEWS
-from app.worker.bench import Bench
-from app.worker.orders import Run, Seek
+from app.wire.orders import Run, Seek
 from app.worker.readings import measured
 from solver.lessons.lesson import Lesson
 from solver.study.finished import finished_run

@@ -18,14 +18,14 @@ from jobs import count_to, refuse, sleep, vanish
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
 
-from app.errand import KEPT, STARTING, WAITING, Errand
-from app.inquiry import LENDER
-from app.pages import Pages
-from app.report import progress
-from app.session import Session
-from app.worker.bench import Bench
-from app.worker.desk import PROGRESS, SECTIONS, Desk, files, said
-from app.worker.orders import Pace
+from app.reports.report import progress
+from app.session.bench import Bench
+from app.session.desk import PROGRESS, SECTIONS, Desk, files, said
+from app.session.errand import KEPT, STARTING, WAITING, Errand
+from app.session.inquiry import LENDER
+from app.session.pages import Pages
+from app.session.session import Session
+from app.wire.orders import Pace
 from solver.running.executors import VARIABLE
 from solver.scenes.bar import BarSettings
 
@@ -177,8 +177,8 @@ def test_closing_the_bench_ends_the_job(bench: Bench, errand: Errand) -> None:
 
 SERVER = """
 import sys
-from app.errand import Errand
-from app.worker.bench import shared_bench
+from app.session.errand import Errand
+from app.session.bench import shared_bench
 from errands import until_idle
 from jobs import sleep
 

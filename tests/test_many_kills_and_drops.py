@@ -13,10 +13,10 @@ import pytest
 from processes import is_alive, wait_for
 from web_pages import WebPage, give_up_pages, run_apart, serve_pages, until
 
-from app import serve
-from app.pages import Pages
-from app.session import Session
-from app.worker.bench import Bench
+from app.server import serve
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
 from app.worker.link import warm_up
 from solver.scenes.bar import BarSettings
 

@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from app.address import query_of, settings_from_query
+from app.shell.address import query_of, settings_from_query
 from solver.checked import dump
 from solver.cli import main
 from solver.files import settings_from_command, settings_from_toml

@@ -11,9 +11,9 @@ from bokeh.document import Document
 from bokeh.server.server import Server
 from web_pages import WebPage, give_up_pages, run_apart, serve_pages, until
 
-from app import serve
-from app.dashboard import Dashboard
-from app.session import Session
+from app.server import serve
+from app.session.session import Session
+from app.shell.dashboard import Dashboard
 
 WAVES, PAGES = 2, 3
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 from lone_link import LoneLink
 
-from app import transport as module
-from app.pages import Pages
-from app.session import Session
-from app.transport import PLAYED_IN, Transport
-from app.worker.bench import Bench
-from app.worker.reports import Facts
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell import transport as module
+from app.shell.transport import PLAYED_IN, Transport
+from app.wire.reports import Facts
 from solver.scenes.bar import BarSettings
 
 

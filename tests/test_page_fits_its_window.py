@@ -6,7 +6,7 @@ import pytest
 from pages import press
 from playwright.sync_api import TimeoutError, expect
 
-from app.lesson import LESSONS
+from app.lessons.lesson import LESSONS
 
 NOTHING_SCROLLS = """() => {
   const found = [], look = (root) => root.querySelectorAll("*").forEach((one) => {

@@ -19,16 +19,16 @@ from processes import PATIENCE, is_alive, wait_for
 from studios import Shown
 from unpacking import unpack
 
-from app.errand import Errand
-from app.keeper import GIVEN_UP, RESTARTS
-from app.pages import Pages
-from app.session import Session
-from app.transport import Transport
+from app.session.bench import STOPPED, Bench
+from app.session.errand import Errand
+from app.session.keeper import GIVEN_UP, RESTARTS
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell.transport import Transport
+from app.wire.orders import Run, Seek, Step
+from app.wire.reports import Died, Facts, Picture, Report
 from app.worker import link
-from app.worker.bench import STOPPED, Bench
 from app.worker.link import Link
-from app.worker.orders import Run, Seek, Step
-from app.worker.reports import Died, Facts, Picture, Report
 from app.worker.words import REPLAYED
 from solver.running import calls
 from solver.scenes.bar import BarSettings
@@ -144,7 +144,7 @@ def test_a_page_left_alone_gives_its_process_back_and_gets_another(
     session.attend()
     assert not lone.is_closed
     assert not session.is_at_work
-    monkeypatch.setattr("app.keeper.LEFT_ALONE", -1.0)
+    monkeypatch.setattr("app.session.keeper.LEFT_ALONE", -1.0)
     session.attend()
     assert lone.is_closed
     session.rest(False)
@@ -268,9 +268,9 @@ def test_a_worker_whose_process_does_not_start_counts_as_gone(
 SERVER = """
 import sys, time
 from app.worker.link import Link
-from app.worker.orders import Run
-from app.worker.orders import Ready
-from app.worker.reports import Picture
+from app.wire.orders import Run
+from app.wire.orders import Ready
+from app.wire.reports import Picture
 
 seen = set()
 links = [Link(lambda report, number=number: seen.add((number, type(report)))) for number in (0, 1)]

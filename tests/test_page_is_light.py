@@ -18,13 +18,13 @@ from browser import ROOT
 from lone_link import LoneLink
 from panel.io.state import set_curdoc
 
-from app.address import settings_from_query, sight_from_query
-from app.dashboard import Dashboard
-from app.innards import forget
-from app.pages import Pages
-from app.session import Session
-from app.worker.bench import Bench
-from app.worker.orders import Step
+from app.components.innards import forget
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell.address import settings_from_query, sight_from_query
+from app.shell.dashboard import Dashboard
+from app.wire.orders import Step
 from solver.files import scene_settings
 
 
@@ -123,8 +123,8 @@ def test_views_and_sliders_are_those_that_apply(
 
 def test_a_server_that_draws_no_report_imports_nothing_that_would() -> None:
     program = (
-        "import sys, app.serve\n"
-        "app.serve.rehearse()\n"
+        "import sys, app.server.serve\n"
+        "app.server.serve.rehearse()\n"
         "sys.exit(str({'holoviews', 'matplotlib'} & sys.modules.keys() or ''))\n"
     )
     done = subprocess.run(

@@ -8,12 +8,12 @@ import panel as pn
 import pytest
 from lone_link import LoneLink
 
-from app.dashboard import Dashboard
-from app.pages import Pages
-from app.session import Session
-from app.sidebar import Sidebar
-from app.worker.bench import Bench
-from app.worker.reports import Facts, Picture
+from app.controls.sidebar import Sidebar
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell.dashboard import Dashboard
+from app.wire.reports import Facts, Picture
 from solver.scenes.bar import BarSettings
 
 
@@ -162,7 +162,7 @@ def test_a_slider_that_stands_still_counts_as_let_go(monkeypatch: pytest.MonkeyP
     session.change("peak", 910.0, by_hand=True)
     shown(session, link)
     assert link.orders[-1].follows_hand
-    monkeypatch.setattr("app.pending.HELD_STILL", -1.0)
+    monkeypatch.setattr("app.session.pending.HELD_STILL", -1.0)
     session.attend()
     assert not link.orders[-1].follows_hand
     assert link.orders[-1].values["peak"] == 910.0

@@ -19,14 +19,13 @@ from jobs import refuse, sleep
 from panel.io.state import set_curdoc
 from processes import PATIENCE, wait_for
 
-from app import reports
-from app.errand import Errand, Found
-from app.glossary import explained
-from app.report_plots import overlay, plot
-from app.reports import PaperFigures
-from app.worker.bench import Bench
-from app.worker.desk import SECTIONS, Desk, said
-from app.worker.studies import figures_of_the_paper
+from app.picture.glossary import explained
+from app.reports.report_plots import overlay, plot
+from app.reports.reports import PaperFigures, reports
+from app.session.bench import Bench
+from app.session.desk import SECTIONS, Desk, said
+from app.session.errand import Errand, Found
+from app.session.studies import figures_of_the_paper
 from solver.study.figure_data import Panel
 from solver.study.page import PlotSection, Section
 
@@ -56,7 +55,7 @@ def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: lis
             seen.append(len(sections))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.worker.studies.Desk", Spied)
+        patch.setattr("app.session.studies.Desk", Spied)
         figures_of_the_paper(folder)
     return Found("any", pickle.loads(said(folder, SECTIONS)))
 
@@ -140,7 +139,7 @@ def test_no_thread_touches_the_page_and_its_own_turns_put_each_plot_on_it_in_its
         return plot(panel)
 
     drawing, go = threading.Event(), threading.Event()
-    monkeypatch.setattr("app.report._drawn", slowly)
+    monkeypatch.setattr("app.reports.report._drawn", slowly)
     page = Touched()
     # As the server has it for all threads while it is at work on a page.
     with patch_curdoc(page), set_curdoc(page):

@@ -9,17 +9,17 @@ from urllib.parse import quote, unquote
 import pytest
 from studios import ALL, Shown
 
-from app.address import (
+from app.controls.comparing import CHOICES, choice_of, pair
+from app.server.serve import is_phone
+from app.shell.address import (
     Sight,
     query_of,
     settings_from_query,
     sight_from_query,
     twin_from_query,
 )
-from app.comparing import CHOICES, choice_of, pair
-from app.page_link import waits_at
-from app.serve import is_phone
-from app.worker.reports import Facts
+from app.shell.page_link import waits_at
+from app.wire.reports import Facts
 from app.worker.words import number
 from solver.definitions import SettingError
 from solver.scenes import CATALOGUE

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 from studios import Shown
 
-from app.pages import Pages
-from app.session import Session
-from app.sidebar import SAVE, SHARE, Sidebar
-from app.worker.bench import Bench
-from app.worker.recording import Recording
-from app.worker.reports import Facts
-from app.worker.sampler import Sampler
-from app.worker.shown import Look
+from app.controls.sidebar import SAVE, SHARE, Sidebar
+from app.picture.recording import Recording
+from app.picture.sampler import Sampler
+from app.picture.shown import Look
+from app.session.bench import Bench
+from app.session.pages import Pages
+from app.session.session import Session
+from app.wire.reports import Facts
 from app.worker.words import start_line
 from solver.files import settings_from_toml
 from solver.latin.warm import StartChoice

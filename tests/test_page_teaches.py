@@ -7,7 +7,7 @@ import re
 from pages import Visit, press, slider, status
 from playwright.sync_api import Locator, Page, expect
 
-from app.lesson import LESSONS
+from app.lessons.lesson import LESSONS
 
 ERROR = re.compile(r"friction force error ([\d.]+ %)")
 

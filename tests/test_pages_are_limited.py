@@ -10,10 +10,10 @@ from bokeh.document import Document
 from lone_link import LoneLink
 from panel.io.state import set_curdoc
 
-from app import pages, serve
-from app.pages import Pages, most_pages
-from app.session import Session
-from app.worker.bench import Bench
+from app.server import serve
+from app.session.bench import Bench
+from app.session.pages import Pages, most_pages
+from app.session.session import Session, pages
 from solver.scenes.bar import BarSettings
 
 

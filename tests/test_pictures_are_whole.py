@@ -12,9 +12,9 @@ from studios import ALL, SMALL, Shown
 from unpacking import unpack
 
 from app.views.catalogue import fitting
-from app.worker.block import Packer, Quads
-from app.worker.orders import Pace, Ready, Run, Seek, Step, Watch
-from app.worker.reports import Picture
+from app.wire.block import Packer, Quads
+from app.wire.orders import Pace, Ready, Run, Seek, Step, Watch
+from app.wire.reports import Picture
 from app.worker.studio import Studio
 from solver.scenes import CATALOGUE
 

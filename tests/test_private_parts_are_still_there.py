@@ -24,8 +24,7 @@ from panel.util import edit_readonly
 from tornado.websocket import WebSocketHandler
 from web_pages import run_apart
 
-from app.figures import make_figure
-from app.innards import (
+from app.components.innards import (
     THREADS,
     answer_heads,
     ignore_business,
@@ -33,7 +32,8 @@ from app.innards import (
     open_in_turn,
     stay_on_loop,
 )
-from app.pulse import pulse
+from app.components.pulse import pulse
+from app.shell.figures import make_figure
 from app.views.catalogue import VIEWS
 
 

@@ -12,13 +12,13 @@ from typing import Any, cast
 import pytest
 from errands import until_idle
 
-from app.errand import Errand, Found
-from app.glossary import explained
-from app.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
-from app.session import Session
-from app.worker.bench import Bench
-from app.worker.desk import Desk, files
-from app.worker.studies import stability_of, study_of
+from app.picture.glossary import explained
+from app.reports.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
+from app.session.bench import Bench
+from app.session.desk import Desk, files
+from app.session.errand import Errand, Found
+from app.session.session import Session
+from app.session.studies import stability_of, study_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
 from solver.study.audit.audit import Audited, Verdict, audit
@@ -51,8 +51,8 @@ def test_stability_is_shown_as_it_grows_and_then_whole(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     few = [Case("size", "tiny", TINY), Case("size", "small", {**TINY, "elements": 10})]
-    monkeypatch.setattr("app.worker.studies.cases_of", lambda quick: few)
-    monkeypatch.setattr("app.worker.studies.SHOWN_EVERY", 0.0)
+    monkeypatch.setattr("app.session.studies.cases_of", lambda quick: few)
+    monkeypatch.setattr("app.session.studies.SHOWN_EVERY", 0.0)
     rows: list[int] = []
     shares: list[float] = []
     tell = Desk.tell

@@ -23,13 +23,13 @@ from playwright.sync_api import expect
 from tornado.websocket import WebSocketClosedError
 from web_pages import run_apart
 
-from app import lateness, serve
-from app.dashboard import Dashboard
-from app.lateness import LATE, WINDOW, Lateness
-from app.log import NOT_SENT, leave_out_the_unsent
-from app.pages import Pages
-from app.session import Session
-from app.worker.reports import Facts, Picture
+from app.server import lateness, serve
+from app.server.lateness import LATE, WINDOW, Lateness
+from app.session.pages import Pages
+from app.session.session import Session
+from app.shell.dashboard import Dashboard
+from app.shell.log import NOT_SENT, leave_out_the_unsent
+from app.wire.reports import Facts, Picture
 
 
 def test_the_most_and_nearly_the_most_of_the_last_minute_are_told() -> None:

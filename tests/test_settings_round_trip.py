@@ -109,7 +109,7 @@ def test_a_saved_file_gives_the_same_settings(chosen):
 @ANY
 @given(valid_settings())
 def test_an_address_gives_the_same_settings(chosen):
-    from app.address import query_of, settings_from_query
+    from app.shell.address import query_of, settings_from_query
 
     again, complaint = settings_from_query(query_of(chosen))
     assert complaint == ""
@@ -335,7 +335,7 @@ def test_an_assignment_without_an_equals_sign_is_refused(text):
     "text", ["9" * 5000, "1" + "0" * 400, "[" * 20_000, "1\nseed = 4", "", "nan", "true", "1,5"]
 )
 def test_text_that_is_no_number_is_refused_by_every_front(text):
-    from app.address import query_of, settings_from_query
+    from app.shell.address import query_of, settings_from_query
 
     assert "peak = " in refusal(lambda: settings_from_command("bar", [f"peak={text}"]))
     chosen, complaint = settings_from_query("?peak=" + text.replace("\n", "%0A") + "&seed=3")
@@ -355,7 +355,7 @@ def test_values_that_do_not_fit_together_are_refused():
 
 @pytest.mark.parametrize("path", ["/etc/passwd", "load.csv", "../load.csv"])
 def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
-    from app.address import settings_from_query
+    from app.shell.address import settings_from_query
 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "load.csv").write_text("0,0\n1,100\n", encoding="utf-8")
@@ -377,7 +377,7 @@ def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
     ],
 )
 def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(query, words, scene):
-    from app.address import settings_from_query
+    from app.shell.address import settings_from_query
 
     chosen, complaint = settings_from_query(query)
     assert words in complaint

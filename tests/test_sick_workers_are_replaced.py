@@ -13,11 +13,11 @@ import sick_workers
 from processes import wait_for
 from unpacking import unpack
 
-from app.keeper import AGAIN
-from app.pages import Pages
-from app.session import Session
+from app.session.bench import Bench
+from app.session.keeper import AGAIN
+from app.session.pages import Pages
+from app.session.session import Session
 from app.worker import link
-from app.worker.bench import Bench
 from solver.scenes.bar import BarSettings
 
 TOO_LARGE = 20_000

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 from lone_link import LoneLink
 
-from app.errand import Found
-from app.items import NOTE, SCENE, SHARE
-from app.pages import Pages
-from app.report import Report
-from app.reports import PaperFigures, StabilityReport, StudyReport
-from app.session import Session
-from app.sidebar import Sidebar
-from app.worker.bench import Bench
+from app.controls.items import NOTE, SCENE, SHARE
+from app.controls.sidebar import Sidebar
+from app.reports.report import Report
+from app.reports.reports import PaperFigures, StabilityReport, StudyReport
+from app.session.bench import Bench
+from app.session.errand import Found
+from app.session.pages import Pages
+from app.session.session import Session
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 from solver.study.error_against_time import PLAIN, acting, forms_of

@@ -14,7 +14,7 @@ from pages import ENDLESS, Visit, iteration, slider, status, visits
 from playwright.sync_api import Locator, Page, expect
 from studios import SMALL, Shown, keys
 
-from app.glossary import TERMS, explained, line_of
+from app.picture.glossary import TERMS, explained, line_of
 from app.views.catalogue import fitting
 from app.worker.words import HEADS
 from solver.scenes.bar import BarSettings
@@ -63,7 +63,7 @@ def test_every_key_figure_has_a_line() -> None:
 
 def test_every_term_stands_on_the_page() -> None:
     files = {file for folder in ("app", "solver") for file in (ROOT / folder).rglob("*.py")}
-    said = " ".join(map(strings, files - {ROOT / "app" / "glossary.py"})).lower()
+    said = " ".join(map(strings, files - {ROOT / "app" / "picture" / "glossary.py"})).lower()
     assert [one for spellings in TERMS for one in spellings if one.lower() not in said] == []
 
 

@@ -13,10 +13,10 @@ from studios import ALL, Shown, keys
 from test_worker_process import same
 from unpacking import unpack
 
-from app.comparing import PRESETS, pair
+from app.controls.comparing import PRESETS, pair
+from app.picture.sampler import Sampler
 from app.views import convergence, error_time, friction, loop, tractions
-from app.worker.orders import Pace, Run, Seek, Step, Watch
-from app.worker.sampler import Sampler
+from app.wire.orders import Pace, Run, Seek, Step, Watch
 from app.worker.words import NONE_YET
 from solver.files import scene_settings
 from solver.scenes import CATALOGUE

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from app.address import LEFT_OUT, query_of, settings_from_query
-from app.form import shown_value
-from app.uploads import cut_off, load_in
+from app.components.form import shown_value
+from app.session.uploads import cut_off, load_in
+from app.shell.address import LEFT_OUT, query_of, settings_from_query
 from solver.definitions import SettingError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings

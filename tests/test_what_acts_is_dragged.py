@@ -10,7 +10,7 @@ import pytest
 from studios import SMALL
 from test_views_say_what_they_draw import looked_at
 
-from app.gallery import gallery
+from app.shell.gallery import gallery
 from app.views import picture
 from app.views.catalogue import fitting
 from app.views.colors import FORCE, GIVEN

@@ -7,9 +7,9 @@ import math
 import pytest
 from sweeps import tiny
 
-from app.address import query_of, settings_from_query, sight_from_query
-from app.charted import described, drawn, is_of, stands
-from app.question import (
+from app.shell.address import query_of, settings_from_query, sight_from_query
+from app.whatif.charted import described, drawn, is_of, stands
+from app.whatif.question import (
     READY,
     Question,
     Span,

@@ -11,18 +11,18 @@ from lone_link import LoneLink
 from processes import wait_for
 from sweeps import TINY, Here, tiny
 
-from app.charted import is_comparable
-from app.inquiry import CANCELLED, Inquiry, Lender, part_of
-from app.pages import Pages
-from app.question import (
+from app.session.bench import Bench
+from app.session.inquiry import CANCELLED, Inquiry, Lender, part_of
+from app.session.pages import Pages
+from app.session.session import Session
+from app.whatif.charted import is_comparable
+from app.whatif.question import (
     Question,
     Span,
     askable,
     bathtub,
 )
-from app.session import Session
-from app.whatif import WhatIf, form_of
-from app.worker.bench import Bench
+from app.whatif.whatif import WhatIf, form_of
 from solver.running.executors import VARIABLE, Processes
 from solver.running.pool import Pool
 from solver.scenes.bar import BarSettings
@@ -127,7 +127,7 @@ def test_the_more_pages_ask_the_fewer_processes_each_of_them_has(
 def test_a_processor_is_left_to_the_pages_where_there_are_more_than_two(
     there: int, taken: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.inquiry.processors", lambda: there)
+    monkeypatch.setattr("app.session.inquiry.processors", lambda: there)
     assert part_of("processes", 1) == f"processes:{taken}"
     assert part_of("processes", 8) == "processes:1"
 

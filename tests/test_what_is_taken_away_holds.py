@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from studios import SMALL, Shown
 
-from app.snippet import NOTE, snippet
-from app.worker.orders import Tabulate
-from app.worker.recording import COLUMNS
+from app.picture.recording import COLUMNS
+from app.takeaway.snippet import NOTE, snippet
+from app.wire.orders import Tabulate
 from app.worker.tables import TABLES, table
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE

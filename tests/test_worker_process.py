@@ -16,10 +16,10 @@ from processes import PATIENCE
 from studios import ALL, Shown
 from worker_line import SHORT, STALLING, Line
 
+from app.picture.recording import COLUMNS, History
+from app.picture.sampler import Sampler
+from app.wire.orders import Run
 from app.worker import run
-from app.worker.orders import Run
-from app.worker.recording import COLUMNS, History
-from app.worker.sampler import Sampler
 from solver import latin
 from solver.latin import Ending, Iterate, Record
 from solver.reference.closed_form import closed_form
@@ -165,7 +165,7 @@ def test_a_process_ends_with_its_pipe_whatever_it_does(line: Line, busy: bool) -
 def test_worker_loads_no_part_of_the_page() -> None:
     script = (
         "import sys, app.worker.process\n"
-        "page = {'panel', 'bokeh', 'holoviews', 'tornado', 'pandas', 'app.session'}\n"
+        "page = {'panel', 'bokeh', 'holoviews', 'tornado', 'pandas', 'app.session.session'}\n"
         "print(*sorted(page & set(sys.modules)))"
     )
     root = Path(__file__).parents[1]

@@ -11,8 +11,8 @@ from studios import ALL, Shown
 from test_worker_process import same
 from worker_line import SHORT, STALLING
 
-from app.worker.orders import Pace, Seek
-from app.worker.sampler import Frame, Sampler
+from app.picture.sampler import Frame, Sampler
+from app.wire.orders import Pace, Seek
 from app.worker.seeking import Checkpoints
 from solver.latin import Checkpoint
 from solver.scenes.bar import BarSettings

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from studios import ALL, Shown
 
+from app.picture.frames import DrawnFields
+from app.picture.meshes import MOST_QUADS, Thinned
+from app.picture.sampler import Sampler
+from app.picture.shown import STATUS_OPEN, Look, Mesh, has_reference
 from app.views.deformed import fitting
 from app.views.scales import held
-from app.worker.frames import DrawnFields
-from app.worker.meshes import MOST_QUADS, Thinned
-from app.worker.orders import Watch
-from app.worker.sampler import Sampler
-from app.worker.shown import STATUS_OPEN, Look, Mesh, has_reference
+from app.wire.orders import Watch
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.plane import PlaneSettings
 
@@ -85,7 +85,7 @@ def test_what_few_views_show_is_computed_when_one_looks(
     assert (frame.mesh is not None) == (scene in ("block", "layers", "incline"))
     assert (frame.axial is not None) == (scene == "strand")
     assert (frame.fields.load is None) == (scene in ("bar", "strand"))
-    monkeypatch.setattr("app.worker.sampler.friction_spectra", asked.append)
+    monkeypatch.setattr("app.picture.sampler.friction_spectra", asked.append)
     monkeypatch.setattr(Sampler, "axial", lambda *given: asked.append(given))
     monkeypatch.setattr(Sampler, "mesh_field", lambda *given: asked.append(given))
     told(scene, look=Look(views=("Stick and slip", "Convergence")))

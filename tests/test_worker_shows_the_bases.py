@@ -11,11 +11,11 @@ from direct_runs import direct, iterate_number
 from studios import ALL, Shown
 from test_worker_process import same
 
+from app.picture.bases import Bases
+from app.picture.shown import MOST_MODES, MOST_SIZES, Look, ShownModes
 from app.views.basis_size import MOST_COLUMNS
-from app.worker.bases import Bases
-from app.worker.orders import Seek
+from app.wire.orders import Seek
 from app.worker.seeking import Checkpoints
-from app.worker.shown import MOST_MODES, MOST_SIZES, Look, ShownModes
 
 SMALL: dict[str, Any] = {
     "method": "paper",

@@ -10,8 +10,8 @@ from studios import ALL, Shown
 from test_worker_process import same
 from worker_line import STALLING
 
-from app.worker.orders import Run, Seek
-from app.worker.sampler import Sampler
+from app.picture.sampler import Sampler
+from app.wire.orders import Run, Seek
 from solver.latin import Iterate, Record, StopRules, record
 from solver.latin.warm import choose_start
 from solver.reference.distance import distance_to

@@ -8,8 +8,8 @@ from typing import Any
 
 import param
 
-from app.form import item_of
-from app.worker.shown import has_reference
+from app.components.form import item_of
+from app.picture.shown import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError

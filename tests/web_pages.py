@@ -17,8 +17,8 @@ from panel.io.server import get_server
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, websocket_connect
 
-from app import serve
-from app.innards import stay_on_loop
+from app.components.innards import stay_on_loop
+from app.server import serve
 
 LONGEST = 270.0
 """Seconds that what runs apart may take, less than a test may."""

@@ -9,9 +9,9 @@ import pytest
 from processes import PATIENCE
 from studios import ALL
 
+from app.wire.orders import Order, Ready, Watch
+from app.wire.reports import Picture
 from app.worker import link
-from app.worker.orders import Order, Ready, Watch
-from app.worker.reports import Picture
 
 SHORT = {"method": "paper", "tolerance": 1e-8, "max_iterations": 50}
 STALLING = {

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.picture.shown import Wires
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, length_of, spanned
-from app.worker.shown import Wires
 from solver.scenes import kind_of
 from solver.settings import Settings
 

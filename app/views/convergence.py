@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.picture.recording import History
+from app.picture.shown import has_reference
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing import Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned, upright
-from app.worker.recording import History
-from app.worker.shown import has_reference
 
 CURVES = (
     ("indicator", GREY, "η", "dashed"),

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.picture.portrait import rims
+from app.picture.shown import Mesh
 from app.views.colors import GHOST, GREY
 from app.views.drawing import Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import around, decimal_scale, round_up
-from app.worker.portrait import rims
-from app.worker.shown import Mesh
 from solver.arrays import Array
 
 FARTHEST = 5.0

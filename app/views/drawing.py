@@ -1,7 +1,7 @@
 """What views draw, as plain data: curves, marks, images, bodies, on two axes; no browser, no Panel.
 
 A view looks at a `Scene` and gives a `Drawing`. The figure that it is drawn on is made once, by
-`app.figures`; only what changed is sent (`app.worker.easel`).
+`app.shell.figures`; only what changed is sent (`app.worker.easel`).
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from app.picture.frames import DrawnFields
+from app.picture.recording import Recording
+from app.picture.sampler import Frame
+from app.picture.shown import Look, instant_of
 from app.views.handles import Handle
 from app.views.legend import Key
-from app.worker.frames import DrawnFields
-from app.worker.recording import Recording
-from app.worker.sampler import Frame
-from app.worker.shown import Look, instant_of
 from solver.arrays import Array
 from solver.scenes import kind_of
 from solver.settings import Settings

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.worker.portrait import PITCH, THICKNESS, Portrait
-from app.worker.shown import thinned
+from app.picture.portrait import PITCH, THICKNESS, Portrait
+from app.picture.shown import thinned
 from solver.arrays import Array
 from solver.scenes import behind
 from solver.settings import Settings

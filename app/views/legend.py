@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from app.glossary import explained
+from app.picture.glossary import explained
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from app.picture.frames import DrawnFields
+from app.picture.recording import Recording
+from app.picture.shown import Axes
 from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned
-from app.worker.frames import DrawnFields
-from app.worker.recording import Recording
-from app.worker.shown import Axes
 
 Pair = tuple[np.ndarray, np.ndarray]
 POINT = Marks((), (), VERMILION)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from app.picture.shown import ShownModes
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing import (
     POSITION,
@@ -20,7 +21,6 @@ from app.views.drawing import (
 )
 from app.views.legend import Key
 from app.views.scales import decimal_scale, spanned, upright
-from app.worker.shown import ShownModes
 from solver.settings import Settings
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)

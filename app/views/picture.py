@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.picture.portrait import Portrait, Pose
 from app.views import sketch
 from app.views.colors import BACKWARD, FORCE, FORWARD, GHOST, GIVEN, GREY, VERMILION, shaded
 from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
@@ -14,7 +15,6 @@ from app.views.drawing import Colors, Curve, Drawing, Plot, QuadMesh, Scene, Vie
 from app.views.handles import Handle, choices, on_arrow, on_bodies
 from app.views.legend import Key
 from app.views.scales import decimal_scale
-from app.worker.portrait import Portrait, Pose
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act, Hold, ends_of
 from solver.scenes import behind

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from app.picture.frames import Stand
+from app.picture.shown import Bytes
 from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, STICK, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import across, spanned, upright
-from app.worker.frames import Stand
-from app.worker.shown import Bytes
 
 KEYS = (
     Key(BACKWARD, "square", "slip −"),

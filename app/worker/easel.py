@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from app.picture.shown import Look
 from app.views.catalogue import fitting
 from app.views.colors import VERMILION
 from app.views.drawing import POSITION, Axis, Drawing, Image, Marks, QuadMesh, Scene, View
 from app.views.legend import card_title
 from app.views.scales import upright
-from app.worker.block import Attributes, Packer, Quads
+from app.wire.block import Attributes, Packer, Quads
+from app.wire.reports import Facts
 from app.worker.readings import values
-from app.worker.reports import Facts
-from app.worker.shown import Look
 from app.worker.telling import told
 from solver.settings import Settings
 

@@ -9,9 +9,9 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
 
+from app.wire.orders import Order
+from app.wire.reports import Died, Report
 from app.worker import process
-from app.worker.orders import Order
-from app.worker.reports import Died, Report
 from solver.running.processes import start_process
 
 PRELOADED = ["numpy", "scipy.linalg", "scipy.sparse.linalg", "app.worker.process"]

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from app.worker.orders import Order, Run
+from app.wire.orders import Order, Run
 from app.worker.studio import Studio
 
 NICENESS = 5

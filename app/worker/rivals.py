@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.worker.shown import has_reference
+from app.picture.shown import has_reference
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError

@@ -7,14 +7,14 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Literal
 
-from app.worker.bases import sizes
+from app.picture.bases import sizes
+from app.picture.recording import Recording
+from app.picture.sampler import Frame, Sampler
+from app.picture.shown import Look, has_reference
+from app.wire.orders import Pace, Run, Seek, Step
 from app.worker.beside import Beside
-from app.worker.orders import Pace, Run, Seek, Step
-from app.worker.recording import Recording
 from app.worker.rivals import KeptReferences
-from app.worker.sampler import Frame, Sampler
 from app.worker.seeking import Found, Seeking
-from app.worker.shown import Look, has_reference
 from app.worker.tempo import Tempo
 from solver.files import scene_settings
 from solver.latin import Checkpoint, Decision, Ending, Iterate, StopRules, record

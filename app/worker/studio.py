@@ -9,15 +9,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from html import escape
 
+from app.picture.recording import Recording
+from app.picture.sampler import Frame
+from app.picture.shown import Look, instant_of
 from app.views.drawing import Scene
+from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
+from app.wire.reports import Facts, File, Picture
 from app.worker.easel import TAKE_AWAY, Easel
-from app.worker.orders import Order, Ready, Run, Seek, Tabulate, Watch
-from app.worker.recording import Recording
-from app.worker.reports import Facts, File, Picture
 from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
-from app.worker.sampler import Frame
-from app.worker.shown import Look, instant_of
 from app.worker.tables import table
 from app.worker.twin import Twin
 from app.worker.words import before_a_run, key_figures, status_line

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
+from app.picture.frames import DrawnFields
+from app.picture.recording import COLUMNS, History, Recording
+from app.picture.shown import instant_of
 from app.views.drawing import Scene
-from app.worker.frames import DrawnFields
-from app.worker.recording import COLUMNS, History, Recording
-from app.worker.shown import instant_of
 from solver.checked import dump
 
 Row = Sequence[object]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from app.worker.orders import Pace, Run, Seek, Step
-from app.worker.recording import Recording
+from app.picture.recording import Recording
+from app.picture.sampler import Frame
+from app.picture.shown import Look
+from app.wire.orders import Pace, Run, Seek, Step
 from app.worker.run import WorkerRun
-from app.worker.sampler import Frame
-from app.worker.shown import Look
 
 
 class Twin:

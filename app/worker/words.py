@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from html import escape
 from typing import Literal, NamedTuple
 
-from app.glossary import explained
-from app.labels import FEW, changes_of, label_of
+from app.picture.glossary import explained
+from app.picture.labels import FEW, changes_of, label_of
+from app.picture.recording import Recording
+from app.picture.sampler import Frame
+from app.picture.shown import has_reference
 from app.views.drawing import Scene
-from app.worker.recording import Recording
-from app.worker.sampler import Frame
-from app.worker.shown import has_reference
 from solver.definitions import about
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost

@@ -1,0 +1,82 @@
+"""What the page has of the lessons: all of them, and what each says before and after the choice."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+from app.components.form import item_of
+from solver.lessons.lesson import Control, Lesson, Value, pieces
+from solver.lessons.reading import lesson_from_file
+
+FOLDER = Path(__file__).parent
+LESSONS = {
+    one.name: one
+    for one in sorted(map(lesson_from_file, FOLDER.glob("*.toml")), key=lambda one: one.order)
+}
+"""All lessons by their names, in order."""
+OFFERED = [[one.name, one.title, one.question] for one in LESSONS.values()]
+NO_CHOICE = -1
+"""Stands for the choice of who wants to see and not to predict."""
+MARKS = re.compile(r"\*+(.+?)\*+|\^(\d+)")
+KINDS = "text", "em", "sup"
+"""Of what stands between the marks, and in either of them."""
+
+
+def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
+    """Say what the page shows of a lesson; the answer and the controls come after the choice.
+
+    Parameters
+    ----------
+    lesson
+        The one that is open.
+    choice
+        Index of what was predicted, or `NO_CHOICE`; None before the choice.
+    """
+    place = list(LESSONS).index(lesson.name)
+    found = {
+        "place": f"Lesson {place + 1} of {len(LESSONS)}",
+        "title": lesson.title,
+        "text": [parts(one) for one in lesson.text],
+        "question": lesson.question,
+        "choices": list(lesson.choices),
+    }
+    if choice is None:
+        return found
+    definitions = lesson.settings.definitions()
+    return {
+        **found,
+        "choice": choice,
+        "right": lesson.right,
+        "why": lesson.why,
+        "explanation": [parts(one) for one in lesson.explanation],
+        "items": [item_of(name, definitions[name]) for name in lesson.controls],
+        "next": OFFERED[place + 1][:2] if place + 1 < len(LESSONS) else [],
+    }
+
+
+def readings(lesson: Lesson, choice: int | None) -> tuple[str, ...]:
+    """Give the names of the quantities in what is shown of a lesson."""
+    shown = lesson.text if choice is None else (*lesson.text, *lesson.explanation)
+    every = (piece for paragraph in shown for piece in pieces(paragraph))
+    return tuple(dict.fromkeys(one.reading.name for one in every if isinstance(one, Value)))
+
+
+def parts(paragraph: str) -> list[list[str]]:
+    """Split a paragraph into parts of one kind.
+
+    These are "text", "em" and "sup" with their words, "control" with a setting, and "value" with
+    the name of a quantity and what it is called.
+    """
+    found = []
+    for piece in pieces(paragraph):
+        match piece:
+            case Control(setting):
+                found.append(["control", setting])
+            case Value(reading):
+                found.append(["value", reading.name, reading.title])
+            case words:
+                split = enumerate(MARKS.split(words))
+                found.extend([KINDS[number % 3], text] for number, text in split if text)
+    return found

@@ -1,0 +1,89 @@
+"""The fields of an iterate or a reference as views see them, and what they stand on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.picture.portrait import Portrait
+from app.picture.shown import Axes, Bytes, Floats, Mesh, Wires
+
+
+@dataclass(frozen=True)
+class Stand:
+    """What the fields of a run stand on, thinned to `LARGEST_SIDE`, in SI.
+
+    Attributes
+    ----------
+    interface, interfaces
+        The one that is looked at, and all with friction.
+    positions, instants
+        Of the field's points and columns, m and s.
+    cuts
+        Positions where substructures meet, m.
+    bound
+        Friction bound mu p at the positions, N/m; None where it depends on the pressure.
+    coefficient
+        Coefficient of friction at the positions there; else None.
+    loop
+        What `load` and `end_displacement` are.
+    load
+        Force at the loaded end, shape (n_curve,), N; None where frames tell it.
+    all_instants
+        The instants of `load` and of end displacements, thinned to `LONGEST_CURVE`, s.
+    closed_form, closed_form_end
+        Friction force, N/m, and end displacement, m, of the closed form; None where there is
+        none, or as long as it is not computed.
+    portrait
+        What a picture of the scene shows of every iterate alike.
+    mesh
+        Of plane bodies.
+    wires
+        Of a strand.
+    is_idle
+        Whether nothing acts on the structure, so that nothing moves.
+    """
+
+    interface: str
+    interfaces: tuple[str, ...]
+    positions: Floats
+    instants: Floats
+    cuts: Floats
+    bound: Floats | None
+    coefficient: Floats | None
+    loop: Axes
+    load: Floats | None
+    all_instants: Floats
+    closed_form: Floats | None
+    closed_form_end: Floats | None
+    portrait: Portrait
+    mesh: Mesh | None = None
+    wires: Wires | None = None
+    is_idle: bool = False
+
+
+@dataclass(frozen=True)
+class DrawnFields:
+    """What is drawn of an iterate and of a reference alike, thinned, in SI.
+
+    Attributes
+    ----------
+    interface
+        The one whose fields these are.
+    friction
+        Friction force on the body above, shape (n_positions, n_instants), N/m, or Pa.
+    pressure
+        Same shape, Pa; None where the bound is known.
+    status
+        -1, 0, +1, or `STATUS_OPEN`, same shape.
+    end_displacement
+        Displacement of the loaded end or side, m, or its rotation, shape (n_curve,).
+    load
+        Force that it takes, N, same shape; None where the stand tells it.
+    """
+
+    interface: str
+    friction: Floats
+    pressure: Floats | None
+    status: Bytes
+    end_displacement: Floats
+    load: Floats | None

@@ -1,0 +1,236 @@
+"""From the fields of a run to what a screen shows of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.picture.bases import Bases, bases_of
+from app.picture.frames import DrawnFields, Stand
+from app.picture.meshes import Thinned
+from app.picture.portrait import Pose, Sitter
+from app.picture.shown import (
+    LONGEST_CURVE,
+    MOST_SPECTRA,
+    MOST_VALUES,
+    Axes,
+    Floats,
+    Look,
+    MeshField,
+    instant_of,
+    thinned,
+)
+from app.picture.wires import ShownWires
+from solver.discrete import Problem
+from solver.discrete.idle import nothing_acts
+from solver.discrete.loops import LoopFields
+from solver.latin import Checkpoint, Iterate
+from solver.reduction.svd import friction_spectra
+from solver.reference.solution import Reference
+from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of
+from solver.settings import Settings
+
+
+class Sampler:
+    """Thin the fields of one problem, and turn nodal forces into forces per length or area.
+
+    Parameters
+    ----------
+    problem, settings
+        What is solved.
+    look
+        Where one looks.
+
+    Attributes
+    ----------
+    interface
+        Name of the interface that is looked at.
+    loop
+        Of the scene.
+    """
+
+    def __init__(self, problem: Problem, settings: Settings, look: Look) -> None:
+        names = list(problem.rubbing)
+        self.interface = look.interface if look.interface in names else names[0]
+        self._problem = problem
+        self._settings = settings
+        self._law = law = problem.rubbing[self.interface]
+        sizes = [len(one.positions) for one in problem.rubbing.values()]
+        first = sum(sizes[: names.index(self.interface)])
+        self._points = slice(first, first + len(law.positions))
+        self._rows = thinned(len(law.positions))
+        self._columns = thinned(problem.n_instants)
+        self._curve = thinned(problem.n_instants, LONGEST_CURVE)
+        self._lengths = law.by_point(law.weights)[self._rows]
+        self.loop = loop_of(settings, problem)
+        described = structure_of(settings).described()
+        self._mesh: Thinned | None = None
+        self._wires: ShownWires | None = None
+        if problem.inside is not None:
+            self._mesh = Thinned(problem.inside, settings)
+        elif kind_of(settings) == "wires":
+            self._wires = ShownWires(problem, described.broken[0] + 1 if described.broken else 0)
+        mesh = self._mesh.mesh if self._mesh else None
+        self._sitter = Sitter(problem, described, mesh)
+
+    def stand(self) -> Stand:
+        """Describe what the fields stand on, without the closed form."""
+        problem, law, loop = self._problem, self._law, self.loop
+        bound = coefficient = None
+        if law.opens:
+            coefficient = _floats(law.mean_by_point(law.tangential.friction)[self._rows])
+        else:
+            whole = law.by_point(law.tangential.most)[self._rows]
+            bound = _floats(whole * problem.scales.force / self._lengths)
+        load = loop.force if isinstance(loop.force, np.ndarray) else None
+        return Stand(
+            interface=self.interface,
+            interfaces=tuple(problem.rubbing),
+            positions=_floats(law.positions[self._rows]),
+            instants=_floats(problem.instants[self._columns]),
+            cuts=_floats(law.positions[np.bincount(law.points) > 1]),
+            bound=bound,
+            coefficient=coefficient,
+            loop=Axes(loop.across, loop.up),
+            load=None if load is None else _floats(load[self._curve]),
+            all_instants=_floats(problem.instants[self._curve]),
+            closed_form=None,
+            closed_form_end=None,
+            portrait=self._sitter.portrait,
+            mesh=self._mesh.mesh if self._mesh else None,
+            wires=self._wires.base if self._wires else None,
+            is_idle=nothing_acts(problem),
+        )
+
+    def completed(self, stand: Stand) -> Stand:
+        """Add the closed form, where there is one."""
+        closed = closed_form_of(self._settings)
+        if closed is not None:
+            return replace(
+                stand,
+                closed_form=self._density(closed.friction_force),
+                closed_form_end=_floats(closed.end_displacement[self._curve]),
+            )
+        exact = broken_wire_of(self._settings)
+        if exact is not None and self._wires is not None:
+            return replace(stand, wires=self._wires.completed(exact, self._columns))
+        return stand
+
+    def reference(self, found: Reference) -> DrawnFields:
+        """Show a reference."""
+        fields = found.contact(self.interface)
+        return self._shown(found, fields.tangential_force, fields.normal_force, fields.status)
+
+    def frame(self, iterate: Iterate, look: Look, before: Checkpoint | None = None) -> Frame:
+        """Show an iterate; the one `before` tells what became of its modes."""
+        *normal, tangential = self._problem.contact_places[self.interface]
+        force, status = iterate.contact_force, iterate.status[self._points]
+        pressure = force[normal[0]] if normal else None
+        shown = self._shown(iterate, force[tangential], pressure, status)
+        return Frame(shown, iterate, before, look, self)
+
+    def mesh_field(self, iterate: Iterate, look: Look) -> MeshField | None:
+        """Show the inside of plane bodies at the chosen instant."""
+        if self._mesh is None:
+            return None
+        column = self._column(look)
+        whole = iterate.displacement
+        displacement, stress = self._mesh.fields(whole, column, look.stress)
+        largest = max(float(whole.max()), -float(whole.min()))
+        return MeshField(_floats(displacement), _floats(stress), largest)
+
+    def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
+        """Show what has moved at the chosen instant."""
+        return self._sitter.pose(iterate, self._column(look), bodies)
+
+    def axial(self, iterate: Iterate, look: Look) -> Floats | None:
+        """Give the forces in the wires of a strand at the chosen instant."""
+        column = self._column(look)
+        return self._wires.forces(iterate, column) if self._wires else None
+
+    def _column(self, look: Look) -> int:
+        return int(self._columns[instant_of(look.phase, len(self._columns))])
+
+    def _shown(
+        self,
+        fields: LoopFields,
+        friction: NDArray[np.float64],
+        pressure: NDArray[np.float64] | None,
+        status: NDArray[np.int8],
+    ) -> DrawnFields:
+        force = self.loop.force
+        return DrawnFields(
+            interface=self.interface,
+            friction=self._density(friction),
+            pressure=None if pressure is None else self._density(pressure),
+            status=np.ascontiguousarray(self._thin(status)),
+            end_displacement=_floats(self.loop.displacement(fields.displacement)[self._curve]),
+            load=None if isinstance(force, np.ndarray) else _floats(force(fields)[self._curve]),
+        )
+
+    def _thin(self, field: NDArray[Any]) -> NDArray[Any]:
+        return field[np.ix_(self._rows, self._columns)]
+
+    def _density(self, force: NDArray[np.float64]) -> Floats:
+        return _floats(self._thin(force) / self._lengths[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One iterate as views see it; what only some of them show is computed when one looks."""
+
+    fields: DrawnFields
+    iterate: Iterate
+    before: Checkpoint | None
+    look: Look
+    sampler: Sampler
+
+    @property
+    def iteration(self) -> int:
+        """Number of the iterate."""
+        return self.iterate.number
+
+    @cached_property
+    def spectra(self) -> Floats:
+        """Singular values, shape (n_substructures, n_values), NaN where there is none.
+
+        They are those of the substructures `thinned(number, MOST_SPECTRA)`.
+        """
+        return _table(friction_spectra(self.iterate))
+
+    @cached_property
+    def bases(self) -> Bases | None:
+        """The separated bases, if there are any."""
+        return bases_of(self.iterate, self.before, self.look.substructure)
+
+    @cached_property
+    def mesh(self) -> MeshField | None:
+        """The inside of plane bodies."""
+        return self.sampler.mesh_field(self.iterate, self.look)
+
+    @cached_property
+    def pose(self) -> Pose:
+        """What has moved at the chosen instant."""
+        return self.sampler.pose(self.iterate, self.look, self.mesh)
+
+    @cached_property
+    def axial(self) -> Floats | None:
+        """Forces in the wires of a strand, shape (n_wires, n_positions), N."""
+        return self.sampler.axial(self.iterate, self.look)
+
+
+def _floats(values: NDArray[np.float64]) -> Floats:
+    return values.astype(np.float32, order="C")
+
+
+def _table(spectra: list[NDArray[np.float64]]) -> Floats:
+    """Give spectra as rows of one table, padded with NaN."""
+    chosen = [spectra[place][:MOST_VALUES] for place in thinned(len(spectra), MOST_SPECTRA)]
+    table = np.full((len(chosen), max(map(len, chosen))), np.nan, dtype=np.float32)
+    for row, values in zip(table, chosen, strict=True):
+        row[: len(values)] = values
+    return table

@@ -1,0 +1,221 @@
+"""What the tabs of long reports share: ask, watch, cancel, read, and take away.
+
+What is read is the report of the command line, as it grows; its plots are drawn for the page.
+Only the page's own turns touch its document. A callback that a thread adds to a document while
+Bokeh lets that go from a hold is lost, and what document is the current one is the whole process's.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
+from html import escape
+from io import BytesIO
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.components.panes import button, column, select, text
+from app.picture.glossary import explained
+from app.reports.colors import COLORS
+from app.session.errand import Errand, Found
+from app.views.legend import Key, card_title
+from solver.study.figure_data import Panel
+from solver.study.page import PlotSection, Section
+
+MARKS = {"solid": "line", "points": "dot"}
+HAND = ThreadPoolExecutor(1, "drawing")
+"""Draws, and first imports what draws: at half a second each, all pages would stand still."""
+
+
+class Report:
+    """A tab on which a report is asked for, watched while it is made, and read.
+
+    A subclass says what it is, and what asking for it means for the page (`title`, `words`), what
+    is asked (`_ask`), what can be chosen (`_choices`), and which settings it depends on (`acting`).
+
+    Parameters
+    ----------
+    errand
+        The state that it shows.
+
+    Attributes
+    ----------
+    view
+        What stands on the page; it is empty until `open`.
+    """
+
+    title = words = ""
+    note = "Nothing here depends on a setting."
+    """What stands in the sidebar, above the settings that do something here."""
+
+    def __init__(self, errand: Errand) -> None:
+        self._errand = errand
+        self._newest: Found | None = None
+        self._shown: tuple[Any, ...] = (None,)
+        self._role = "report"
+        self._drawings: deque[tuple[pn.Column, Future[Any]]] = deque()
+        self.view = column(role="paper", margin=(4, 10), visible=False)
+
+    def open(self) -> None:
+        """Show the report; nothing is computed before somebody asks."""
+        if not self.view.objects:
+            self.view[:] = self._made()
+        self._refresh()
+
+    def refresh(self) -> None:
+        """Follow the errand, as soon as somebody looks."""
+        if self.view.visible:
+            self._refresh()
+
+    def put_drawn(self) -> None:
+        """Put a plot in its place, if the next one is drawn: the page has other things to do."""
+        if self._drawings and self._drawings[0][1].done():
+            box, drawing = self._drawings.popleft()
+            # Made here and not where it is drawn, as its theme is that of the page.
+            box.append(pn.pane.Bokeh(drawing.result(), sizing_mode="stretch_width"))
+
+    def acting(self) -> Collection[str]:
+        """Give the names of the settings that do something here."""
+        return ()
+
+    def _ask(self) -> None:
+        raise NotImplementedError
+
+    def _choices(self) -> list[Any]:
+        return []
+
+    def _refusal(self) -> str:
+        """Say why it cannot be asked for at present, if so."""
+        return ""
+
+    def _differs(self, found: Found) -> str:
+        """Say in what a report is not of the present settings; nothing if it is."""
+        return ""
+
+    def _found(self) -> list[Found]:
+        """Give the reports that are whole, oldest first."""
+        return list(self._errand.found)
+
+    def _title(self, found: Found) -> str:
+        """Say what stands above a report that is whole (HTML)."""
+        return ""
+
+    def _made(self) -> list[Any]:
+        """Make what stands on the tab: what asks for a report, and the card that it is read on."""
+        self._progress, self._older = _words(role="progress"), _words(role="progress")
+        self._heading, self._sheet = _words(), column(role="paper")
+        self._past = select("Shown", [], self._put, width=260, visible=False)
+        self._files = _row(margin=(0, 6, 8, 6))
+        self._start = button("Start", "play_arrow", self._on_start, color="primary")
+        self._cancel = button("Cancel", "stop", self._on_cancel, variant="outlined")
+        again = button("Do it again", "replay", self._on_start, variant="outlined")
+        self._again = _row(self._older, again, align_items="center", visible=False)
+        words = _words(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
+        bar = self._start, self._cancel, *self._choices(), self._past
+        asked = words, _row(*bar, align_items="center"), self._progress
+        parts = self._again, self._heading, self._sheet, self._files
+        self._card = column(*parts, role="card paper", visible=False)
+        return [column(*asked, role="card paper", margin=(0, 0, 12, 0)), self._card]
+
+    def _on_start(self) -> None:
+        self._ask()
+        self._refresh()
+
+    def _on_cancel(self) -> None:
+        self._errand.cancel()
+        self._refresh()
+
+    def _refresh(self) -> None:
+        errand, refusal = self._errand, self._refusal()
+        self._start.disabled = errand.is_busy or bool(refusal)
+        self._cancel.visible = errand.is_busy
+        waiting = f"<b>{escape(refusal)}</b>" if refusal and not errand.is_busy else ""
+        self._progress.object = waiting or progress(errand)
+        found = self._found()
+        options = {f"{number}: {one.title}": one for number, one in enumerate(found, start=1)}
+        if found and options != self._past.options:
+            self._past.param.update(options=options, value=found[-1], visible=len(found) > 1)
+        newest = errand.growing if errand.is_busy or not found else found[-1]
+        if newest.sections and (newest is self._shown[0] or newest is not self._newest):
+            self._newest = newest
+            self._put(newest)
+        self._mark()
+
+    def _mark(self) -> None:
+        """Tell a report of other settings from one of those present."""
+        shown, *_ = self._shown
+        differs = "" if shown is None or self._errand.is_busy else self._differs(shown)
+        self._older.object = f"<b>{escape(differs)}</b>"
+        self._again.visible = bool(differs)
+
+    def _put(self, found: Found) -> None:
+        """Show what there is of a report; of the same one, what is drawn already stays."""
+        before, self._shown = self._shown, (found, found.sections, found.files)
+        if self._shown == before:
+            return
+        if found is not before[0]:
+            self._sheet[:] = []
+            while self._drawings:
+                self._drawings.pop()[1].cancel()
+        for pane, section in zip(self._sheet, found.sections, strict=False):
+            if isinstance(section, str):
+                pane.param.update(object=explained(section))
+        self._sheet.extend(map(self._pane, found.sections[len(self._sheet) :]))
+        is_whole = found in self._found()
+        self._heading.object = self._title(found) if is_whole else ""
+        self._files[:] = downloads(found.files) if is_whole else []
+        self._mark()
+        self._card.visible = True
+
+    def _pane(self, section: Section) -> Any:
+        """Give what shows a section; a plot is put into it once it is drawn."""
+        if isinstance(section, str):
+            return _words(explained(section), self._role)
+        # A `FlexBox` would not do: what is put into it later misses the theme.
+        box = column(_words(legend(section), role="legend"), role="panels")
+        self._drawings.extend((box, HAND.submit(_drawn, panel)) for panel in section.panels)
+        return box
+
+
+def _words(html: str = "", role: str = "report") -> pn.pane.HTML:
+    return text(html, role=role, margin=(6, 14))
+
+
+def _row(*parts: Any, margin: Any = (0, 6), **options: Any) -> pn.FlexBox:
+    """Put parts beside each other, as many as there is room for."""
+    return pn.FlexBox(
+        *parts, flex_wrap="wrap", sizing_mode="stretch_width", margin=margin, **options
+    )
+
+
+def _drawn(panel: Panel) -> Any:
+    from app.reports.report_plots import plot
+
+    return plot(panel)
+
+
+def legend(plot: PlotSection) -> str:
+    """Write one legend for panels side by side (HTML)."""
+    curves = {curve.label: curve for panel in plot.panels for curve in panel.curves}.values()
+    keys = [Key(COLORS[one.hue], MARKS.get(one.line, one.line), one.label) for one in curves]
+    return f'<div class="title">{card_title("", keys)}</div>'
+
+
+def downloads(files: Mapping[str, bytes]) -> list[Any]:
+    """Give a button for each file."""
+    return [
+        pmui.FileDownload(label=name, filename=name, size="small", callback=partial(BytesIO, data))
+        for name, data in files.items()
+    ]
+
+
+def progress(errand: Errand) -> str:
+    """Say how far a report is, or why it came to nothing (HTML)."""
+    if errand.is_busy:
+        bar = f'<progress value="{errand.share:.3f}"></progress>'
+        return f"{bar} {escape(errand.doing)} <small>({escape(errand.title)})</small>"
+    return f"<b>{escape(errand.notice)}</b>" if errand.notice else ""

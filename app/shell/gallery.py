@@ -1,0 +1,105 @@
+"""The plots of the run, each on a card under its name and legend; the browser makes them.
+
+Their figures are the same on every page. A server that made them for each, as Panel does, would
+spend half of what a page costs it on them.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Sequence
+from functools import cache
+from typing import Any
+
+import param
+from bokeh.document import Document
+
+from app.components.form import item_of
+from app.components.innards import Plain
+from app.components.panes import looks, script
+from app.shell.figures import make_figure
+from app.views.catalogue import VIEWS
+from app.views.drawing import View
+from app.worker.easel import PLOTS
+from solver.scenes import behind
+from solver.settings import Settings
+
+NEEDED = "label", "start", "end", "step", "log", "whole"
+"""Of a slider, for whoever drags its setting elsewhere."""
+
+
+class Gallery(Plain):
+    """The cards; messages from the browser are `{kind, value}`, what was chosen and where.
+
+    Attributes
+    ----------
+    figures
+        As JSON, for every view by its slug: Bokeh's document, its name, and what it chooses.
+    shown
+        Slugs of the views that are seen, in order.
+    magnified
+        How much larger the type of plots is than it usually is.
+    sliders
+        What the slider of every setting is that may be dragged in a picture, by its name.
+    said
+        Slug of every plot, and a sentence of what it shows; pictures bring it.
+    caption
+        Which run and moment is seen; pictures bring it.
+    """
+
+    figures = param.String(default="{}")
+    shown = param.List(default=[])
+    sliders = param.Dict(default={})
+    magnified = param.Number(default=1.0)
+    said = param.List(default=[])
+    caption = param.String(default="")
+
+    _esm = script("components/values.js", "shell/handles.js", "shell/gallery.js")
+
+    def offer(self, views: Sequence[View]) -> None:
+        """Show these views and no others."""
+        self.shown = [view.slug for view in views]
+
+    def let_drag(self, settings: Settings, names: Collection[str]) -> None:
+        """Have what stands behind these settings dragged, as far as it is in the picture."""
+        definitions = settings.definitions()
+        items = [
+            item_of(name, definitions[name]) or {}
+            for name in behind(settings).values()
+            if name in names
+        ]
+        self.sliders = {item["name"]: {key: item[key] for key in NEEDED} for item in items}
+
+
+def gallery(choices: dict[str, Callable[[Any], None]]) -> Gallery:
+    """Give plots, of which none is seen yet.
+
+    Parameters
+    ----------
+    choices
+        What a tap or a drag on a plot tells, by what it chooses: "instant" and "time" with a
+        time, s, "substructure" with a number, "interface" with a name, "place" with a position,
+        m, and "drag" with what the slider of a setting tells.
+    """
+    made = Gallery(name=PLOTS, figures=figures(), **{**looks("plots"), "margin": 0})
+    made.on_msg(lambda message: choices[message.data["kind"]](message.data["value"]))
+    return made
+
+
+@cache
+def figures() -> str:
+    """Give the figures of all views as JSON, made once."""
+    return json.dumps({view.slug: _described(view) for view in VIEWS})
+
+
+def _described(view: View) -> dict[str, Any]:
+    document = Document()
+    document.add_root(make_figure(view))
+    made = document.to_json(deferred=False)
+    # Bokeh adds what every component of Panel's is made of, ten times as much as all figures.
+    del made["defs"]
+    return {
+        "json": made,
+        "name": view.name,
+        "chooses": view.plot.chooses,
+    }

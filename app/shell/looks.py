@@ -1,0 +1,108 @@
+"""Where one looks: which interface, which stress, how much the displacement is magnified."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+from app.components.panes import select
+from app.components.scrubber import Scrubber, scrubber
+from app.picture.shown import STRESSES
+from app.session.session import Session
+from app.views.scales import length_of
+
+STEPS = (1.0, 2.0, 5.0)
+DECADES = 6
+SAME = 0.02
+"""Distance of two places that count as one, as a share of the length."""
+STRESS_TITLES = {name if name == STRESSES[0] else f"stress {name}": name for name in STRESSES}
+
+
+class Looks:
+    """What is chosen beside the instant; a widget is made for the first scene that needs it.
+
+    Parameters
+    ----------
+    session
+        Is told what is chosen.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._showing = False
+        self._scene = ""
+        self._interfaces: list[str] = []
+
+    def parts(self, *, shows_bodies: bool) -> list[Any]:
+        """Give the widgets that choose anything at present, as they have to stand."""
+        facts, scene = self._session.facts, self._session.settings.scene
+        # A widget that went until the next run of the scene is shown would have the browser build
+        # all that stand beside it twice for every change.
+        if facts is not None or scene != self._scene:
+            self._scene, self._interfaces = scene, list(facts.interfaces) if facts else []
+        found: list[Any] = []
+        if len(self._interfaces) > 1:
+            if facts is not None:
+                self._show(self._interfaces, facts.interface)
+            found.append(self._interface)
+        return [*found, self._stress, self._magnification] if shows_bodies else found
+
+    @cached_property
+    def _interface(self) -> Any:
+        what = "The one whose forces and status are drawn; a tap on it in the picture chooses it."
+        return select("Interface", [], self._choose, width=145, description=what)
+
+    @cached_property
+    def _stress(self) -> Any:
+        return select(
+            "Stress",
+            STRESS_TITLES,
+            lambda stress: self._session.watch(stress=stress),
+            value=STRESSES[0],
+            width=128,
+            description="What colours the deformed bodies.",
+        )
+
+    @cached_property
+    def _magnification(self) -> Scrubber:
+        return scrubber(
+            140,
+            self._magnify,
+            label="Magnification",
+            help="How many times larger displacements are drawn than they are; at the left end "
+            "as many as shows them well.",
+            end=DECADES * len(STEPS) + 1,
+            text="auto",
+        )
+
+    def _show(self, interfaces: list[str], chosen: str) -> None:
+        select = self._interface
+        if select.options == interfaces and select.value == chosen:
+            return
+        self._showing = True
+        try:
+            select.param.update(options=interfaces, value=chosen)
+        finally:
+            self._showing = False
+
+    def chooses(self) -> dict[str, Callable[[Any], None]]:
+        """Give what a tap on the picture of the scene does, by what it chooses."""
+        return {"interface": self._choose, "place": self._mark}
+
+    def _choose(self, interface: str) -> None:
+        if not self._showing and interface:
+            self._session.watch(interface=interface)
+
+    def _mark(self, place: float) -> None:
+        """Mark a place along the bodies, m; one that is marked already is no more."""
+        marked, near = self._session.look.place, SAME * length_of(self._session.settings)
+        is_marked = marked is not None and abs(marked - place) <= near
+        self._session.watch(place=None if is_marked else place)
+
+    def _magnify(self, place: int) -> None:
+        decade, step = divmod(place - 1, len(STEPS))
+        factor = None if place == 0 else STEPS[step] * 10.0**decade
+        text = "auto" if factor is None else f"× {factor:,.0f}"
+        self._magnification.param.update(shown=place, text=text)
+        self._session.watch(magnification=factor)

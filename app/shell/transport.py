@@ -1,0 +1,236 @@
+"""Run, pause, step, reset; the pace; and the sliders over iterations and instants."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import panel as pn
+
+from app.components.panes import button, select
+from app.components.scrubber import scrubber
+from app.session.session import Session
+from app.shell.address import PACES
+from app.worker.easel import INSTANT, ITERATION
+from solver.settings import Settings
+
+LABELS = {
+    "1": "1 iteration/s",
+    "5": "5 iterations/s",
+    "20": "20 iterations/s",
+    "100": "100 iterations/s",
+    "fastest": "as fast as it can",
+}
+RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
+FIXED = 5
+"""Buttons, pace and sliders, which always stand there."""
+PLAYED_IN = 8.0
+"""Seconds in which one plays through time."""
+
+
+class Transport:
+    """The buttons and sliders that move through a run.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._played: tuple[float, float] | None = None
+        self._make_buttons()
+        self._make_sliders()
+        self._sliders = pn.FlexBox(
+            self._iteration,
+            self._instant,
+            flex_wrap="wrap",
+            min_width=320,
+            sizing_mode="stretch_width",
+            styles={"flex": "1 1 320px"},
+        )
+        self.view = pn.FlexBox(
+            self._run,
+            self._step,
+            self._reset,
+            self._pace,
+            self._sliders,
+            align_items="center",
+            flex_wrap="wrap",
+            sizing_mode="stretch_width",
+            css_classes=["transport"],
+        )
+
+    def keys(self) -> dict[str, Callable[[], None]]:
+        """Give what keys do, by their names."""
+        return {
+            " ": self.toggle,
+            "s": self.step,
+            "r": self.reset,
+            "t": self.play,
+            "ArrowLeft": partial(self.move_instant, -1),
+            "ArrowRight": partial(self.move_instant, 1),
+            "Shift+ArrowLeft": partial(self.move_iteration, -1),
+            "Shift+ArrowRight": partial(self.move_iteration, 1),
+        }
+
+    def chooses(self) -> dict[str, Callable[[Any], None]]:
+        """Give what a tap or a drag on a plot does, by what it chooses."""
+        return {
+            "instant": self.choose_time,
+            "time": self.choose_time,
+            "substructure": self.choose_substructure,
+        }
+
+    def toggle(self) -> None:
+        """Run, pause, or replay what has ended."""
+        if self._session.goes_on:
+            self._session.pause()
+        else:
+            self._session.go()
+        self.show()
+
+    def step(self) -> None:
+        """Do one iteration, or show the next of a run that has ended."""
+        session, facts = self._session, self._session.facts
+        if facts is not None and facts.is_over and facts.iteration < facts.done:
+            session.seek(facts.iteration + 1)
+        else:
+            session.step()
+        self.show()
+
+    def reset(self) -> None:
+        """Start again from the settings' own start."""
+        self._session.start()
+        self.show()
+
+    def choose_time(self, time: float) -> None:
+        """Look at the instant nearest to a time, s."""
+        if self._session.facts is not None:
+            self._choose_phase(time / self._session.facts.duration)
+
+    def move_instant(self, by: int) -> None:
+        """Look at an instant so many later."""
+        if (facts := self._session.facts) is not None:
+            self._choose_instant(facts.instant + by)
+
+    def move_iteration(self, by: int) -> None:
+        """Look at an iteration so many later."""
+        if (facts := self._session.facts) is not None:
+            self._session.seek(max(facts.iteration + by, 1))
+
+    def play(self) -> None:
+        """Go through time from the chosen instant, or from the first; or stop."""
+        phase = self._session.look.phase
+        is_stopped = self._played is None
+        self._played = (time.monotonic(), phase if phase < 1.0 else 0.0) if is_stopped else None
+        self._instant.playing = is_stopped
+
+    def tick(self) -> None:
+        """Look at the instant that one has come to, where one plays through time."""
+        facts = self._session.facts
+        if self._played is None or facts is None:
+            return
+        began, phase = self._played
+        last = max(facts.instants - 1, 1)
+        phase += (time.monotonic() - began) / PLAYED_IN
+        self._session.watch(phase=min(int(phase * last) / last, 1.0))
+        if phase >= 1.0:
+            self.play()
+
+    def choose_substructure(self, number: float) -> None:
+        """Look at the modes of another substructure, counted from 1."""
+        last, place = self._session.settings.n_substructures - 1, round(number) - 1
+        self._session.watch(substructure=None if place >= last else max(place, 0))
+        self.show()
+
+    def arrange(self, settings: Settings) -> None:
+        """Show the sliders that apply."""
+        sliders = [self._iteration, self._instant]
+        if settings.is_reduced and settings.n_substructures > 1:
+            sliders.append(self._substructure)
+        if list(self._sliders) != sliders:
+            self._show_substructure(settings)
+            self._sliders[:] = sliders
+
+    def place(self, more: list[Any]) -> None:
+        """Put widgets behind the sliders, in place of those there."""
+        parts = [*self.view.objects[:FIXED], *more]
+        if list(self.view) != parts:
+            self.view[:] = parts
+
+    def show(self) -> None:
+        """Bring buttons and sliders to where the session is."""
+        label, icon, does, facts = "Run", "play_arrow", RUNS, self._session.facts
+        if self._session.goes_on:
+            label, icon = "Pause", "pause"
+        elif facts is not None and facts.is_over:
+            label, icon, does = "Replay", "replay", REPLAYS
+        if self._run.icon != icon:
+            self._run.param.update(label=label, icon=icon, description=does)
+        if self._substructure in self._sliders:
+            self._show_substructure(self._session.settings)
+
+    def _make_buttons(self) -> None:
+        self._run = button(
+            "Pause", "pause", self.toggle, width=104, color="primary", description=RUNS
+        )
+        does = "Do one iteration and wait (s)."
+        self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
+        does = "Start the run again, from its usual start (r)."
+        self._reset = button(
+            "Reset", "restart_alt", self.reset, variant="outlined", description=does
+        )
+        self._pace = select(
+            "Pace",
+            {label: name for name, label in LABELS.items()},
+            lambda name: self._session.set_pace(PACES[name]),
+            value=next(name for name, pace in PACES.items() if pace == self._session.pace),
+            width=160,
+            description="Iterations shown in a second; waiting is no part of the run time.",
+        )
+
+    def _make_sliders(self) -> None:
+        self._iteration = scrubber(
+            155,
+            self._session.seek,
+            name=ITERATION,
+            label="Iteration",
+            start=1,
+            end=2,
+            help="Go back to any iteration done; at the right end it follows the run.",
+        )
+        self._instant = scrubber(
+            125,
+            self._choose_instant,
+            self.play,
+            name=INSTANT,
+            label="Instant",
+            help="The instant that is drawn; a tap on the map or the load path chooses it too.",
+            plays="Play through time, or stop (t).",
+        )
+        self._substructure = scrubber(
+            118,
+            self.choose_substructure,
+            label="Substructure",
+            help="The one whose PGD modes are drawn; a tap on the map of basis sizes chooses it.",
+            start=1,
+        )
+
+    def _choose_instant(self, number: int) -> None:
+        if (facts := self._session.facts) is not None:
+            self._choose_phase(number / max(facts.instants - 1, 1))
+
+    def _choose_phase(self, phase: float) -> None:
+        """Look at a share of the interval; who chooses one plays no more."""
+        if self._played is not None:
+            self.play()
+        self._session.watch(phase=min(max(phase, 0.0), 1.0))
+
+    def _show_substructure(self, settings: Settings) -> None:
+        last, chosen = settings.n_substructures, self._session.look.substructure
+        at = last if chosen is None else min(chosen + 1, last)
+        self._substructure.param.update(end=max(last, 2), shown=at, text=str(at))

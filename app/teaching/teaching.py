@@ -1,0 +1,268 @@
+"""The lesson of a page: offered in a line, opened, its question asked and answered, and left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import Any, ClassVar
+
+import param
+
+from app.components.form import ENDS, STYLE
+from app.components.innards import Plain
+from app.components.panes import script
+from app.controls.sidebar import Sidebar
+from app.lessons.lesson import LESSONS, NO_CHOICE, OFFERED, content, readings
+from app.session.classroom import Poll, Room
+from app.session.session import Session
+from app.views.catalogue import VIEWS
+from solver.lessons.lesson import Lesson
+from solver.settings import Settings
+
+CHOICE, COUNT = "the-choice", "the-count"
+"""Messages that tell what was predicted, and that all may see how often; they name no setting."""
+OWN_STYLE = """
+:host { font-size: var(--prose, 15px); line-height: 1.45; }
+h2 { margin: 0 0 6px; font-size: max(20px, 1.15em); line-height: 1.25; }
+p { margin: 8px 0; }
+article { padding: 2px 10px 10px; }
+summary { margin: 4px 0; }
+small { opacity: 0.8; }
+.question, .why { padding-left: 10px; border-left: 4px solid #1976d2; }
+.question { font-weight: 600; }
+.why { outline: none; }
+.why.right { border-color: #009E73; }
+.why.wrong { border-color: #D55E00; }
+button { width: auto; padding: 5px 12px; margin: 3px 8px 3px 0; text-align: left; }
+button:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
+button.main { color: #fff; background: #1565c0; border-color: #1565c0; }
+.choices button[aria-pressed=true] { border-color: #1976d2; outline: 2px solid #1976d2; }
+.choices button, .counts li { background: linear-gradient(to right,
+  color-mix(in srgb, #1976d2 30%, transparent) var(--share, 0%), transparent var(--share, 0%)); }
+.counts { padding: 0; list-style: none; }
+.counts li { padding: 4px 12px; margin: 4px 0; }
+.choices button { display: block; width: 100%; padding: 7px 12px; margin: 6px 0; }
+.value { font-weight: 600; white-space: nowrap; font-variant-numeric: tabular-nums; }
+sup { line-height: 0; }
+.control { display: inline-block; vertical-align: bottom; padding: 0 8px; border-radius: 6px;
+  background: color-mix(in srgb, #1976d2 14%, transparent); }
+.control[hidden] { display: none; }
+.control input[type=range] { width: 200px; max-width: 100%; margin: 0 0 4px; }
+.control select { display: inline-block; width: auto; margin: 2px 0; }
+.control label { display: inline-block; margin-right: 6px; white-space: nowrap; }
+.strip { padding: 4px 0 4px 10px; }
+.strip:has(nav) { display: flex; align-items: start; gap: 20px; }
+.strip > div { flex: 1; }
+.strip > div[hidden] { display: none; }
+.strip p { margin: 0 0 6px; }
+.strip .control input[type=range] { width: 260px; }
+.strip .counts { display: flex; flex-wrap: wrap; gap: 4px 12px; margin: 0; }
+nav { white-space: nowrap; }
+nav span { margin: 0 8px 0 0; }
+nav button:disabled { opacity: 0.4; }
+.offer { display: flex; align-items: start; padding: 0 10px; font-size: 14px; line-height: 1.3; }
+.offer details { flex: 1; }
+.offer summary { margin: 2px 0; }
+.offer li { margin: 4px 0; }
+.offer li button { padding: 2px 8px; font-weight: 600; }
+.offer > button { border: 0; padding: 0 10px; margin: 2px 0; }
+"""
+
+
+class LessonPane(Plain):
+    """A lesson, or where there is none, the offer of one.
+
+    Messages from the browser are those of a `Form`; also `CHOICE` with the index of what was
+    predicted, `COUNT`, and the sidebar's choice of a lesson.
+
+    Attributes
+    ----------
+    offered
+        Name, title and question of every lesson.
+    lesson
+        What is shown of the one that is open, as `content` says it; empty if there is none.
+    shown
+        As in `Form`, for the controls of the lesson.
+    values
+        Name and text of every quantity in its sentences; pictures bring them.
+    poll
+        What the class predicts: whether this page `leads` it, how many have `predicted` and `of`
+        how many, and the `counts` of all choices once they are to be seen; empty without a class.
+    is_strip
+        Whether one thing is said at a time, for a projector.
+    recalls
+        Whether what was predicted before a page was loaded again holds on; the browser knows it.
+    """
+
+    offered = param.List(default=[])
+    lesson = param.Dict(default={})
+    shown = param.Dict(default={})
+    values = param.List(default=[])
+    poll = param.Dict(default={})
+    is_strip = param.Boolean(default=False)
+    recalls = param.Boolean(default=False)
+
+    _esm = script(
+        "components/values.js",
+        "components/points.js",
+        "components/controls.js",
+        "teaching/lesson.js",
+    )
+    _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
+
+
+class Teaching:
+    """The lesson that a page is in, if it is in one.
+
+    Parameters
+    ----------
+    session
+        Is given the settings of a lesson.
+    sidebar
+        Is told what the controls of a lesson say, and shows what holds.
+    changed
+        Called when a lesson is opened, answered or left.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    lesson
+        The one that is open.
+    """
+
+    def __init__(self, session: Session, sidebar: Sidebar, changed: Callable[[], None]) -> None:
+        self._session = session
+        self._sidebar = sidebar
+        self._changed = changed
+        self._choice: int | None = None
+        self._room: Room | None = None
+        self._is_left = False
+        self.lesson: Lesson | None = None
+        self.view = LessonPane(
+            name="lesson",
+            offered=OFFERED,
+            css_classes=["lesson"],
+            sizing_mode="stretch_width",
+            margin=0,
+        )
+        self.view.on_msg(lambda message: self._hear(**message.data))
+        sidebar.view.param.watch(lambda event: self._show(), "shown")
+
+    @property
+    def name(self) -> str:
+        """Name of the lesson that is open, or nothing."""
+        return self.lesson.name if self.lesson else ""
+
+    @property
+    def controls(self) -> Collection[str]:
+        """Names of the settings that one may change beside the plots: a lesson has but its own."""
+        return (self.view if self.lesson else self._sidebar.view).shown
+
+    @property
+    def asks(self) -> bool:
+        """Whether a question waits for an answer, which nothing on the page may give away."""
+        return self.lesson is not None and (self._choice is None or self._waits)
+
+    @property
+    def _waits(self) -> bool:
+        """Whether the answer comes with the class that is followed."""
+        room = self._session.attendance.follows
+        return room is not None and room.poll is not None and not room.poll.is_answered
+
+    def open(self, name: str) -> None:
+        """Begin a lesson, with its scene and settings; without a name, leave all as it is."""
+        if name in LESSONS:
+            self._session.start(LESSONS[name].settings, is_alone=True)
+            self._session.watch(phase=LESSONS[name].instant)
+            self._session.go()
+        self.take(name)
+
+    def take(self, name: str) -> None:
+        """Be in a lesson whose settings are there already, or in none."""
+        self.lesson, self._choice = LESSONS.get(name), None
+        if self.lesson is not None:
+            self._session.watch(interface=self.lesson.interface)
+        self._tell()
+
+    def follow(self, settings: Settings) -> None:
+        """Leave a lesson as soon as another scene is looked at."""
+        if self.lesson is not None and settings.scene != self.lesson.settings.scene:
+            self.open("")
+
+    def catch_up(self) -> None:
+        """Show the lesson to the class that is led here, or that of the class that is followed."""
+        attendance = self._session.attendance
+        if attendance.leads is not None:
+            attendance.leads.ask(self.name, is_answered=not self.asks)
+        elif attendance.follows is not None:
+            self._attend(attendance.follows)
+        room = attendance.follows
+        is_left = room is not None and room.is_alone
+        if (self._room, self._is_left) != (room, is_left):
+            self._room, self._is_left = room, is_left
+            self._tell()
+        self.view.poll = self._polled()
+
+    def _attend(self, room: Room) -> None:
+        poll = room.poll
+        name = poll.lesson if poll is not None else ""
+        if name != self.name:
+            # The settings of another scene come with a picture.
+            if not name or LESSONS[name].settings.scene == room.settings.scene:
+                self.take(name)
+        elif poll is not None and poll.is_answered and "choice" not in self.view.lesson:
+            self._choice = NO_CHOICE if self._choice is None else self._choice
+            self._tell()
+
+    def _polled(self) -> dict[str, Any]:
+        attendance = self._session.attendance
+        room, poll = attendance.room, attendance.poll
+        if room is None or poll is None or self.lesson is None:
+            return {}
+        counts = poll.counts(len(self.lesson.choices)) if poll.is_open else []
+        leads = attendance.leads is not None
+        return {"leads": leads, "predicted": poll.predicted, "of": room.present, "counts": counts}
+
+    def _tell(self) -> None:
+        """Show what there is of the lesson, and have no more drawn and told than it needs."""
+        lesson, choice = self.lesson, None if self.asks else self._choice
+        self._sidebar.lesson = self.name
+        self._sidebar.draw(lesson.views if lesson else [view.name for view in VIEWS])
+        self._session.watch(readings=readings(lesson, choice) if lesson else ())
+        self.view.lesson = {**content(lesson, choice), **self._in_class()} if lesson else {}
+        self._changed()
+
+    def _in_class(self) -> dict[str, Any]:
+        """Say what else there is of a lesson that is followed: its ends are the leader's.
+
+        Whoever was left alone with a question may see the answer.
+        """
+        if self._session.attendance.follows is None:
+            return {}
+        return {"follows": True, "chosen": self._choice, "alone": self._is_left}
+
+    def _hear(self, name: str, value: Any, hand: bool, count: float) -> None:
+        poll = self._session.attendance.poll
+        if name == COUNT and poll is not None:
+            poll.is_open = True
+        elif name == CHOICE and self.asks:
+            self._predict(value, poll)
+        elif name not in (CHOICE, COUNT):
+            self._sidebar.hear(name, value, hand, count)
+
+    def _predict(self, choice: int, poll: Poll | None) -> None:
+        """Take what was predicted; whoever was left alone by a class goes on without it."""
+        if self._waits and self._is_left:
+            self._session.start(self._session.settings.replace())
+            self._choice = choice if self._choice is None or choice != NO_CHOICE else self._choice
+        else:
+            if poll is not None and self._waits:
+                poll.vote(self, choice)
+            self._choice = choice
+        self._tell()
+
+    def _show(self) -> None:
+        """Show on the lesson's controls what those of the sidebar show."""
+        holds = self._sidebar.view.shown
+        names = ("", ENDS, *self.lesson.controls) if self.lesson else ()
+        self.view.shown = {name: holds[name] for name in names if name in holds}

@@ -1,0 +1,250 @@
+"""The tab *What if*: a question over a range of settings, and its chart, which fills as it runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
+
+import param
+
+from app.components.innards import Plain
+from app.components.panes import STATIC, column, script
+from app.picture.labels import label_of
+from app.session.session import Session
+from app.whatif.charted import described, drawn, is_comparable, is_of, stands
+from app.whatif.question import (
+    READY,
+    Question,
+    Span,
+    askable,
+    bathtub,
+    changed_quantity,
+    changed_span,
+    names_of,
+    offered,
+)
+from solver.definitions import SettingError, about
+from solver.settings import Settings
+from solver.study.quantities import QUANTITIES
+from solver.study.sweep import Plan, Row
+from solver.study.sweep.report import counts
+from solver.study.sweep.table import csv_of
+
+NO_SECOND = Span()
+FILE = "what-if.csv"
+
+
+class Asker(Plain):
+    """Fields of the question, and the chart; what the user does comes as `{kind, value}`.
+
+    Attributes
+    ----------
+    form
+        What can be chosen, what is, and what of it is refused.
+    progress
+        How far the runs are.
+    picture
+        As JSON, which is written sooner, the `chart` and its `points` as `app.whatif.charted` says
+        them, and where the present settings are on its axes (`here`).
+    ghost
+        The same of the question before, and the key of the chart that it stands in (`of`).
+    file
+        A text that the browser is to save, its name, and a number that tells it from others.
+    """
+
+    form = param.Dict(default={})
+    progress = param.Dict(default={})
+    picture = param.String(default="{}")
+    ghost = param.String(default="{}")
+    file = param.List(default=[])
+
+    _esm = script("whatif/chart.js", "whatif/whatif.js")
+    _stylesheets: ClassVar[list[str]] = [(STATIC / "whatif.css").read_text(encoding="utf-8")]
+
+
+class WhatIf:
+    """The tab.
+
+    Parameters
+    ----------
+    session
+        Has the sweep made, beside its run.
+    show
+        Opens the run of some settings on the live tab.
+    question
+        Of the address, which is asked as soon as somebody looks; None proposes one.
+
+    Attributes
+    ----------
+    view
+        What stands on the page; it is empty until `open`.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        show: Callable[[Settings], None],
+        question: Question | None = None,
+    ) -> None:
+        self._session, self._show = session, show
+        self._asked, self._question = question, question
+        self._asker: Asker | None = None
+        self._drawn: Plan | None = None
+        self._scene = session.wanted.scene
+        self.view = column(role="paper", margin=(4, 10), visible=False)
+
+    @property
+    def question(self) -> Question | None:
+        """What the fields say; None before anybody has looked."""
+        return self._question
+
+    def open(self) -> None:
+        """Show the fields; a question that came with the address is asked."""
+        is_first = self._asker is None
+        if is_first:
+            self._asker = Asker(sizing_mode="stretch_width")
+            self._asker.on_msg(lambda message: self.hear(**message.data))
+            self._question = self._question or bathtub(self._session.wanted)
+        if self._asked is not None:
+            self._asked = None
+            self.start()
+        self._refresh()
+        if is_first:
+            # Not before it has its fields: the browser builds it with what it comes with.
+            self.view[:] = [self._asker]
+
+    def refresh(self) -> None:
+        """Follow the sweep and the sidebar, as soon as somebody looks."""
+        if self.view.visible:
+            self._refresh()
+
+    def hear(self, kind: str, value: Any) -> None:
+        """Follow what the user does."""
+        {
+            "span": lambda: self._on_span(**value),
+            "quantity": lambda: self._on_quantity(**value),
+            "ready": lambda: self._on_ready(value),
+            "start": self.start,
+            "cancel": self._session.inquiry.cancel,
+            "run": lambda: self._on_run(value),
+            "table": self._on_table,
+        }[kind]()
+        self._refresh()
+
+    def start(self) -> None:
+        """Ask what the fields say; what is refused stands beside them."""
+        settings, question = self._session.wanted, self._question
+        if question is not None and not question.refusals(settings):
+            self._session.inquiry.ask(question.plan(settings))
+
+    def _on_span(self, place: int, span: dict[str, str]) -> None:
+        """Follow the fields of a setting; a second one without a name is none."""
+        assert self._question is not None
+        spans = [*self._question.spans, NO_SECOND][:2]
+        spans[place] = changed_span(self._session.wanted, spans[place], span)
+        chosen = tuple(one for one in spans if one.name)
+        self._question = Question(chosen, self._question.of)
+
+    def _on_quantity(self, name: str, at: str) -> None:
+        assert self._question is not None
+        self._question = Question(self._question.spans, changed_quantity(name, at))
+
+    def _on_ready(self, title: str) -> None:
+        _, make = READY[title]
+        self._question = make(self._session.wanted) or self._question
+        self.start()
+
+    def _on_run(self, number: int) -> None:
+        """Open the run of a point, unless its settings were refused."""
+        plan = self._session.inquiry.plan
+        if plan is not None and 0 <= number < plan.size:
+            try:
+                settings = plan.settings_at(number)
+            except SettingError:
+                return
+            self._show(settings)
+
+    def _on_table(self) -> None:
+        inquiry = self._session.inquiry
+        if self._asker is not None and inquiry.plan is not None:
+            rows = sorted(inquiry.rows, key=lambda row: row.number)
+            count = self._asker.file[2] + 1 if self._asker.file else 1
+            self._asker.file = [csv_of(inquiry.plan, rows), FILE, count]
+
+    def _refresh(self) -> None:
+        if self._asker is None or self._question is None:
+            return
+        inquiry, settings = self._session.inquiry, self._session.wanted
+        plan = inquiry.plan
+        self._keep_to(settings)
+        if plan is not None and plan is not self._drawn:
+            self._drawn = plan
+            self._asker.ghost = json.dumps(self._ghost(plan))
+        if plan is not None:
+            here = stands(plan, settings)
+            self._asker.picture = json.dumps({**pictured(plan, inquiry.rows), "here": here})
+        form, progress = form_of(self._question, settings), self._progress()
+        self._asker.param.update(form=form, progress=progress)
+
+    def _keep_to(self, settings: Settings) -> None:
+        """Propose something else where another scene knows nothing of what is asked."""
+        assert self._question is not None
+        if settings.scene != self._scene:
+            self._scene = settings.scene
+            if not all(span.name in settings.definitions() for span in self._question.spans):
+                self._question = bathtub(settings)
+
+    def _ghost(self, plan: Plan) -> dict[str, Any]:
+        before = self._session.inquiry.before
+        if before is None or not is_comparable(plan, before[0]):
+            return {}
+        return {**pictured(*before), "of": plan.digest}
+
+    def _progress(self) -> dict[str, Any]:
+        inquiry = self._session.inquiry
+        plan, done = inquiry.plan, len(inquiry.rows)
+        if plan is None:
+            return {"busy": False, "share": 0.0, "words": "", "moved": False}
+        words = counts(plan, inquiry.rows)
+        if inquiry.is_busy:
+            rest = f", {inquiry.left:.0f} s left" if done else ""
+            words = f"{done} of {plan.size} runs{rest}"
+        return {
+            "busy": inquiry.is_busy,
+            "share": done / plan.size,
+            "words": " ".join(filter(None, (inquiry.notice, words))),
+            "moved": not is_of(plan, self._session.wanted),
+        }
+
+
+def pictured(plan: Plan, rows: Sequence[Row]) -> dict[str, Any]:
+    """Give the chart of a plan and its points."""
+    return {"chart": described(plan), "points": drawn(plan, rows)}
+
+
+def form_of(question: Question, settings: Settings) -> dict[str, Any]:
+    """Say what the fields offer, what they say, and what of it is refused."""
+    definitions = settings.definitions()
+    names = offered(settings)
+    names |= {one.name: definitions[one.name] for one in question.spans if one.name in definitions}
+    quantity, _, at = question.of.partition("@")
+    quantities = askable(settings)
+    quantities |= {quantity: QUANTITIES[quantity]} if quantity in QUANTITIES else {}
+    title = label_of(settings, settings.changed(), most=len(settings.changed()))
+    return {
+        "settings": [
+            {"name": name, "title": about(one).title, "unit": about(one).unit, "of": names_of(one)}
+            for name, one in names.items()
+        ],
+        "spans": [{**vars(one)} for one in (*question.spans, NO_SECOND)[:2]],
+        "quantities": [
+            {"name": name, "title": one.title, "at": one.parameter.words if one.parameter else ""}
+            for name, one in quantities.items()
+        ],
+        "quantity": quantity,
+        "at": at,
+        "refusals": question.refusals(settings),
+        "ready": [[title, help] for title, (help, make) in READY.items() if make(settings)],
+        "rest": title or "defaults",
+    }

@@ -1,0 +1,74 @@
+"""Reports, from a worker process to the server."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the page's buttons and sliders have to know of a picture.
+
+    Attributes
+    ----------
+    iteration, done
+        The one that is shown, and how many are done.
+    instants, instant, time, duration
+        How many can be chosen, the one that is, its time and that of the last, s.
+    interface, interfaces
+        The one that is looked at, and all with friction.
+    is_over
+        Whether the run has ended: only another one can go on.
+    is_broken
+        Whether it was refused, or broke; then nothing else holds.
+    was_warm
+        Whether it started from the run before.
+    """
+
+    iteration: int = 0
+    done: int = 0
+    instants: int = 1
+    instant: int = 0
+    time: float = 0.0
+    duration: float = 1.0
+    interface: str = ""
+    interfaces: tuple[str, ...] = ()
+    is_over: bool = False
+    is_broken: bool = False
+    was_warm: bool = False
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One iterate of one run: all views that are seen, and the words about it.
+
+    Attributes
+    ----------
+    block
+        As `app.wire.block` packs it, for the browser alone.
+    """
+
+    ticket: int
+    facts: Facts
+    block: bytes
+
+
+@dataclass(frozen=True)
+class File:
+    """Something to be saved or said now, for this page alone and not for a class that follows it.
+
+    Attributes
+    ----------
+    block
+        As in `Picture`.
+    """
+
+    block: bytes
+
+
+@dataclass(frozen=True)
+class Died:
+    """The process is gone, and all that it had; the link says it in its stead."""
+
+
+Report = Picture | File | Died
