@@ -43,3 +43,9 @@ def stress(iterate, instant=-1):
     inside = iterate.problem.inside
     found = inside.displacement(iterate.displacement, [instant])
     return inside.stress(found[:, :, 0])
+
+
+def whole_force_error(reference, iterate):
+    """Give how wrong the contact force is as one field, pressure and friction together, (-)."""
+    wanted = reference.contact_force
+    return float(np.linalg.norm(iterate.contact_force - wanted) / np.linalg.norm(wanted))

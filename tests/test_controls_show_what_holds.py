@@ -10,13 +10,13 @@ import param
 import pytest
 from lone_link import LoneLink
 
-from app.components import notes
 from app.components.form import ENDS, POINTS, USUAL, item_of
 from app.controls.refusals import refused
 from app.controls.sidebar import Sidebar
 from app.session.bench import Bench
 from app.session.pages import Pages
 from app.session.session import Session
+from app.shell import notes
 from solver.definitions import CurveParameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings

@@ -20,8 +20,9 @@ from panel.io.state import set_curdoc
 from processes import PATIENCE, wait_for
 
 from app.picture.glossary import explained
+from app.reports import reports
 from app.reports.report_plots import overlay, plot
-from app.reports.reports import PaperFigures, reports
+from app.reports.reports import PaperFigures
 from app.session.bench import Bench
 from app.session.desk import SECTIONS, Desk, said
 from app.session.errand import Errand, Found

@@ -11,9 +11,10 @@ from lone_link import LoneLink
 from panel.io.state import set_curdoc
 
 from app.server import serve
+from app.session import pages
 from app.session.bench import Bench
 from app.session.pages import Pages, most_pages
-from app.session.session import Session, pages
+from app.session.session import Session
 from solver.scenes.bar import BarSettings
 
 

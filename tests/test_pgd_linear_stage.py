@@ -231,7 +231,7 @@ def test_the_fixed_point_finds_the_singular_pair(monkeypatch):
     random = np.random.default_rng(4)
     residual = random.normal(size=(12, 3)) @ np.diag([9.0, 3.0, 1.0]) @ random.normal(size=(3, 20))
     k, weights = random.uniform(0.1, 10.0, 12), random.uniform(0.5, 2.0, 20)
-    found = Enrichment(0.0, 0.0, 1).mode(residual, k, weights) * np.sqrt(k)
+    found = Enrichment(0.0, 0.0, 1, largest=1).mode(residual, k, weights) * np.sqrt(k)
     root = np.sqrt(k)[:, None] * residual * np.sqrt(weights)
     leading = np.linalg.svd(root)[0][:, 0]
     assert abs(found @ leading) == pytest.approx(np.linalg.norm(found), rel=1e-9)

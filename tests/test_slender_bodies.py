@@ -6,6 +6,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from plane import whole_force_error
 
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.macro import HIGHEST_DEGREE, side_basis
@@ -13,7 +14,6 @@ from solver.discrete.plane import Rectangle
 from solver.latin import iterations
 from solver.latin.direction import automatic
 from solver.reference.choice import reference_of
-from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
@@ -31,9 +31,9 @@ def layers_of(ratio, **values):
 
 def error_after(most, settings, problem):
     """Give the largest error of the contact force in the last three of so many iterations."""
-    distance = distance_to(reference_of(problem), problem)
+    reference = reference_of(problem)
     found = islice(iterations(problem, method_of(settings)), most - 3, most)
-    return max(distance.of_friction_force(one) for one in found)
+    return max(whole_force_error(reference, one) for one in found)
 
 
 def degree_of(columns, rows, **values):

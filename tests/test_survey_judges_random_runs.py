@@ -46,7 +46,7 @@ def test_a_row_is_drawn_alike_whatever_was_drawn_before(scene):
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_every_setting_that_can_do_anything_is_drawn_sooner_or_later(scene):
     kind = CATALOGUE[scene].settings
-    drawn = {name for row in range(400) for name in draw(scene, 1, row).changed()}
+    drawn = {name for row in range(600) for name in draw(scene, 1, row).changed()}
     definitions = kind.definitions()
     never = set(KEPT - {"method"})
     if len(definitions["local_stage"].objects) == 1:

@@ -208,7 +208,7 @@ def test_a_refused_question_is_not_asked(session: Session) -> None:
     page = Tab(session, Question((Span("peak", "300", "300", "3"),), "seconds"))
     page.open()
     assert session.inquiry.plan is None
-    assert "the two ends differ" in page.asker.form["refusals"]["0"]
+    assert "The two ends differ" in page.asker.form["refusals"]["0"]
 
 
 def test_a_scene_that_knows_nothing_of_the_question_is_proposed_another(session: Session) -> None:

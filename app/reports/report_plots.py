@@ -57,7 +57,7 @@ def _drawn(panel: Panel, curve: PanelCurve) -> list[Any]:
     x, y = panel.x.quantity, panel.y.quantity
     values = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
     has_points = curve.line == "points"
-    line = hv.Line((curve.x, values), x, y, label=curve.label).opts(
+    line = hv.Curve((curve.x, values), x, y, label=curve.label).opts(
         line_dash="solid" if has_points else curve.line,
         line_width=1.0 if has_points else 2.2,
         tools=["hover"],
