@@ -11,7 +11,7 @@ from pathlib import Path
 from browser import Chrome, Server
 from pages import choose, press, slider, status
 from playwright.sync_api import Page, expect
-from processes import wait_for
+from processes import PATIENCE, wait_for
 from proxy import Proxy
 
 PAGES = """Bokeh.documents.filter((one) => one.roots().some(({type}) => type !== "Plot")).length"""
@@ -100,14 +100,14 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: 
         proxy.mend()
         expect(status(page)).to_contain_text("6 substructures")
         # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
-        page.wait_for_function(f"window.stayed && {PAGES} === 1")
+        page.wait_for_function(f"window.stayed && {PAGES} === 1", timeout=1e3 * PATIENCE)
         assert keys_heard(page) == heard > 0
         proxy.hush()
         expect(status(page)).to_contain_text("not connected")
         proxy.mend()
         expect(status(page)).to_contain_text("6 substructures")
         # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
-        page.wait_for_function(f"window.stayed && {PAGES} === 1")
+        page.wait_for_function(f"window.stayed && {PAGES} === 1", timeout=1e3 * PATIENCE)
         assert keys_heard(page) == heard > 0
 
 

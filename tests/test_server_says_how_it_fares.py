@@ -95,7 +95,7 @@ def test_nothing_is_said_of_what_a_closed_socket_did_not_take(
         assert NOT_SENT in inspect.getsource(module)
         for words in (NOT_SENT, "else"):
             logging.getLogger(module.__name__).warning(words)
-    assert caplog.messages == ["else", "else"]
+    assert set(caplog.messages) == {"else"}
     caplog.clear()
     run_apart(forget())
     # What other tests have left behind may be collected meanwhile.

@@ -47,6 +47,6 @@ class Line:
             picture: Picture = self.connection.recv()
             self.pictures.append(picture)
             self.send(Ready())
-            if condition(picture):
+            if isinstance(picture, Picture) and condition(picture):
                 return picture
         pytest.fail("no such picture")
