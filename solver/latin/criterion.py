@@ -75,8 +75,8 @@ class Criterion(ABC):
 
 
 @dataclass(frozen=True)
-class All(Criterion):
-    """All parts hold; they are looked at in order, as long as they do."""
+class Combined(Criterion):
+    """Criteria that make one; it asks for what the tightest of them does."""
 
     parts: tuple[Criterion, ...]
 
@@ -89,6 +89,11 @@ class All(Criterion):
     def tolerance(self) -> float:
         """The tightest of the parts."""
         return min(part.tolerance for part in self.parts)
+
+
+@dataclass(frozen=True)
+class All(Combined):
+    """All parts hold; they are looked at in order, as long as they do."""
 
     def at_work(self) -> Judge:
         """Begin a run."""
@@ -120,20 +125,8 @@ class _AllJudge(Judge):
 
 
 @dataclass(frozen=True)
-class Either(Criterion):
+class Either(Combined):
     """Any part holds."""
-
-    parts: tuple[Criterion, ...]
-
-    @property
-    def accuracy(self) -> float:
-        """The tightest of the parts."""
-        return min(part.accuracy for part in self.parts)
-
-    @property
-    def tolerance(self) -> float:
-        """The tightest of the parts."""
-        return min(part.tolerance for part in self.parts)
 
     def at_work(self) -> Judge:
         """Begin a run."""
