@@ -6,11 +6,9 @@ import asyncio
 import gc
 import logging
 
-import panel as pn
 import pytest
 from bokeh.document import Document
 from bokeh.server.server import Server
-from packaging.version import Version
 from web_pages import WebPage, give_up_pages, run_apart, serve_pages, until
 
 from app.server import serve
@@ -48,11 +46,6 @@ async def visit(server: Server, address: str) -> None:
     await until(lambda: len(serve.PAGES) == 0)
 
 
-@pytest.mark.xfail(
-    Version(pn.__version__) >= Version("1.10"),
-    reason="with Panel 1.10 and Bokeh 3.10 a callback keeps closed pages; not found yet which",
-    strict=False,
-)
 # Panel hands its download button both names of one parameter.
 @pytest.mark.filterwarnings("ignore")
 def test_waves_of_pages_leave_nothing(caplog: pytest.LogCaptureFixture) -> None:

@@ -13,9 +13,13 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 import pytest
+from bokeh.application.application import Application
+from bokeh.application.handlers.function import FunctionHandler
+from bokeh.core.types import ID
 from bokeh.document import Document
 from bokeh.server import session as bokeh_session
 from bokeh.server.connection import ServerConnection
+from bokeh.server.contexts import ApplicationContext
 from bokeh.server.protocol_handler import ProtocolHandler
 from bokeh.server.session import ServerSession
 from panel.io.server import DocHandler
@@ -25,6 +29,7 @@ from tornado.websocket import WebSocketHandler
 from web_pages import run_apart
 
 from app.components.innards import (
+    MADE_ON_A_THREAD,
     THREADS,
     answer_heads,
     ignore_business,
@@ -72,13 +77,18 @@ def test_pages_are_opened_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_pages_are_served_on_the_loops_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
-    if hasattr(bokeh_session, THREADS):
-        monkeypatch.setattr(bokeh_session, THREADS, getattr(bokeh_session, THREADS))
+    for place, name in (bokeh_session, THREADS), (ApplicationContext, MADE_ON_A_THREAD):
+        if hasattr(place, name):
+            monkeypatch.setattr(place, name, getattr(place, name))
+    makers = []
 
     async def serve() -> None:
         stay_on_loop()
         session: Any = ServerSession("page", Document(), asyncio.get_running_loop())
         assert await session.with_document_locked(threading.get_ident) == threading.get_ident()
+        page = Application(FunctionHandler(lambda _: makers.append(threading.get_ident())))
+        await ApplicationContext(page).create_session_if_needed(ID("page"))
+        assert makers == [threading.get_ident()]
 
     run_apart(serve())
 

@@ -12,6 +12,7 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 from bokeh.server import session as bokeh_session
+from bokeh.server.contexts import ApplicationContext
 from bokeh.server.protocol_handler import ProtocolHandler
 from bokeh.server.util import check_allowlist
 from panel.custom import JSComponent
@@ -21,6 +22,8 @@ from panel.util.parameters import edit_readonly
 
 THREADS = "_run_in_executor"
 """Of Bokeh 3.10: what gives threads the messages of browsers and the callbacks of sessions."""
+MADE_ON_A_THREAD = "_can_initialize_document_in_worker"
+"""Of Bokeh 3.10: what tells whether a page is made on a thread."""
 
 
 class Plain(JSComponent):
@@ -101,10 +104,11 @@ def open_in_turn() -> None:
 
 
 def stay_on_loop() -> None:
-    """Have all that pages do done on the event loop, one after the other.
+    """Have pages made on the event loop, and all that they do done there, one after the other.
 
-    Bokeh does it on threads from 3.10 on. What pages share is made for one at a time; and Panel
-    1.10, busy for the first time on a thread, goes on asking for the loop from there, without end.
+    Bokeh does it on threads from 3.10 on. What pages share is made for one at a time; a thread has
+    an event loop of its own, which nobody runs: what a page leaves there keeps it for good; and
+    Panel 1.10, busy for the first time on a thread, asks for the loop from there without end.
     """
 
     async def do(what: Callable[..., Any], *args: Any, **options: Any) -> Any:
@@ -112,6 +116,8 @@ def stay_on_loop() -> None:
 
     if hasattr(bokeh_session, THREADS):
         setattr(bokeh_session, THREADS, do)
+    if hasattr(ApplicationContext, MADE_ON_A_THREAD):
+        setattr(ApplicationContext, MADE_ON_A_THREAD, lambda _: False)
 
 
 def ignore_the_lost() -> None:
