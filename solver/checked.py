@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 
 import param
 
-from solver.definitions import Parameter, about, checked_value, unknown
+from solver.definitions import Parameter, Retired, about, checked_value, unknown
 
 
 class Checked(param.Parameterized):
@@ -23,6 +23,9 @@ class Checked(param.Parameterized):
 
     METHODS: ClassVar[Mapping[str, Mapping[str, object]]] = {}
     """What `method` sets; a scene that lacks an option keeps its own default."""
+
+    RETIRED: ClassVar[Mapping[str, Retired]] = {}
+    """Settings that there were."""
 
     method: Any
     """Name of one of the methods."""
@@ -56,6 +59,9 @@ class Checked(param.Parameterized):
         definitions = cls.definitions()
         clean = {}
         for name, value in values.items():
+            if name in cls.RETIRED:
+                cls.RETIRED[name].check(name, value)
+                continue
             if name not in definitions:
                 raise unknown(name, value, definitions)
             clean[name] = checked_value(definitions[name], name, value)

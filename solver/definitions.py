@@ -54,6 +54,27 @@ class About:
     essential: bool = False
 
 
+@dataclass(frozen=True)
+class Retired:
+    """A setting that there was, and that files may still have.
+
+    Attributes
+    ----------
+    value
+        What all runs now have; None where it did nothing without another setting.
+    why
+        What was measured, as a reason.
+    """
+
+    value: object | None
+    why: str
+
+    def check(self, name: str, value: object) -> None:
+        """Refuse any value but the one that all runs have."""
+        if self.value is not None and value != self.value:
+            raise SettingError(name, value, str(self.value), f"{self.why}; leave it out")
+
+
 class CurveParameter(Parameter):
     """A path given by a preset's name or by pairs (abscissa, value), linear in between.
 

@@ -10,16 +10,22 @@ from typing import ClassVar
 import param
 
 from solver.checked import Checked
-from solver.definitions import choice, count, quantity, switch
+from solver.definitions import Retired, choice, count, quantity, switch
 from solver.methods import METHODS
 
 
-def _is_reduced(settings: Settings) -> bool:
-    return settings.is_reduced
+def _on_modes(settings: Settings) -> bool:
+    return bool(settings.linear_stage == "pgd")
 
 
-def _is_sampled(settings: Settings) -> bool:
-    return _is_reduced(settings) and settings.local_stage == "reduced"
+def _on_fields(settings: Settings) -> bool:
+    return bool(settings.linear_stage == "full")
+
+
+NO_SAMPLES = (
+    "laws evaluated at a part of the points and instants took longer to every error, and stalled "
+    "at a larger one"
+)
 
 
 class Settings(Checked):
@@ -32,6 +38,11 @@ class Settings(Checked):
     """Every scene defines these, where it shows them."""
 
     METHODS: ClassVar = METHODS
+    RETIRED: ClassVar = {
+        "local_stage": Retired("full", NO_SAMPLES),
+        "local_points": Retired(None, NO_SAMPLES),
+        "local_instants": Retired(None, NO_SAMPLES),
+    }
 
     substructures = count(
         10,
@@ -116,7 +127,7 @@ class Settings(Checked):
         "Most modes kept for a substructure; the smallest are dropped.",
         group="Method",
         title="Most PGD modes",
-        applies=_is_reduced,
+        applies=_on_modes,
         essential=True,
     )
     pgd_tolerance = quantity(
@@ -128,7 +139,7 @@ class Settings(Checked):
         group="Method",
         title="PGD tolerance",
         logarithmic=True,
-        applies=_is_reduced,
+        applies=_on_modes,
     )
     pgd_enrichment = quantity(
         0.1,
@@ -138,7 +149,7 @@ class Settings(Checked):
         "the residual. 0: always; 1: never.",
         group="Method",
         title="PGD enrichment threshold",
-        applies=_is_reduced,
+        applies=_on_modes,
     )
     pgd_pairs = count(
         2,
@@ -147,7 +158,7 @@ class Settings(Checked):
         "Most modes that one iteration adds to a substructure.",
         group="Method",
         title="PGD pairs per iteration",
-        applies=_is_reduced,
+        applies=_on_modes,
     )
     pgd_sharing = quantity(
         0.0,
@@ -157,34 +168,7 @@ class Settings(Checked):
         "field. 0: each has modes of its own.",
         group="Method",
         title="PGD basis sharing",
-        applies=lambda settings: _is_reduced(settings) and settings.n_substructures > 1,
-    )
-    local_stage = choice(
-        "full",
-        ["full", "reduced"],
-        "full: contact and friction laws are evaluated at all points and instants. reduced: at "
-        "some of them, and the modes give the rest.",
-        group="Method",
-        title="Local stage",
-        applies=_is_reduced,
-    )
-    local_points = quantity(
-        0.5,
-        (0.0, 1.0),
-        (0.1, 1.0),
-        "Share of the friction points at which the laws are evaluated; at least one for each mode.",
-        group="Method",
-        title="Reference points",
-        applies=_is_sampled,
-    )
-    local_instants = quantity(
-        0.5,
-        (0.0, 1.0),
-        (0.1, 1.0),
-        "Share of the instants at which the laws are evaluated; at least one for each mode.",
-        group="Method",
-        title="Reference instants",
-        applies=_is_sampled,
+        applies=lambda settings: _on_modes(settings) and settings.n_substructures > 1,
     )
     acceleration = choice(
         "anderson",
@@ -193,7 +177,7 @@ class Settings(Checked):
         "iterations. none: take the newest as it is.",
         group="Method",
         title="Acceleration",
-        applies=lambda settings: not _is_reduced(settings),
+        applies=_on_fields,
         essential=True,
     )
     start = choice(
@@ -212,7 +196,7 @@ class Settings(Checked):
         "points slip; taken back if that does not help.",
         group="Method",
         title="Update of k",
-        applies=lambda settings: not _is_reduced(settings),
+        applies=_on_fields,
     )
     finish = choice(
         "status",
@@ -222,7 +206,7 @@ class Settings(Checked):
         "iterate.",
         group="Method",
         title="Finish",
-        applies=lambda settings: not _is_reduced(settings),
+        applies=_on_fields,
     )
     accuracy = quantity(
         0.01,
@@ -280,14 +264,9 @@ class Settings(Checked):
         return 0
 
     @property
-    def is_reduced(self) -> bool:
-        """Whether the linear stage works on separated bases."""
-        return bool(self.linear_stage == "pgd")
-
-    @property
     def may_finish(self) -> bool:
         """Whether a status step may end the run."""
-        return bool(self.finish == "status") and not self.is_reduced
+        return bool(self.finish == "status") and self.applies("finish")
 
     @property
     def loop_is_over_displacement(self) -> bool:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from solver.latin import Ending, iterations, solve
-from solver.latin.acceleration import Mixing
-from solver.latin.direction import sliding_share
-from solver.latin.nested import prolong
+from solver.latin.acceleration.mixing import Mixing
+from solver.latin.direction.rules import sliding_share
+from solver.latin.start.prolong import prolong
 from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
@@ -103,7 +103,7 @@ def test_on_every_kind_of_input_it_ends_well(change):
 
 
 def test_a_run_goes_on_from_a_checkpoint_to_the_bit(monkeypatch):
-    monkeypatch.setattr("solver.latin.acceleration.MEMORY", 4)
+    monkeypatch.setattr("solver.latin.acceleration.anderson.MEMORY", 4)
     chosen = options()
     problem = discretise(chosen)
     straight = list(islice(iterations(problem, method_of(chosen)), 30))

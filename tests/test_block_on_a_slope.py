@@ -15,7 +15,6 @@ from solver.discrete.rest import rigid_slide
 from solver.discrete.stack_data import Spring
 from solver.latin import Ending, solve
 from solver.laws import Component, Contact, Frictionless, SlackSpring
-from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import discretise, loop_of
@@ -174,7 +173,7 @@ def test_along_the_search_direction_a_slack_spring_pushes_by_what_its_gap_lacks(
     k = 10.0 ** random.uniform(-1.0, 1.0, 6)
     incoming = random.normal(size=(6, 20))
     moved = incoming.copy()
-    law.rule(Region(np.arange(6), k, np.arange(20)))(incoming, moved, slice(None))
+    law.rule(k, 20)(incoming, moved, slice(None))
     force = k[:, None] * (moved - incoming)
     overlap = np.maximum(-(moved[:3] + spring.gap[:, None]), 0.0)
     np.testing.assert_allclose(force[:3], overlap / spring.softness[:, None], atol=1e-12)

@@ -12,7 +12,6 @@ from scipy.optimize import brentq
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import Compliant, Component, Contact, Sliders, Unilateral
-from solver.laws.interface import Region
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -153,7 +152,7 @@ def test_along_the_search_direction_slider_and_spring_carry_the_same_force(seed,
     k = 10.0 ** random.uniform(-1.0, 1.0, rows.size)
     incoming = random.normal(size=(rows.size, times))
     moved = incoming.copy()
-    law.rule(Region(np.arange(rows.size), k, np.arange(times)))(incoming, moved, slice(None))
+    law.rule(k, times)(incoming, moved, slice(None))
     force = k[:, None] * (moved - incoming)
     friction = force[tangent.above]
     slider = along.slider(moved, force)

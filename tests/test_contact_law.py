@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.laws import Component, Contact, Sliders, Unilateral
-from solver.laws.interface import Region
 from solver.laws.play import play
 
 ANY = settings(derandomize=True, deadline=None, max_examples=100)
@@ -40,8 +39,7 @@ def contacts(draw):
 def local_stage(law, k, incoming):
     """Give displacements and forces of the local stage."""
     found = np.zeros_like(incoming)
-    every = np.arange(incoming.shape[1])
-    law.rule(Region(np.arange(len(k)), k, every))(incoming, found, slice(None))
+    law.rule(k, incoming.shape[1])(incoming, found, slice(None))
     return found, k[:, None] * (found - incoming)
 
 

@@ -7,8 +7,9 @@ from itertools import groupby, islice, pairwise, takewhile
 import numpy as np
 import pytest
 
-from solver.latin import Ending, direction_update, iterations, solve
-from solver.latin.direction_update import CALM, TRIAL
+from solver.latin import Ending, iterations, solve
+from solver.latin.direction import update
+from solver.latin.direction.update import CALM, TRIAL
 from solver.loads import PRESETS
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
@@ -89,7 +90,7 @@ def test_points_that_slip_more_have_a_smaller_k_and_cuts_do_not_see_it():
 
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, acceleration):
-    monkeypatch.setattr(direction_update, "SLIDING", 1e-9)
+    monkeypatch.setattr(update, "SLIDING", 1e-9)
     chosen = options(**{**FAST, "acceleration": acceleration})
     problem = discretise(chosen)
     constant = sample(chosen.replace(k_update="none"), CALM + 20)
@@ -108,8 +109,8 @@ def test_a_harmful_update_is_taken_back_once_and_for_all(monkeypatch, accelerati
 @pytest.mark.parametrize("harm", [1.0, 1e-9])
 @pytest.mark.parametrize("acceleration", ["none", "anderson"])
 def test_a_run_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, acceleration, harm):
-    monkeypatch.setattr(direction_update, "SLIDING", harm * direction_update.SLIDING)
-    monkeypatch.setattr("solver.latin.acceleration.MEMORY", 4)
+    monkeypatch.setattr(update, "SLIDING", harm * update.SLIDING)
+    monkeypatch.setattr("solver.latin.acceleration.anderson.MEMORY", 4)
     chosen = options(**{**FAST, "acceleration": acceleration})
     problem = discretise(chosen)
     straight = sample(chosen, CALM + TRIAL + 20)

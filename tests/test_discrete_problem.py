@@ -12,17 +12,17 @@ from hypothesis import strategies as st
 
 from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
 from solver.latin import iterations
-from solver.latin.coarse import CoarseProblem
 from solver.latin.indicators import latin_indicator
-from solver.latin.linear import FullLinearStage
-from solver.latin.response import DenseResponse, SparseResponse
+from solver.latin.linear.coarse import CoarseProblem
+from solver.latin.linear.full import FullLinearStage
+from solver.latin.linear.response import DenseResponse, SparseResponse
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.method import method_of
 
 ANY = settings(derandomize=True, deadline=None, max_examples=60)
-response = importlib.import_module("solver.latin.response")
-coarse = importlib.import_module("solver.latin.coarse")
+response = importlib.import_module("solver.latin.linear.response")
+coarse = importlib.import_module("solver.latin.linear.coarse")
 
 
 def options(**values):

@@ -19,12 +19,10 @@ from solver.latin import (
     Iterations,
     Latin,
     Paper,
-    References,
-    coarse,
     iterations,
-    response,
 )
-from solver.latin.linear import FullGroup
+from solver.latin.linear import coarse, response
+from solver.latin.linear.full import FullGroup
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -54,7 +52,6 @@ def test_a_sparse_factor_that_fails_is_refused_as_a_dense_one_is(
         (lambda: Paper(along=-1.0), "Paper.along"),
         (lambda: PGD(modes=0), "PGD.modes"),
         (lambda: PGD(tolerance=math.nan), "PGD.tolerance"),
-        (lambda: References(points=2.0), "References.points"),
         (lambda: Anderson(memory=0), "Anderson.memory"),
         (lambda: Accuracy(0.0), "Accuracy.share"),
         (lambda: Indicator(-1.0), "Indicator.eta"),

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from solver.discrete.rods import Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Component, Contact, Sliders, Unilateral
-from solver.laws.interface import Region
 from solver.laws.slip_dependent import SlipDependent
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
@@ -71,7 +70,7 @@ def test_the_local_stage_obeys_the_bound_that_its_slip_has_left(seed, opens, two
     k = 10.0 ** random.uniform(-1.0, 1.0, rows.size)
     incoming = random.normal(size=(rows.size, times))
     moved = incoming.copy()
-    law.rule(Region(np.arange(rows.size), k, np.arange(times)))(incoming, moved, slice(None))
+    law.rule(k, times)(incoming, moved, slice(None))
     force = k[:, None] * (moved - incoming)
     slip = np.diff(tangent.jump(moved), axis=1, prepend=0.0)
     gone = np.minimum(np.cumsum(np.abs(slip), axis=1) / length, 1.0)

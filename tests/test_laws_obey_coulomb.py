@@ -8,9 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from solver.latin.local import LocalStage
+from solver.latin.local.stage import LocalStage
 from solver.laws import Neumann
-from solver.laws.interface import Region
 from solver.laws.perfect import perfect
 from solver.laws.play import WALK_FROM_POINTS, _Scan, _Walk, play
 from solver.scenes import discretise
@@ -217,7 +216,7 @@ def test_a_prescribed_force_is_what_the_search_direction_finds(data, shape):
     every = np.arange(shape[0])
     law = Neumann(every, force, np.ones((shape[0], 1)))
     moved = np.empty_like(target)
-    law.rule(Region(every, k[:, 0], np.arange(shape[1])))(target, moved, slice(None))
+    law.rule(k[:, 0], shape[1])(target, moved, slice(None))
     found = k * (moved - target)
     rounding = 4.0 * EPS * (np.abs(force) + k * np.abs(target))
     assert np.all(np.abs(found - force) <= rounding + 1e-300)

@@ -10,6 +10,8 @@ from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[1]
 TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
@@ -52,6 +54,11 @@ def modules(package):
 
 
 SOLVER = modules("solver")
+EVERY = SOLVER | modules("app")
+PARTS = ["local", "linear", "acceleration", "direction", "start", "finish", "criteria"]
+"""Folders of the method's parts; files beside them put parts to work."""
+GROUND = ["blocks", "iterate", "indicators", "cycle"]
+"""Files beside them on which parts stand."""
 
 
 @cache
@@ -137,6 +144,27 @@ def test_no_module_of_the_solver_imports_itself_by_detours():
     graph = {module: imports(path) & SOLVER.keys() for module, path in SOLVER.items()}
     order = list(TopologicalSorter(graph).static_order())
     assert set(order) == set(SOLVER)
+
+
+@pytest.mark.parametrize("package", ["solver", "solver.latin", "app", "app.worker"])
+def test_no_folder_imports_itself_by_detours(package):
+    """A sub-folder counts as one place, and so does a file that stands beside it."""
+    inside = {name: path for name, path in EVERY.items() if name.startswith(f"{package}.")}
+    place = {name: name.removeprefix(f"{package}.").split(".")[0] for name in inside}
+    graph = defaultdict(set)
+    for name, path in inside.items():
+        graph[place[name]] |= {place[other] for other in imports(path) & inside.keys()}
+    for own, others in graph.items():
+        others.discard(own)
+    TopologicalSorter(graph).prepare()
+
+
+def test_the_parts_of_the_method_stand_below_what_puts_them_to_work():
+    inside = {name: path for name, path in SOLVER.items() if name.startswith("solver.latin.")}
+    for name, path in inside.items():
+        below = {other.split(".")[2] for other in imports(path) & inside.keys()}
+        if name.split(".")[2] in PARTS:
+            assert below <= {*PARTS, *GROUND}, name
 
 
 def test_every_part_of_the_solver_has_its_layer():

@@ -102,7 +102,7 @@ def test_a_basis_given_the_exact_solution_needs_no_enrichment():
         assert [entry.added for entry in iterate.reduction.records] == [0] * 5
 
 
-@pytest.mark.parametrize("change", [{}, {"pgd_sharing": 0.5}, {"local_stage": "reduced"}], ids=str)
+@pytest.mark.parametrize("change", [{}, {"pgd_sharing": 0.5}], ids=str)
 def test_a_run_goes_on_from_a_checkpoint_to_the_bit(change):
     chosen = options(substructures=5, **change)
     straight = sample(chosen, 40)
@@ -152,10 +152,6 @@ def test_shared_bases_store_fewer_modes():
         {"pgd_modes": 1},
         {"pgd_tolerance": 1.0},
         {"pgd_enrichment": 1.0},
-        *({"local_stage": "reduced", **more} for more in ({}, {"instants": 1}, {"peak": 0.0})),
-        {"local_stage": "reduced", "local_points": 0.0, "local_instants": 0.0, "pgd_sharing": 0.5},
-        {"local_stage": "reduced", "pgd_sharing": 0.9},
-        {"local_stage": "reduced", "elements": 53, "body_force": 500.0},
     ],
     ids=str,
 )
@@ -244,29 +240,6 @@ def test_the_search_direction_is_the_full_stage_s():
     iterate = sample(chosen, 3)
     for part, shown in zip(problem.substructures, iterate.bases, strict=True):
         assert np.array_equal(shown.k, k[part.rows])
-
-
-@pytest.mark.parametrize("substructures", [5, 10])
-def test_the_laws_at_reference_points_alone_reach_one_percent_of_displacement(substructures):
-    solution = run(options(substructures=substructures, local_stage="reduced", max_iterations=200))
-    assert solution.records[-1].error_displacement < 0.01
-    errors = [entry.local_error for entry in solution.records]
-    assert 0.0 < max(errors[-20:]) < 0.01
-    assert errors[4::5] == [0.0] * 40
-
-
-def test_references_everywhere_are_the_full_local_stage_seen_through_the_modes():
-    chosen = options(local_stage="reduced", local_points=1.0, local_instants=1.0, **GENEROUS)
-    sampled = sample(chosen, 60)
-    full = sample(chosen.replace(local_stage="full"), 60)
-    scale = np.abs(full.outgoing).max()
-    assert np.abs(sampled.outgoing - full.outgoing).max() < 1e-3 * scale
-    assert sampled.references is not None
-    assert len(sampled.references.instants) == chosen.instants
-    for places, part in zip(
-        sampled.references.places, discretise(chosen).substructures, strict=True
-    ):
-        assert len(places) == len(part.rows)
 
 
 def test_results_hold_what_the_bases_went_through():

@@ -15,7 +15,8 @@ FRONT, PAGE = ROOT / "README.md", ROOT / "app" / "README.md"
 MATHEMATICS, MEASUREMENTS = ROOT / "solver" / "README.md", ROOT / "solver" / "study" / "README.md"
 LESSONS = ROOT / "app" / "lessons" / "README.md"
 SWEEPS = ROOT / "solver" / "study" / "sweep" / "README.md"
-READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, MEASUREMENTS, SWEEPS]
+METHOD = ROOT / "solver" / "latin" / "README.md"
+READMES = [FRONT, PAGE, LESSONS, MATHEMATICS, METHOD, MEASUREMENTS, SWEEPS]
 NAMES = [str(readme.relative_to(ROOT)) for readme in READMES]
 LONGEST = 160
 """Lines of the first page."""
@@ -78,7 +79,11 @@ def test_every_link_leads_somewhere(readme: Path) -> None:
 
 def test_the_map_names_every_folder_of_the_code() -> None:
     folders = {f"{path.parent.relative_to(ROOT)}/" for path in SOURCES}
-    rooms = {f"app/{name}" for name in paths_in(PAGE)}
+    rooms = {
+        f"{readme.parent.relative_to(ROOT)}/{name}"
+        for readme in (PAGE, METHOD)
+        for name in paths_in(readme)
+    }
     assert folders <= paths_in(FRONT) | rooms
 
 

@@ -10,9 +10,9 @@ import pytest
 from solver.arrays import space_time
 from solver.latin import Auto
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear import FullLinearStage
-from solver.latin.reduced_linear import ReducedLinearStage
-from solver.latin.response import DenseResponse
+from solver.latin.linear.full import FullLinearStage
+from solver.latin.linear.response import DenseResponse
+from solver.latin.linear.separated import ReducedLinearStage
 from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings

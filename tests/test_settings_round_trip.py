@@ -422,3 +422,13 @@ def test_every_setting_says_what_it_is(name):
     again = parse(json.dumps(default))
     assert again == default
     assert BarSettings.checked({name: default}).values() == BarSettings().values()
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_a_file_of_an_earlier_version_is_read_as_far_as_it_still_holds(scene):
+    kind = CATALOGUE[scene].settings
+    usual = kind.checked({})
+    old = 'local_stage = "full"\nlocal_points = 0.5\nlocal_instants = 0.5\n'
+    assert settings_from_toml(f"{dump(usual)}{old}").values() == usual.values()
+    with pytest.raises(SettingError, match=r"local_stage.*leave it out"):
+        kind.checked({"local_stage": "reduced"})

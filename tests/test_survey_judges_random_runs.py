@@ -49,8 +49,6 @@ def test_every_setting_that_can_do_anything_is_drawn_sooner_or_later(scene):
     drawn = {name for row in range(600) for name in draw(scene, 1, row).changed()}
     definitions = kind.definitions()
     never = set(KEPT - {"method"})
-    if len(definitions["local_stage"].objects) == 1:
-        never |= {name for name in definitions if name.startswith("local_")}
     if len(definitions["start"].objects) == 1:
         never |= {"start"}
     assert set(definitions) - drawn == never

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.latin import iterations
-from solver.latin.acceleration import SAMPLE, Mixing
+from solver.latin.acceleration.mixing import SAMPLE, Mixing
 from solver.latin.blocks import MOST, VALUES, Blocks
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of

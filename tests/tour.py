@@ -27,14 +27,11 @@ SIZES: dict[str, dict[str, Any]] = {
 NEVER = {
     "bar": set[str](),
     "strand": set[str](),
-    "block": {"local_stage", "start"},
-    "layers": {"local_stage", "start"},
-    "incline": {"local_stage", "start"},
+    "block": {"start"},
+    "layers": {"start"},
+    "incline": {"start"},
 }
-"""Settings of a scene that nothing makes apply, with those that depend on them."""
-DEPENDENT = {
-    "local_stage": {"local_points", "local_instants"},
-}
+"""Settings of a scene that nothing makes apply."""
 HALVINGS = 8
 Reach = Callable[[Settings, str], list[Any]]
 
@@ -70,7 +67,7 @@ def small(scene: str) -> Settings:
 
 
 def never_apply(scene: str) -> set[str]:
-    return NEVER[scene].union(*(DEPENDENT.get(name, ()) for name in NEVER[scene]))
+    return NEVER[scene]
 
 
 def has_errors(settings: Settings) -> bool:

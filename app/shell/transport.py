@@ -150,7 +150,7 @@ class Transport:
     def arrange(self, settings: Settings) -> None:
         """Show the sliders that apply."""
         sliders = [self._iteration, self._instant]
-        if settings.is_reduced and settings.n_substructures > 1:
+        if settings.applies("pgd_modes") and settings.n_substructures > 1:
             sliders.append(self._substructure)
         if list(self._sliders) != sliders:
             self._show_substructure(settings)

@@ -47,5 +47,5 @@ VIEW = View(
         whole="y",
     ),
     draw,
-    lambda settings: settings.is_reduced,
+    lambda settings: settings.applies("pgd_modes"),
 )

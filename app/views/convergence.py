@@ -36,20 +36,20 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     run before.
     """
     run, before = scene.run, scene.before
-    is_reduced = run.settings.is_reduced and not scene.is_paired
+    has_modes = run.settings.applies("pgd_modes") and not scene.is_paired
     now = run.history.thinned(MOST_POINTS)
     keys = KEYS if has_reference(run.settings) else KEYS[:ERRORS]
     past: History | None = before.history if before else None
     if scene.is_paired:
         keys = (*keys, Key(BLUE, "thin", "A"))
-    if is_reduced:
+    if has_modes:
         past, keys = run.beside, (*keys, Key(BLUE, "thin", "full stage"))
     ghost = past.thinned(MOST_POINTS) if past is not None else None
     values = [value for name, *_ in CURVES for value in now[name]]
     if ghost is not None:
         values += [value for name, *_ in CURVES[ERRORS:] for value in ghost[name]]
     y = in_decades(*decades([*LEAST_SPAN, *values], FLOOR))
-    length = before.iteration if before and not is_reduced else 0
+    length = before.iteration if before and not has_modes else 0
     x = spanned(0, round_up(max(run.iteration, length, 20)))
     curves = []
     if ghost is not None:

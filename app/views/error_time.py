@@ -34,7 +34,7 @@ def draw(scene: Scene, kept: dict[int, str] | None) -> Drawing:
     y = in_decades(low, max(high, 2.0) if max(errors) > 2.0 else 2.0)
     curves = [_curve(one.history, colors[one.ticket], 2) for one in past]
     keys = [Key(BLUE, "line", "B" if twin else "this run")]
-    if run.settings.is_reduced:
+    if run.settings.applies("pgd_modes"):
         keys.append(Key(BLUE, "dashed", "full stage"))
         curves.append(_curve(run.beside, BLUE, 2.5, "dashed"))
     curves.append(_curve(run.history, BLUE, 3))

@@ -29,12 +29,12 @@ UP = Axis(-1.12, 1.12)
 
 def applies_in_space(settings: Settings) -> bool:
     """Only separated bases have modes, and only those of wires are curves."""
-    return settings.is_reduced and not is_plane(settings)
+    return settings.applies("pgd_modes") and not is_plane(settings)
 
 
 def applies_in_time(settings: Settings) -> bool:
     """Only separated bases have time functions, and one instant makes no function."""
-    return settings.is_reduced and has_instants(settings)
+    return settings.applies("pgd_modes") and has_instants(settings)
 
 
 def draw_space(scene: Scene, _kept: None) -> Drawing | None:

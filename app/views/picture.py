@@ -52,7 +52,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
         strokes.append(Curve(*artist.placed(drawn), color, 2.5))
         words += [Word(*artist.placed(place), text, *align) for place, text, align in found]
     settings = scene.run.settings
-    if settings.is_reduced and last:
+    if settings.applies("pgd_modes") and last:
         chosen = scene.look.substructure
         part = last if chosen is None else min(chosen, last)
         strokes += [Curve(*artist.placed(one), VERMILION, 2.5) for one in artist.outline_of(part)]

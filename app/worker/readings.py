@@ -7,7 +7,7 @@ import math
 from app.views.drawing import Scene
 from app.worker.words import number, percent
 from solver.latin import Solution
-from solver.latin.status import CANCELLED
+from solver.latin.criteria.status import CANCELLED
 from solver.study.finished import FinishedRun
 from solver.study.quantities import reading
 from solver.study.quantity import Quantity

@@ -17,7 +17,7 @@ from app.worker.rivals import KeptReferences
 from app.worker.seeking import Found, Seeking
 from app.worker.tempo import Tempo
 from solver.files import scene_settings
-from solver.latin import Checkpoint, Decision, Ending, Iterate, StopRules, record
+from solver.latin import PGD, Checkpoint, Decision, Ending, Iterate, StopRules, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.run_cost import run_cost
 from solver.latin.warm import Start, choose_start, fits, iterations_from
@@ -207,8 +207,8 @@ class WorkerRun:
             self._start, self._generator = choose_start(problem, self._latin, self._previous)
             self._previous = None
         self.recording.choice = self._start.choice if self._start else None
-        reduced = self._latin.is_reduced
-        self._full_stage = Beside(problem, self._settings, self._start) if reduced else None
+        on_modes = isinstance(self._latin.linear, PGD)
+        self._full_stage = Beside(problem, self._settings, self._start) if on_modes else None
         newest = next(self._generator)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(

@@ -1,18 +1,19 @@
 """The multiscale LATIN method: parts to put one together, its iterates, and a driver to an end."""
 
-from solver.latin.acceleration import Anderson
-from solver.latin.criteria import Accuracy, Indicator, Iterations, Seconds
-from solver.latin.criterion import Criterion
-from solver.latin.direction import Auto, Paper
-from solver.latin.direction_update import FromStatus
+from solver.latin.acceleration.anderson import Anderson
+from solver.latin.criteria.converged import Accuracy, Indicator
+from solver.latin.criteria.criterion import Criterion
+from solver.latin.criteria.limits import Iterations, Seconds
+from solver.latin.criteria.status import Ending, Status
+from solver.latin.direction.rules import Auto, Paper
+from solver.latin.direction.update import FromStatus
+from solver.latin.finish.status_step import StatusStep
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
+from solver.latin.linear.parts import PGD, Full
 from solver.latin.method import Latin
-from solver.latin.nested import Nested
 from solver.latin.solve import Record, Solution, judged, record, solve
-from solver.latin.stages import PGD, Full, References
-from solver.latin.status import Ending, Status
-from solver.latin.status_step import StatusStep
+from solver.latin.start.nested import Nested
 from solver.latin.stop import Decision, StopRules
 
 __all__ = [
@@ -33,7 +34,6 @@ __all__ = [
     "Nested",
     "Paper",
     "Record",
-    "References",
     "Seconds",
     "Solution",
     "Status",

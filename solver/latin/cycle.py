@@ -3,77 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.acceleration import Mixing
+from solver.latin.acceleration.mixing import Mixing
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear import LinearStage
-from solver.latin.local import LocalStage
-from solver.reduction.basis import ReferencePoints
+from solver.latin.linear.stage import LinearStage
+from solver.latin.local.stage import LocalStage
 
 State = list[Any]
 """What a linear stage holds, group by group."""
-
-
-class LocalPart(Protocol):
-    """Where a local stage obeys the laws.
-
-    Attributes
-    ----------
-    stage
-        The laws at all points and instants.
-    """
-
-    stage: LocalStage
-
-    @property
-    def references(self) -> ReferencePoints | None:
-        """Reference points and instants, if any."""
-
-    def obey(self, number: int, incoming: Array, state: State) -> float:
-        """Obey the laws, and bring what they say to the linear stage.
-
-        Parameters
-        ----------
-        number
-            Of the iteration.
-        incoming, state
-            W - F/k of the linear stage, and its state.
-
-        Returns
-        -------
-        The error of laws that are evaluated at a few points alone, as in `Iterate`.
-        """
-
-    def keep_up(self, number: int, state: State) -> None:
-        """Follow the linear stage, which has found a new state."""
-
-    def recall(self, start: Checkpoint, state: State) -> None:
-        """Bring back what a checkpoint of the same run remembers, in its state."""
-
-
-class Everywhere:
-    """The laws at all points and instants."""
-
-    references: ReferencePoints | None = None
-
-    def __init__(self, stage: LocalStage, linear: LinearStage[Any]) -> None:
-        self.stage, self._linear = stage, linear
-
-    def obey(self, number: int, incoming: Array, state: State) -> float:
-        """Obey the laws, as `LocalPart` says."""
-        self._linear.read(self.stage(incoming))
-        return 0.0
-
-    def keep_up(self, number: int, state: State) -> None:
-        """Nothing depends on the state."""
-
-    def recall(self, start: Checkpoint, state: State) -> None:
-        """Nothing is remembered."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +27,7 @@ class Parts:
     k
         Search direction of the rows, shape (n_rows,), scaled, read-only.
     local
-        Where the laws are obeyed.
+        The laws of all interfaces.
     linear
         Elasticity, in full or on separated bases, with the coarse problem if there is one.
     acceleration
@@ -95,7 +37,7 @@ class Parts:
     """
 
     k: Array
-    local: LocalPart
+    local: LocalStage
     linear: LinearStage[Any]
     acceleration: Mixing | None
     relaxation: float
@@ -125,11 +67,11 @@ class Cycle:
         self.state: State = self.parts.linear.start(start)
         self.incoming = self._reflected()
 
-    def local_stage(self, number: int = 0) -> float:
-        """Obey the laws along E+ (paper, problem 2.1); give the error of reference points."""
-        return self.parts.local.obey(number, self.incoming, self.state)
+    def local_stage(self) -> None:
+        """Obey the laws along E+ (paper, problem 2.1)."""
+        self.parts.linear.read(self.parts.local(self.incoming))
 
-    def linear_stage(self, number: int = 0, *, mixes: bool = True) -> None:
+    def linear_stage(self, *, mixes: bool = True) -> None:
         """Solve elasticity along E- (paper, problem 2.2), relax, accelerate unless told not to."""
         parts, state, mix = self.parts, self.state, self.parts.acceleration
         if mix is not None:
@@ -139,7 +81,6 @@ class Cycle:
             mix(state)
         elif mix is not None:
             mix.observe(state)
-        parts.local.keep_up(number, state)
         self.incoming = self._reflected()
 
     @property

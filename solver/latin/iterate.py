@@ -13,7 +13,7 @@ from solver.arrays import Array
 from solver.discrete.contact_fields import ContactFields, contact_fields
 from solver.discrete.problem import Problem
 from solver.laws import Contact
-from solver.reduction.basis import Modes, Reduction, ReferencePoints
+from solver.reduction.basis import Modes, Reduction
 
 CREEP = 1e-2
 """Share of the largest slip of an interface from which on a slip is one whatever the stages differ
@@ -63,8 +63,6 @@ class Checkpoint:
         W + F/k of the linear stage, shape (n_rows, n_instants), scaled.
     reduction
         The separated bases that hold it, if any do.
-    references
-        Where a reduced local stage evaluates the laws, if there is one.
     history
         The states before, oldest first, that an acceleration remembers.
     memory
@@ -77,7 +75,6 @@ class Checkpoint:
     seconds: float
     outgoing: Array
     reduction: Reduction | None = None
-    references: ReferencePoints | None = None
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
     course: UpdateProgress | None = None
@@ -111,15 +108,10 @@ class Iterate:
         W - F/k that the local stage read, which is its own W^ - F^/k.
     reduction
         The separated bases that hold the linear stage, if any do.
-    references
-        Where a reduced local stage evaluates the laws, if there is one.
-    local_error
-        Relative distance of what the reduced local stage rebuilt from what the laws say
-        everywhere, in the norm of the search direction; 0 where they were evaluated everywhere.
     history, memory, course
         Of an acceleration and of the update of k, as in `Checkpoint`.
     residual
-        Of an iterate that is a certified solution (`solver.latin.status_step`), its KKT residual
+        Of an iterate that is a certified solution (`solver.latin.finish`), its KKT residual
         relative to the contact force; None of all others.
     force
         F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid motion the digits
@@ -135,8 +127,6 @@ class Iterate:
     local_displacement: Array
     local_incoming: Array
     reduction: Reduction | None = None
-    references: ReferencePoints | None = None
-    local_error: float = 0.0
     history: tuple[Array, ...] = ()
     memory: tuple[int, int, float] | None = None
     course: UpdateProgress | None = None
@@ -159,7 +149,6 @@ class Iterate:
             self.seconds,
             self.outgoing,
             self.reduction,
-            self.references,
             self.history,
             self.memory,
             self.course,

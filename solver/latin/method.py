@@ -8,17 +8,18 @@ from numpy.linalg import LinAlgError
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.acceleration import Anderson
+from solver.latin.acceleration.anderson import Anderson
 from solver.latin.blocks import Blocks
-from solver.latin.clock import Clock
-from solver.latin.criteria import Accuracy, Indicator, Iterations
-from solver.latin.criterion import Criterion
+from solver.latin.criteria.converged import Accuracy, Indicator
+from solver.latin.criteria.criterion import Criterion
+from solver.latin.criteria.limits import Iterations
 from solver.latin.cycle import Parts
-from solver.latin.direction import Auto, Paper, SearchDirection
-from solver.latin.direction_update import FromStatus
-from solver.latin.nested import Nested
-from solver.latin.stages import PGD, Full
-from solver.latin.status_step import StatusStep
+from solver.latin.direction.rules import Auto, Paper, SearchDirection
+from solver.latin.direction.update import FromStatus
+from solver.latin.finish.status_step import StatusStep
+from solver.latin.linear.parts import PGD, Full
+from solver.latin.local.stage import LocalStage
+from solver.latin.start.nested import Nested
 from solver.refusal import RefusedError, check_range
 
 
@@ -87,12 +88,7 @@ class Latin:
             stop=Accuracy(0.01) & Indicator(1e-10) | Iterations(1000),
         )
 
-    @property
-    def is_reduced(self) -> bool:
-        """Whether fields are held as a few modes."""
-        return isinstance(self.linear, PGD)
-
-    def plugged(self, problem: Problem, k: Array, clock: Clock) -> Parts:
+    def plugged(self, problem: Problem, k: Array) -> Parts:
         """Plug the parts together for one search direction; the linear stage is factored.
 
         Parameters
@@ -101,8 +97,6 @@ class Latin:
             What to solve.
         k
             Search direction of the rows, shape (n_rows,), scaled, read-only.
-        clock
-            On which nothing is billed that only a viewer wants.
 
         Raises
         ------
@@ -111,9 +105,7 @@ class Latin:
         """
         blocks = Blocks(problem.n_rows, problem.n_instants, self.threads)
         try:
-            local, linear = self.linear.at_work(
-                problem, k, blocks, clock, multiscale=self.multiscale
-            )
+            linear = self.linear.at_work(problem, k, blocks, multiscale=self.multiscale)
         except (LinAlgError, RuntimeError):  # of a dense factor, and of a sparse one
             raise RefusedError(
                 "k_scale",
@@ -121,6 +113,7 @@ class Latin:
                 "a k that holds every substructure in the digits of a number",
                 "bring the factors on k nearer to 1, or the sides of the elements to each other",
             ) from None
+        local = LocalStage(problem, k, blocks)
         own = self.acceleration
         mix = own.at_work(problem, linear, blocks) if own else None
         return Parts(k, local, linear, mix, float(self.relaxation))

@@ -1,6 +1,6 @@
 """What a whole run takes, told before it begins.
 
-Estimated from counts, as the status step's cost is (`solver.latin.step_cost`), with its rates.
+Estimated from counts, as the status step's cost is (`solver.latin.finish.cost`), with its rates.
 `python -m solver benchmark --whole` sets estimates beside what is measured.
 """
 
@@ -9,10 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
-from solver.latin.acceleration import MEMORY, MOST_VALUES
-from solver.latin.estimate import WAIT
+from solver.latin.acceleration.anderson import MEMORY
+from solver.latin.acceleration.mixing import MOST_VALUES
+from solver.latin.criteria.estimate import WAIT
+from solver.latin.finish.cost import SYSTEMS, costs_of
 from solver.latin.method import Latin
-from solver.latin.step_cost import SYSTEMS, costs_of
 from solver.reference.choice import is_alone
 from solver.reference.contact import MOST_JUMPS, jumps_in
 

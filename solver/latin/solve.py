@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from solver.discrete.problem import Problem
+from solver.latin.criteria.status import CANCELLED, Ending, Status
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
 from solver.latin.method import Latin
-from solver.latin.status import CANCELLED, Ending, Status
 from solver.latin.stop import Decision, StopRules
 from solver.reduction.basis import ReductionRecord
 from solver.reference.distance import Distance
@@ -37,8 +37,6 @@ class Record:
         Relative L2 distance to the reference over space and time.
     reduction
         What the iteration did to the separated basis of every substructure; empty without bases.
-    local_error
-        Of the reduced local stage, as in `Iterate`.
     """
 
     iteration: int
@@ -49,7 +47,6 @@ class Record:
     error_displacement: float
     error_force: float
     reduction: tuple[ReductionRecord, ...] = ()
-    local_error: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +95,6 @@ def record(
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
         reduction=iterate.reduction.records if iterate.reduction else (),
-        local_error=iterate.local_error,
     )
 
 
@@ -119,7 +115,7 @@ def judged(
     spent
         Seconds that the run took before, to make the problem.
     """
-    rules = StopRules(latin, spent=spent)
+    rules = StopRules(latin, spent)
     for iterate in iterations(problem, latin, start, resumable=resumable):
         verdict = rules.judge(iterate)
         yield iterate, verdict

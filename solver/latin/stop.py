@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array
-from solver.latin.criteria import agrees
-from solver.latin.estimate import LAST, ErrorEstimate
-from solver.latin.finish import finished
+from solver.latin.criteria.converged import agrees
+from solver.latin.criteria.estimate import LAST
+from solver.latin.criteria.judged_numbers import Numbers
+from solver.latin.criteria.status import Ending, Status
+from solver.latin.finish.certified import finished
+from solver.latin.finish.status_step import Certificate, StatusStep
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
-from solver.latin.judged_numbers import Numbers
 from solver.latin.method import Latin
-from solver.latin.status import Ending, Status
-from solver.latin.status_step import Certificate
 
 STALL_WINDOW = 200
 """Iterations without a lower indicator after which a run is called stalled."""
@@ -86,8 +86,6 @@ class StopRules:
     ----------
     latin
         The method.
-    proves
-        Whether status steps are tried at all.
     spent
         Seconds that the run took before its iterations, to make the problem.
 
@@ -97,12 +95,11 @@ class StopRules:
         Time that the run took so far beside its iterations.
     """
 
-    def __init__(self, latin: Latin, *, proves: bool = True, spent: float = 0.0) -> None:
+    def __init__(self, latin: Latin, spent: float = 0.0) -> None:
         self._latin, self._criterion = latin, latin.stop.at_work()
-        self._may_finish = latin.finish is not None and not latin.is_reduced
+        self._may_finish = latin.linear.ending(latin.finish) is not None
         asked = latin.stop.accuracy
-        accuracy = asked if math.isfinite(asked) else USUAL_ACCURACY
-        self._estimate = ErrorEstimate(accuracy, is_reduced=latin.is_reduced, proves=proves)
+        self._estimate = latin.linear.estimate(asked if math.isfinite(asked) else USUAL_ACCURACY)
         self._stall = Stall(latin)
         self._is_first = True
         self.seconds = spent
@@ -223,8 +220,9 @@ class Stall:
 
     def _remedy(self, begin: str) -> str:
         """Say what helps; a status step needs neither k nor the digits of W + F/k."""
-        finishes = self._latin.finish is not None or self._latin.is_reduced
-        return f"{begin} another k_scale{'' if finishes else ', or finish=status'}."
+        latin = self._latin
+        could_finish = latin.finish is None and latin.linear.ending(StatusStep()) is not None
+        return f"{begin} another k_scale{', or finish=status' if could_finish else ''}."
 
 
 def _diverged(iteration: int) -> Status:

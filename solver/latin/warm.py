@@ -16,7 +16,7 @@ from solver.latin.indicators import behaviour_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
 from solver.latin.method import Latin
-from solver.latin.nested import prolong
+from solver.latin.start.prolong import prolong
 
 CLEARLY = 0.25
 """Share of the other's indicator up to which the previous solution is taken. Between this and 1

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, as_slice
 from solver.laws.interface import (
     Gaps,
     Interface,
     MacroPart,
-    Region,
     RowValues,
     Rule,
     beyond,
@@ -35,9 +34,9 @@ class Dirichlet(Interface):
     rows: Indices
     displacement: Array
 
-    def rule(self, region: Region) -> Rule:
+    def rule(self, k: Array, n_instants: int) -> Rule:
         """Take the displacement as it is."""
-        rows, given = region.of(self.rows), self.displacement[:, region.instants]
+        rows, given = as_slice(self.rows), self.displacement
 
         def prescribe(_incoming: Array, displacement: Array, some: slice) -> None:
             displacement[rows] = given[:, some]
@@ -78,10 +77,10 @@ class Neumann(Interface):
     force: Array
     macro: Array
 
-    def rule(self, region: Region) -> Rule:
+    def rule(self, k: Array, n_instants: int) -> Rule:
         """Move by F_d / k."""
-        rows = region.of(self.rows)
-        moved = self.force[:, region.instants] / region.k[self.rows, None]
+        rows = as_slice(self.rows)
+        moved = self.force / k[self.rows, None]
 
         def push(incoming: Array, displacement: Array, some: slice) -> None:
             displacement[rows] = incoming[rows] + moved[:, some]

@@ -15,7 +15,6 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction_law import FrictionLaw
-from solver.laws.interface import Region
 from solver.laws.sliders import SliderRule, Sliders
 from solver.laws.tangential import Tangential, TangentialRule
 from solver.refusal import check_range
@@ -81,16 +80,16 @@ class CompliantSliders(Sliders):
             return found
         return np.asarray(found + self.softness[:, None] * force[self.component.above])
 
-    def rule(self, region: Region) -> TangentialRule:
-        """Prepare the law for a region."""
-        return CompliantRule(self, region)
+    def rule(self, k: Array, n_instants: int) -> TangentialRule:
+        """Prepare the law for one k and so many instants."""
+        return CompliantRule(self, k, n_instants)
 
 
 class CompliantRule(SliderRule):
     """Friction with a spring beside that of the search direction."""
 
-    def __init__(self, law: CompliantSliders, region: Region) -> None:
-        super().__init__(law, region)
+    def __init__(self, law: CompliantSliders, k: Array, n_instants: int) -> None:
+        super().__init__(law, k, n_instants)
         longer = 1.0 + law.softness[:, None] / self.springs.soft
         self.reach, self.grows = longer * self.reach, longer * self.grows
         self._share = 1.0 / longer

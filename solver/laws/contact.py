@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.laws.around import Around, Rod
 from solver.laws.behaviour import Behaviour
-from solver.laws.interface import Component, Region, Rule, beyond
+from solver.laws.interface import Component, Rule, beyond
 from solver.laws.pairs import Pairs
 from solver.laws.rules import Rules
 from solver.laws.tangential import Tangential
@@ -99,13 +99,11 @@ class Contact(Pairs):
             macro=None,
         )
 
-    def rule(self, region: Region) -> Rule:
+    def rule(self, k: Array, n_instants: int) -> Rule:
         """Prepare the law; contact comes first, because only it says what friction can carry."""
         if self.normal is not None:
-            return self.normal.rule(self.tangential.rule(region), region)
-        chosen = region.place[self.tangent.above] >= 0
-        along = self.tangential if chosen.all() else self.tangential.kept(chosen)
-        return along.rule(region)
+            return self.normal.rule(self.tangential.rule(k, n_instants), k)
+        return self.tangential.rule(k, n_instants)
 
     @cached_property
     def compliance(self) -> Array:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices, as_slice
+from solver.arrays import Array, Indices
 
 
 class Component(NamedTuple):
@@ -71,32 +70,8 @@ class MacroPart(NamedTuple):
     load: Array | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
-    """Where a local stage evaluates the laws: some rows, at some instants.
-
-    Attributes
-    ----------
-    place
-        Where every row of the problem stands in the fields of the region, shape (n_rows,); -1
-        where it is left out.
-    k
-        Search direction of all rows, shape (n_rows,).
-    instants
-        Shape (n_instants,).
-    """
-
-    place: Indices
-    k: Array
-    instants: Indices
-
-    def of(self, rows: Indices) -> slice | Indices:
-        """Give where rows stand in the region's fields."""
-        return as_slice(self.place[rows])
-
-
 class Rule(Protocol):
-    """A law that is ready for one region: it obeys in the local stage (paper, problem 2.1)."""
+    """A law that is ready for one k: it obeys in the local stage (paper, problem 2.1)."""
 
     def __call__(self, incoming: Array, displacement: Array, some: slice, /) -> None:
         """Write W^ of the interface's rows.
@@ -104,11 +79,11 @@ class Rule(Protocol):
         Parameters
         ----------
         incoming
-            z = W - F/k of the region's rows, shape (n_rows, n) of n instants.
+            z = W - F/k of all rows, shape (n_rows, n) of n instants.
         displacement
             W^, same shape; what is not of the interface stays.
         some
-            Which instants of the region these are; all of them where the rule remembers.
+            Which instants these are; all of them where the rule remembers.
         """
 
 
@@ -139,8 +114,8 @@ class Interface(ABC):
         return list(laws)
 
     @abstractmethod
-    def rule(self, region: Region) -> Rule:
-        """Prepare the law for a region."""
+    def rule(self, k: Array, n_instants: int) -> Rule:
+        """Prepare the law for one k and so many instants."""
 
     @abstractmethod
     def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:

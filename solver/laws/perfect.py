@@ -8,8 +8,8 @@ from typing import Self
 
 import numpy as np
 
-from solver.arrays import Array, Indices
-from solver.laws.interface import Gaps, Interface, MacroPart, Region, Rule, beyond, squared
+from solver.arrays import Array, Indices, as_slice
+from solver.laws.interface import Gaps, Interface, MacroPart, Rule, beyond, squared
 
 
 @dataclass(frozen=True)
@@ -47,10 +47,10 @@ class Perfect(Interface):
         second = np.concatenate([law.second for law in laws])
         return [cls(first, second, np.zeros((len(first), 0)))]
 
-    def rule(self, region: Region) -> Rule:
+    def rule(self, k: Array, n_instants: int) -> Rule:
         """Give both sides the mean of what they would do, weighted by k."""
-        first, second = region.of(self.first), region.of(self.second)
-        k, other = region.k[self.first], region.k[self.second]
+        first, second = as_slice(self.first), as_slice(self.second)
+        k, other = k[self.first], k[self.second]
         share = (k / (k + other))[:, None]
 
         def glue(incoming: Array, displacement: Array, _some: slice) -> None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.interface import Region, Rule
+from solver.laws.interface import Rule
 from solver.laws.tangential import TangentialRule
 from solver.laws.unilateral import ContactRule, Unilateral
 
@@ -34,16 +34,16 @@ class SlackSpring(Unilateral):
         found = super().opening(displacement, force)
         return np.asarray(found + self.softness[:, None] * force[self.component.above])
 
-    def rule(self, friction: TangentialRule, region: Region) -> Rule:
-        """Prepare the law for a region; it tells friction what presses."""
-        return SpringRule(self, friction, region)
+    def rule(self, friction: TangentialRule, k: Array) -> Rule:
+        """Prepare the law for one k; it tells friction what presses."""
+        return SpringRule(self, friction, k)
 
 
 class SpringRule(ContactRule):
     """Contact with a spring beside that of the search direction."""
 
-    def __init__(self, law: SlackSpring, friction: TangentialRule, region: Region) -> None:
-        super().__init__(law, friction, region)
+    def __init__(self, law: SlackSpring, friction: TangentialRule, k: Array) -> None:
+        super().__init__(law, friction, k)
         soft = self.springs.soft
         self._share = soft / (soft + law.softness[:, None])
 

@@ -11,7 +11,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.interface import Component, Region
+from solver.laws.interface import Component
 from solver.laws.play import Play
 from solver.laws.springs import Springs
 from solver.laws.tangential import Tangential, TangentialRule
@@ -37,9 +37,9 @@ class Sliders(Tangential):
         """Make those whose friction force is at most mu N."""
         return cls(component=component, bound=np.zeros(len(friction)), friction=friction)
 
-    def rule(self, region: Region) -> TangentialRule:
-        """Prepare the law for a region."""
-        return SliderRule(self, region)
+    def rule(self, k: Array, n_instants: int) -> TangentialRule:
+        """Prepare the law for one k and so many instants."""
+        return SliderRule(self, k, n_instants)
 
 
 class SliderRule:
@@ -54,11 +54,11 @@ class SliderRule:
         force.
     """
 
-    def __init__(self, law: Sliders, region: Region) -> None:
-        self.springs = Springs(law.component, region)
+    def __init__(self, law: Sliders, k: Array, n_instants: int) -> None:
+        self.springs = Springs(law.component, k)
         self.reach = law.bound[:, None] * self.springs.soft
         self.grows = law.friction[:, None] * self.springs.soft
-        self._play = Play(len(law.bound), len(region.instants))
+        self._play = Play(len(law.bound), n_instants)
 
     def __call__(
         self, incoming: Array, displacement: Array, some: slice, pressing: Array | None = None

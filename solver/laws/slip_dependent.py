@@ -14,7 +14,6 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.friction_law import FrictionLaw
-from solver.laws.interface import Region
 from solver.laws.sliders import SliderRule, Sliders
 from solver.laws.tangential import Tangential, TangentialRule
 from solver.refusal import check_range
@@ -83,16 +82,16 @@ class SlipDependentSliders(Sliders):
         """Largest value that the bound ever has."""
         return np.asarray(self.bound * np.maximum(self.ratio, 1.0))
 
-    def rule(self, region: Region) -> TangentialRule:
-        """Prepare the law for a region."""
-        return SlipDependentRule(self, region)
+    def rule(self, k: Array, n_instants: int) -> TangentialRule:
+        """Prepare the law for one k and so many instants."""
+        return SlipDependentRule(self, k, n_instants)
 
 
 class SlipDependentRule(SliderRule):
     """The play operator whose reach follows the slip."""
 
-    def __init__(self, law: SlipDependentSliders, region: Region) -> None:
-        super().__init__(law, region)
+    def __init__(self, law: SlipDependentSliders, k: Array, n_instants: int) -> None:
+        super().__init__(law, k, n_instants)
         self._law = law
 
     def held(self, jump: Array, reach: Array) -> Array:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from solver.arrays import Array, Indices
-from solver.laws.interface import Component, Region
+from solver.arrays import Array, Indices, as_slice
+from solver.laws.interface import Component
 
 
 class Springs:
@@ -17,14 +17,14 @@ class Springs:
         Share of the side below in them; None on a rigid support.
     """
 
-    def __init__(self, component: Component, region: Region) -> None:
-        self._above = region.of(component.above)
+    def __init__(self, component: Component, k: Array) -> None:
+        self._above = as_slice(component.above)
         self._below: slice | Indices | None = None
-        self.soft = 1.0 / region.k[component.above, None]
+        self.soft = 1.0 / k[component.above, None]
         self.share_below: Array | None = None
         if component.below is not None:
-            self._below = region.of(component.below)
-            soft_below = 1.0 / region.k[component.below, None]
+            self._below = as_slice(component.below)
+            soft_below = 1.0 / k[component.below, None]
             self.soft = self.soft + soft_below
             self.share_below = soft_below / self.soft
 

@@ -13,14 +13,13 @@ from dataclasses import replace
 from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.laws.interface import Component, Region
+from solver.laws.interface import Component
 
 
 class TangentialRule(Protocol):
-    """A tangential law that is ready for one region."""
+    """A tangential law that is ready for one k."""
 
     def __call__(
         self, incoming: Array, displacement: Array, some: slice, pressing: Array | None = None, /
@@ -57,8 +56,8 @@ class Tangential(ABC):
     """Attributes of shape (n_pairs,) of its dataclass."""
 
     @abstractmethod
-    def rule(self, region: Region) -> TangentialRule:
-        """Prepare the law for a region."""
+    def rule(self, k: Array, n_instants: int) -> TangentialRule:
+        """Prepare the law for one k and so many instants."""
 
     @property
     def divided_by(self) -> tuple[Array, ...]:
@@ -94,13 +93,6 @@ class Tangential(ABC):
     def most(self) -> Array:
         """Largest value that the bound r ever has, shape (n_pairs,)."""
         return self.bound
-
-    def kept(self, chosen: NDArray[np.bool_]) -> Self:
-        """Keep some pairs."""
-        below = self.component.below
-        own = Component(self.component.above[chosen], None if below is None else below[chosen])
-        values: dict[str, Any] = {name: getattr(self, name)[chosen] for name in self.of_pairs}
-        return self._with(component=own, **values)
 
     @classmethod
     def joined(cls, laws: Sequence[Self]) -> Self:

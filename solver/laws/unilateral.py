@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.laws.interface import Component, Region, Rule
+from solver.laws.interface import Component, Rule
 from solver.laws.springs import Springs
 from solver.laws.tangential import TangentialRule
 
@@ -36,16 +36,16 @@ class Unilateral:
         """Give the distance of the two sides, shape (n_pairs, n_instants), from W and F."""
         return np.asarray(self.component.jump(displacement) + self.gap[:, None])
 
-    def rule(self, friction: TangentialRule, region: Region) -> Rule:
-        """Prepare the law for a region; it tells friction what presses."""
-        return ContactRule(self, friction, region)
+    def rule(self, friction: TangentialRule, k: Array) -> Rule:
+        """Prepare the law for one k; it tells friction what presses."""
+        return ContactRule(self, friction, k)
 
 
 class ContactRule:
     """The normal component, and friction after it: only contact says what friction can carry."""
 
-    def __init__(self, law: Unilateral, friction: TangentialRule, region: Region) -> None:
-        self.springs = Springs(law.component, region)
+    def __init__(self, law: Unilateral, friction: TangentialRule, k: Array) -> None:
+        self.springs = Springs(law.component, k)
         self._closed = -law.gap[:, None]
         self._friction = friction
 

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array
 
 
 @dataclass
@@ -229,20 +229,3 @@ class Reduction:
     def saved(self) -> int:
         """Modes that sharing saves."""
         return sum(shown.n_modes for shown in self.modes) - self.stored
-
-
-@dataclass(frozen=True, eq=False)
-class ReferencePoints:
-    """Where the laws are evaluated.
-
-    Attributes
-    ----------
-    instants
-        Indices, in order.
-    places
-        For every basis, in order, the indices of its reference rows among the boundary rows of
-        its substructures.
-    """
-
-    instants: Indices
-    places: tuple[Indices, ...]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 from solver.latin import (
     PGD,
@@ -17,10 +17,9 @@ from solver.latin import (
     Latin,
     Nested,
     Paper,
-    References,
     StatusStep,
 )
-from solver.latin.direction import SearchDirection
+from solver.latin.direction.rules import SearchDirection
 from solver.scenes import coarser_problems
 from solver.settings import Settings
 
@@ -30,7 +29,7 @@ def method_of(settings: Settings) -> Latin:
     goal = Accuracy(settings.accuracy) & Indicator(settings.tolerance)
     return Latin(
         direction=_direction(settings),
-        linear=_bases(settings) if settings.is_reduced else Full(),
+        linear=_LINEAR[settings.linear_stage](settings),
         multiscale=settings.multiscale,
         relaxation=settings.relaxation,
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
@@ -45,18 +44,21 @@ def _direction(settings: Settings) -> SearchDirection | FromStatus:
     along, across = settings.k_factors
     rule: type[SearchDirection] = Paper if settings.search_direction == "paper" else Auto
     first = rule(settings.k_scale, along, across)
-    updates = settings.k_update == "status" and not settings.is_reduced
+    updates = settings.k_update == "status" and settings.applies("k_update")
     return FromStatus(first) if updates else first
 
 
-def _bases(settings: Settings) -> PGD:
-    own: Any = settings
-    is_sampled = own.local_stage == "reduced"
+def _modes(settings: Settings) -> PGD:
     return PGD(
-        modes=own.pgd_modes,
-        tolerance=own.pgd_tolerance,
-        enrichment=own.pgd_enrichment,
-        pairs=own.pgd_pairs,
-        sharing=own.pgd_sharing,
-        local=References(own.local_points, own.local_instants) if is_sampled else None,
+        modes=settings.pgd_modes,
+        tolerance=settings.pgd_tolerance,
+        enrichment=settings.pgd_enrichment,
+        pairs=settings.pgd_pairs,
+        sharing=settings.pgd_sharing,
     )
+
+
+_LINEAR: dict[str, Callable[[Settings], Full | PGD]] = {
+    "full": lambda settings: Full(),
+    "pgd": _modes,
+}

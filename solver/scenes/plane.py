@@ -106,14 +106,6 @@ class PlaneSettings(SceneSettings):
         title="Normal k factor",
         logarithmic=True,
     )
-    local_stage = choice(
-        "full",
-        ["full"],
-        "Where the interface laws are evaluated: everywhere.",
-        group="Method",
-        title="Local stage",
-        applies=lambda settings: False,
-    )
     start = choice(
         "zero",
         ["zero"],

@@ -37,7 +37,6 @@ PLAIN: dict[str, Any] = {
     "multiscale": True,
     "search_direction": "paper",
     "linear_stage": "full",
-    "local_stage": "full",
     "acceleration": "none",
     "start": "zero",
     "k_update": "none",

@@ -13,9 +13,9 @@ from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, Solution, record, solve
-from solver.latin.finish import finished
-from solver.latin.status_step import StatusSolver, states_of
-from solver.latin.step_cost import costs_of
+from solver.latin.finish.certified import finished
+from solver.latin.finish.cost import costs_of
+from solver.latin.finish.status_step import StatusSolver, states_of
 from solver.latin.stop import proven
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
@@ -169,7 +169,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     problem, settings
         What to solve, and the options of the method.
     states
-        As `solver.latin.status_step.states_of` gives them.
+        As `solver.latin.finish.status_step.states_of` gives them.
 
     Returns
     -------

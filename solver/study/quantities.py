@@ -24,7 +24,7 @@ WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 
 
 def _with_bases(settings: Settings) -> bool:
-    return settings.is_reduced
+    return settings.applies("pgd_modes")
 
 
 def _on_rods(settings: Settings) -> bool:

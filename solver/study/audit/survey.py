@@ -83,7 +83,7 @@ def drawn(settings: Settings, seed: int, number: int) -> Trial:
 
 def method_name(settings: Settings) -> str:
     """Name the method; with bases, or with options of its own, that is said."""
-    if settings.is_reduced:
+    if settings.linear_stage == "pgd":
         return "pgd"
     own = set(settings.changed()) & {*settings.METHODS["fast"], "k_update"}
     return f"{settings.method}{', mixed' if own - {'tolerance'} else ''}"

@@ -12,11 +12,11 @@ import numpy as np
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
 from solver.latin import StopRules, iterations, solve
+from solver.latin.at_work import AtWork
 from solver.latin.clock import Clock
-from solver.latin.iterations import AtWork
-from solver.latin.linear import FullLinearStage
-from solver.latin.local import LocalStage
-from solver.latin.response import DenseResponse
+from solver.latin.linear.full import FullLinearStage
+from solver.latin.linear.response import DenseResponse
+from solver.latin.local.stage import LocalStage
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -167,16 +167,16 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
 
     def bare() -> None:
         cycle = AtWork(problem, method, None, Clock()).cycle
-        for count in range(1, number + 1):
-            cycle.local_stage(count)
-            cycle.linear_stage(count)
+        for _ in range(number):
+            cycle.local_stage()
+            cycle.linear_stage()
 
     def kept() -> None:
         for _ in islice(iterations(problem, method), number):
             pass
 
     def judged_without_step() -> None:
-        rules = StopRules(method, proves=False)
+        rules = StopRules(method)
         for iterate in islice(iterations(problem, method), number):
             rules.judge(iterate)
 

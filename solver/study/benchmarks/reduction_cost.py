@@ -18,8 +18,9 @@ from solver.discrete.problem import Scales
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.latin import Paper, iterations
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear import FullLinearStage, LinearStage
-from solver.latin.reduced_linear import ReducedLinearStage
+from solver.latin.linear.full import FullLinearStage
+from solver.latin.linear.separated import ReducedLinearStage
+from solver.latin.linear.stage import LinearStage
 from solver.laws import Component, Contact, Sliders
 from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
@@ -145,12 +146,6 @@ WHOLE = ((51, 101), (201, 101), (1001, 101), (1001, 1001), (4001, 401))
 FORMS: dict[str, dict[str, object]] = {
     "full": {"linear_stage": "full"},
     "pgd": {},
-    "sampled": {"local_stage": "reduced"},
-    "few samples": {
-        "local_stage": "reduced",
-        "local_points": 0.1,
-        "local_instants": 0.1,
-    },
 }
 FIRST, LAST = 20, 60
 
@@ -223,10 +218,8 @@ def print_reduction_cost(repeats: int) -> None:
         problem = half_plane(HALF_PLANE_POINTS, instants)
         _print(reduction_cost("half plane", problem, MODES, repeats))
 
-    print("\nwhole iterations, ms, of the bar with 5 substructures: local stage everywhere, or at")
-    print(
-        f"samples; in brackets: distance of the displacement from the full form's, iteration {LAST}"
-    )
+    print("\nwhole iterations, ms, of the bar with 5 substructures; in brackets: distance of the")
+    print(f"displacement from the full form's, iteration {LAST}")
     print(f"{'nodes x instants':>17}", *(f"{form:>17}" for form in FORMS))
     for nodes, instants in WHOLE:
         found = whole_iterations(nodes, instants, min(repeats, 3))

@@ -16,7 +16,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.latin.iterate import Checkpoint
-from solver.latin.linear import Group, LinearStage
+from solver.latin.linear.stage import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis
 from solver.reduction.enrichment import Enrichment
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.arrays import Array, Indices, space_time
+from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
-from solver.latin.slide import Slide, slide_of
+from solver.latin.local.slide import Slide, slide_of
 from solver.laws import Interface
-from solver.laws.interface import Region
 
 
 class LocalStage:
@@ -22,10 +21,6 @@ class LocalStage:
     ----------
     problem, k
         Whose laws; k has shape (n_rows,).
-    where
-        Rows and instants to which the laws are confined, or None for all. Only rows of interfaces
-        with friction that do not open may be left out, together with those below; fields then have
-        these rows and instants alone.
     blocks
         Of instants, for what is local in time; None for all at once.
 
@@ -38,26 +33,16 @@ class LocalStage:
         whole.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        k: Array,
-        where: tuple[Indices, Indices] | None = None,
-        blocks: Blocks | None = None,
-    ) -> None:
-        rows, instants = where or (np.arange(problem.n_rows), np.arange(problem.n_instants))
-        place = np.full(problem.n_rows, -1)
-        place[rows] = np.arange(len(rows))
-        region = Region(place, k, instants)
-        shape = (len(rows), len(instants))
-        self._blocks = blocks or at_once(len(instants))
+    def __init__(self, problem: Problem, k: Array, blocks: Blocks | None = None) -> None:
+        shape = problem.n_rows, problem.n_instants
+        self._blocks = blocks or at_once(problem.n_instants)
         self.displacement = self.incoming = space_time(*shape)
         self._outgoing = space_time(*shape)
         way = slide_of(problem)
-        self._slide = None if way is None else Slide(problem, way, region)
+        self._slide = None if way is None else Slide(problem, way, k)
         laws = together(problem)
-        self._remembering = [law.rule(region) for law in laws if law.remembers]
-        self._instant = [law.rule(region) for law in laws if not law.remembers]
+        self._remembering = [law.rule(k, problem.n_instants) for law in laws if law.remembers]
+        self._instant = [law.rule(k, problem.n_instants) for law in laws if not law.remembers]
 
     def __call__(self, incoming: Array) -> Array:
         """Obey all laws.

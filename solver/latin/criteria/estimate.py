@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from solver.latin.changes import ForceChanges
+from solver.latin.criteria.changes import ForceChanges
+from solver.latin.finish.cost import Costs, costs_of
+from solver.latin.finish.status_step import Certificate, StatusSolver, states_of
 from solver.latin.iterate import Iterate
-from solver.latin.status_step import Certificate, StatusSolver, states_of
-from solver.latin.step_cost import Costs, costs_of
 from solver.reference.condensation import NoReferenceError
 
 SETTLED = 0.04
@@ -36,10 +36,6 @@ class ErrorEstimate:
     ----------
     accuracy
         Share of the contact force that is asked for.
-    is_reduced
-        Whether the run is on separated bases, which may come to rest elsewhere.
-    proves
-        Whether status steps are tried at all.
 
     Attributes
     ----------
@@ -47,13 +43,13 @@ class ErrorEstimate:
         The solution, once it is known.
     """
 
-    def __init__(self, accuracy: float, *, is_reduced: bool, proves: bool = True) -> None:
-        self._accuracy, self._is_reduced = accuracy, is_reduced
+    def __init__(self, accuracy: float) -> None:
+        self._accuracy = accuracy
         self._changes = ForceChanges()
         self._last_trial, self._next_trial = 0, 1
         self._step: StatusSolver | None = None
         self._costs: Costs | None = None
-        self._has_solver = proves
+        self._has_solver = True
         self.certificate: Certificate | None = None
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
@@ -104,10 +100,9 @@ class ErrorEstimate:
     def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
         """Tell whether the estimate counts for nothing without a status step, as below.
 
-        So it is where a step is worth its cost, and with bases that are too small, which converge
-        to something else.
+        So it is where a step is worth its cost.
         """
-        return self._is_reduced or self.can_be_proven(iterate, least=least)
+        return self.can_be_proven(iterate, least=least)
 
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         """Tell whether a status step is worth its cost by now.
@@ -123,9 +118,7 @@ class ErrorEstimate:
         """
         if not self._has_solver:
             return False
-        # Bases that are too small converge to something else, which no change shows.
-        allowed = patience * iterate.number
-        return self._is_reduced or self._costs_of(iterate).afford(allowed, least)
+        return self._costs_of(iterate).afford(patience * iterate.number, least)
 
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         """Try the status step, unless it costs too much, as above; tell whether it holds."""
@@ -157,3 +150,18 @@ class ErrorEstimate:
         if self._costs is None:
             self._costs = costs_of(iterate.problem)
         return self._costs
+
+
+class EstimateByProof(ErrorEstimate):
+    """The error on separated bases, where a proof alone counts.
+
+    Bases that are too small converge to something else, which no change shows.
+    """
+
+    def has_to_be_proven(self, iterate: Iterate, least: float) -> bool:
+        """Tell that it always has to be."""
+        return True
+
+    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
+        """Try a status step whatever it costs, where there is one."""
+        return self._has_solver

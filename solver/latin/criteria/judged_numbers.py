@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import cached_property
 
-from solver.latin.estimate import ErrorEstimate
+from solver.latin.criteria.estimate import ErrorEstimate
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.direction import Auto, SearchDirection, automatic
+from solver.latin.direction.rules import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import UpdateProgress
 

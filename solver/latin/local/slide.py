@@ -16,7 +16,6 @@ from solver.discrete.problem import Problem
 from solver.laws import Contact, SlackSpring
 from solver.laws.compliant import CompliantSliders
 from solver.laws.frictionless import Frictionless
-from solver.laws.interface import Region
 from solver.laws.sliders import Sliders
 
 BALANCED = (Sliders, CompliantSliders, Frictionless)
@@ -63,11 +62,11 @@ class Slide:
     ----------
     problem, way
         What is solved, and the motion, as `slide_of` gives it.
-    region
-        Where the laws are evaluated.
+    k
+        Search direction of the rows, shape (n_rows,), scaled.
     """
 
-    def __init__(self, problem: Problem, way: Array, region: Region) -> None:
+    def __init__(self, problem: Problem, way: Array, k: Array) -> None:
         (ground,) = (law for law in problem.rubbing.values() if not _is_spring(law))
         (spring,) = (law.normal for law in problem.rubbing.values() if _is_spring(law))
         law, along = ground.normal, ground.tangential
@@ -76,21 +75,17 @@ class Slide:
         assert spring.softness is not None
         held, pulls = law.component.above, spring.component.above
         rubs = along.component.above
-        self._across, self._along, self._end = region.of(held), region.of(rubs), region.of(pulls)
-        self._closed, self._k = -law.gap[:, None], region.k[held, None]
+        self._across, self._along, self._end = held, rubs, pulls
+        self._closed, self._k = -law.gap[:, None], k[held, None]
         self._bound, self._friction = along.bound[:, None], along.friction[:, None]
-        soft = 1.0 / region.k[rubs] + (0.0 if along.softness is None else along.softness)
+        soft = 1.0 / k[rubs] + (0.0 if along.softness is None else along.softness)
         self._stiffness = 1.0 / soft
-        self._spring = float(1.0 / (1.0 / region.k[pulls] + spring.softness)[0])
+        self._spring = float(1.0 / (1.0 / k[pulls] + spring.softness)[0])
         self._slack = float(spring.gap[0])
-        seen = np.flatnonzero(region.place >= 0)
-        self._way = np.empty(len(seen))
-        self._way[region.place[seen]] = way[problem.row_dofs[seen]]
+        self._way = way[problem.row_dofs]
         parts = problem.substructures
         loads = [way[one.dofs] @ one.body_force for one in parts if one.body_force is not None]
-        self._load = (
-            np.sum(loads, axis=0)[region.instants] if loads else np.zeros(len(region.instants))
-        )
+        self._load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
 
     def balanced(self, incoming: Array) -> Array:
         """Shift z = W - F/k of all rows, shape (n_rows, n_instants), instant by instant."""

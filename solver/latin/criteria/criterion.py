@@ -11,8 +11,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from solver.latin.judged_numbers import Numbers
-from solver.latin.status import Status
+from solver.latin.criteria.judged_numbers import Numbers
+from solver.latin.criteria.status import Status
 
 
 class Judge(ABC):

@@ -8,8 +8,8 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.finish.status_step import Certificate
 from solver.latin.iterate import Iterate
-from solver.latin.status_step import Certificate
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""

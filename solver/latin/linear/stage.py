@@ -11,10 +11,10 @@ import numpy as np
 from solver.arrays import Array, Indices, space_time
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
-from solver.latin.blocks import ALL, Blocks, at_once
-from solver.latin.coarse import CoarseProblem
+from solver.latin.blocks import ALL, Blocks
 from solver.latin.iterate import Checkpoint
-from solver.latin.response import response
+from solver.latin.linear.coarse import CoarseProblem
+from solver.latin.linear.response import response
 from solver.reduction.basis import Reduction
 
 State = TypeVar("State")
@@ -57,22 +57,18 @@ class LinearStage(Generic[State]):
         )
         self._shape = (problem.n_rows, problem.n_instants)
 
+    def weights(self, time_weights: Array) -> list[Array] | None:
+        """Give the squared weights of an inner product of states, one array for each group.
+
+        None where states are not fields that can be mixed.
+        """
+        return None
+
     def start(self, checkpoint: Checkpoint | None) -> list[State]:
         """Give the state of a checkpoint, or that in which all is zero; one entry per group."""
         if checkpoint is None:
             return [group.zero() for group in self.groups]
         return [group.from_boundary(checkpoint.outgoing) for group in self.groups]
-
-    def distance_of_target(self, target: Array) -> float:
-        """Give the relative distance of the groups' targets from a field (n_rows, n_instants)."""
-        found = space_time(*self._shape)
-        weight = np.empty(self._shape[0])
-        for group in self.groups:
-            group.scatter(group.target, found)
-            weight[group.rows] = group.k[:, None]
-        root = np.sqrt(weight)[:, None]
-        size = float(np.linalg.norm(root * target))
-        return float(np.linalg.norm(root * (found - target))) / size if size > 0.0 else 0.0
 
     def reduction(self, state: list[State]) -> Reduction | None:
         """Show the separated bases of a state, if it has any."""
@@ -184,87 +180,6 @@ class Group(ABC, Generic[State]):
     @abstractmethod
     def reflect(self, state: State) -> Array:
         """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it."""
-
-
-class FullGroup(Group[Array]):
-    """A group whose state is y in full: one matrix product for all substructures and instants."""
-
-    def zero(self) -> Array:
-        """Give the zero field."""
-        return self.field()
-
-    def from_boundary(self, outgoing: Array) -> Array:
-        """Give the group's rows of W + F/k, shape (n_rows, n_instants)."""
-        return np.copy(outgoing[self.rows], order="F")
-
-    def outgoing(self, state: Array) -> Array:
-        """Give the state itself."""
-        return state
-
-    def relax(self, state: Array, relaxation: float, some: slice = ALL) -> None:
-        """Mix the target into a state, at some instants."""
-        old, target = state[:, :, some], self.target[:, :, some]
-        if relaxation == 1.0:
-            np.copyto(old, target)
-            return
-        np.subtract(target, old, out=target)
-        np.multiply(target, relaxation, out=target)
-        np.add(old, target, out=old)
-
-    def reflect(self, state: Array, some: slice = ALL) -> Array:
-        """Give W - F/k = 2 W - (W + F/k) of a state; the next call overwrites it.
-
-        Only some instants are up to date.
-        """
-        flat = (len(self.k), -1)
-        reflected = self._reflected[:, :, some]
-        self.response.reflect(
-            state[:, :, some].reshape(flat, order="F"), reflected.reshape(flat, order="F")
-        )
-        if self.body is not None:
-            reflected += 2.0 * self.body[:, :, some]
-        return self._reflected
-
-
-class FullLinearStage(LinearStage[Array]):
-    """The linear stage with full space-time fields, all of which is local in time."""
-
-    def __init__(
-        self, problem: Problem, k: Array, *, multiscale: bool, blocks: Blocks | None = None
-    ) -> None:
-        super().__init__(problem, k, multiscale=multiscale, make_group=FullGroup, blocks=blocks)
-        self._full = [group for group in self.groups if isinstance(group, FullGroup)]
-        self._blocks = blocks or at_once(problem.n_instants)
-
-    def read(self, target: Array) -> None:
-        """Take W^ + F^/k of the local stage, shape (n_rows, n_instants), as all groups' target."""
-
-        def work(some: slice) -> None:
-            for group in self._full:
-                group.gather(target, some)
-
-        self._blocks.each(work)
-
-    def advance(self, state: list[Array], relaxation: float) -> None:
-        """Solve the linear stage and relax, as `LinearStage.advance` says."""
-        if self._coarse is not None:
-            self._coarse.add_multiplier()
-
-        def work(some: slice) -> None:
-            for group, own in zip(self._full, state, strict=True):
-                group.relax(own, relaxation, some)
-
-        self._blocks.each(work)
-
-    def incoming(self, state: list[Array], field: Array) -> Array:
-        """Write W - F/k of a state into a field of shape (n_rows, n_instants)."""
-
-        def work(some: slice) -> None:
-            for group, own in zip(self._full, state, strict=True):
-                group.scatter(group.reflect(own, some), field, some)
-
-        self._blocks.each(work)
-        return field
 
 
 def _alike(problem: Problem, k: Array) -> list[list[Substructure]]:

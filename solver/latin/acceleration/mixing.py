@@ -1,84 +1,23 @@
-"""Anderson acceleration of the iteration (Walker and Ni, SIAM J. Numer. Anal. 49, 2011)."""
+"""Anderson acceleration at work: what it remembers of a run, and the mixture that it makes."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.linalg.lapack import dposv
 
 from solver.arrays import Array, Indices
-from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks, at_once
-from solver.latin.linear import FullLinearStage, LinearStage
-from solver.latin.slide import slide_of
-from solver.refusal import check_range
 
 MOST_VALUES = 50_000_000
 """Numbers that the remembered images may hold; a larger field is remembered for fewer iterations.
 A block of 768 x 384 elements and 51 instants keeps 8 differences and stays below 2 GB; on 384 x 192
 1e-4 of the contact force takes 38 iterations with 15 differences, 39 with 8, 41 with 5."""
-MEMORY = 15
-"""Differences that are remembered at most. From 5 to 50, 1 % of the contact force takes the same
-number of iterations but for two on bar, strand, block and layers, and 1e-4 from 55 to 63 on layers,
-39 to 45 on strands (measured)."""
 SAMPLE = 300_000
 """Values of a residual that the weights of the mixture are found from; all, if it has no more. On
 384 x 192 elements, a fourth of all: 38 iterations to 1e-4 of the contact force, and 67 with
 tractions on top; 38 and 73 with all; 38 and 74 with 100 000, 40 and 79 with 20 000 (measured)."""
 REGULAR = 1e-10
 """Added to the diagonal of the small normal equations, whose own diagonal is scaled to 1."""
-GROWTH_ON_SUPPORT = 2.0
-"""Growth of the residual from which the memory is given up, in contact with a rigid support. A
-block that tilts until it lifts off needs 1.2 or more: with 1 its rocking takes thousands of
-iterations, not 50."""
-GROWTH_BETWEEN_BODIES = 1.1
-"""The same in contact between two bodies. Layers 200 times as long as thick: 1e-6 of the contact
-force takes 120 iterations, 140 with 1.5 and 2, more than 300 with 1; layers 1000 times as long
-wander for hundreds with 2 before they come within 1 % (25 with 1.1; measured)."""
-
-
-@dataclass(frozen=True)
-class Anderson:
-    """Mixes the last iterates, so that both stages agree best.
-
-    Separated bases are not mixed: there the iteration stays plain.
-
-    Attributes
-    ----------
-    memory
-        Differences that are remembered at most.
-    """
-
-    memory: int = MEMORY
-
-    def __post_init__(self) -> None:
-        check_range(self, "memory", 1, 1000)
-
-    def at_work(
-        self, problem: Problem, stage: LinearStage[Any], blocks: Blocks | None = None
-    ) -> Mixing | None:
-        """Prepare the acceleration of a linear stage, with the norm of k over boundary and time."""
-        if not isinstance(stage, FullLinearStage):
-            return None
-        weights = [
-            np.broadcast_to(group.k[:, None, None] * problem.time_weights, group.target.shape)
-            for group in stage.groups
-        ]
-        growth = 1.0
-        if problem.opens:
-            is_held = any(law.is_on_support for law in problem.rubbing.values())
-            growth = GROWTH_ON_SUPPORT if is_held else GROWTH_BETWEEN_BODIES
-        way = slide_of(problem)
-        free = None
-        if way is not None:
-            rows = way[problem.row_dofs]
-            free = [
-                np.broadcast_to(rows[group.rows][:, :, None], group.target.shape)
-                for group in stage.groups
-            ]
-        return Mixing(weights, self.memory, growth, blocks, free)
 
 
 class Mixing:

@@ -1,0 +1,106 @@
+"""How the linear stage holds its fields: in full, or as a few modes (PGD)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.latin.blocks import Blocks
+from solver.latin.criteria.estimate import ErrorEstimate, EstimateByProof
+from solver.latin.finish.status_step import StatusStep
+from solver.latin.linear.full import FullLinearStage
+from solver.latin.linear.separated import ReducedLinearStage
+from solver.reduction.enrichment import Enrichment
+from solver.refusal import check_range
+
+
+@dataclass(frozen=True)
+class Full:
+    """A value for every point and instant.
+
+    Attributes
+    ----------
+    remedy
+        What helps a run that does not converge, in a sentence; nothing that it knows of.
+    """
+
+    remedy: ClassVar[str] = ""
+
+    def at_work(
+        self, problem: Problem, k: Array, blocks: Blocks, *, multiscale: bool
+    ) -> FullLinearStage:
+        """Factor the linear stage.
+
+        Parameters
+        ----------
+        problem, k
+            What to solve, and the search direction of the rows, shape (n_rows,), scaled.
+        blocks
+            Of instants, in which it works.
+        multiscale
+            Whether the coarse problem is part of it.
+        """
+        return FullLinearStage(problem, k, multiscale=multiscale, blocks=blocks)
+
+    def estimate(self, accuracy: float) -> ErrorEstimate:
+        """Begin to estimate the error of a run, of which this accuracy is asked."""
+        return ErrorEstimate(accuracy)
+
+    def ending(self, step: StatusStep | None) -> StatusStep | None:
+        """Give the step that ends a run on such fields."""
+        return step
+
+
+@dataclass(frozen=True)
+class PGD:
+    """A sum of a few modes, each a shape in space times a function of time (paper, section 2.2).
+
+    Attributes
+    ----------
+    modes
+        Most modes of a substructure; the smallest are dropped.
+    tolerance
+        Share of a substructure's field that may be lost with them; no mode is added for a residual
+        below it.
+    enrichment
+        Modes are added only if new time functions for the old ones leave more than this share of
+        the residual: 0 always, 1 never.
+    pairs
+        Most modes that one iteration adds to a substructure.
+    sharing
+        Equal substructures use the same modes if these miss at most this share of each one's field;
+        0: each has modes of its own.
+    remedy
+        What helps a run that does not converge, in a sentence.
+    """
+
+    remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance."
+
+    modes: int = 10
+    tolerance: float = 1e-4
+    enrichment: float = 0.1
+    pairs: int = 2
+    sharing: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("modes", "pairs"):
+            check_range(self, name, 1, 1000)
+        for name in ("tolerance", "enrichment", "sharing"):
+            check_range(self, name, 0.0, 1.0)
+
+    def at_work(
+        self, problem: Problem, k: Array, blocks: Blocks, *, multiscale: bool
+    ) -> ReducedLinearStage:
+        """Factor the linear stage, as `Full.at_work` says; it works on all instants at once."""
+        rule = Enrichment(self.enrichment, self.tolerance, self.pairs, self.modes, self.sharing)
+        return ReducedLinearStage(problem, k, rule, multiscale=multiscale)
+
+    def estimate(self, accuracy: float) -> ErrorEstimate:
+        """Begin to estimate the error, as `Full.estimate`."""
+        return EstimateByProof(accuracy)
+
+    def ending(self, step: StatusStep | None) -> StatusStep | None:
+        """Give none: a run on separated bases goes on."""
+        return None
