@@ -19,9 +19,6 @@ from solver.study.audit.stability import cases_of, stability_report, trials_of
 from solver.study.audit.survey import draws, survey_report
 from solver.study.audit.units import SCENE, invariance, is_same
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
-from solver.study.benchmarks.reduction_cost import print_reduction_cost
-from solver.study.benchmarks.sweep_overhead import print_overhead
-from solver.study.benchmarks.thread_gain import print_thread_gain
 from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.error_against_time import error_against_time
 from solver.study.growth import growth
@@ -29,8 +26,6 @@ from solver.study.paper_figures import paper_figures
 from solver.study.study_files import NO_PAGE, write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, winners
 
-SIDE = 20
-"""Of the square chart whose overhead is measured."""
 REFUSED = 2
 """Exit code of refused input."""
 
@@ -39,15 +34,6 @@ def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
     cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
     cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
-    cost.add_argument(
-        "--reduction", action="store_true", help="separated bases against full fields instead"
-    )
-    cost.add_argument(
-        "--threads", type=int, default=1, help="so many threads against one instead, on blocks"
-    )
-    cost.add_argument(
-        "--sweep", action="store_true", help="400 runs of a sweep against their own time instead"
-    )
     cost.add_argument(
         "--whole", action="store_true", help="what runs take against what they say before, instead"
     )
@@ -99,19 +85,11 @@ def writing(folder: Path) -> Iterator[None]:
 
 def _benchmark(chosen: argparse.Namespace) -> int:
     _check_repeats(chosen)
-    if chosen.threads > 1:
-        print_thread_gain(chosen.threads, chosen.repeats)
-        return 0
-    if chosen.sweep:
-        print_overhead(SIDE)
-        return 0
     if chosen.whole:
         print_whole_cost()
         return 0
-    measure = print_reduction_cost if chosen.reduction else print_iteration_cost
-    measure(chosen.repeats)
-    if not chosen.reduction:
-        print_overheads(chosen.repeats)
+    print_iteration_cost(chosen.repeats)
+    print_overheads(chosen.repeats)
     return 0
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.reduction_cost import half_plane, reduction_cost, whole_iterations
 
 from solver.arrays import space_time
 from solver.latin import Auto
@@ -16,7 +17,6 @@ from solver.latin.linear.separated import ReducedLinearStage
 from solver.reduction.enrichment import Enrichment
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.study.benchmarks.reduction_cost import half_plane, reduction_cost, whole_iterations
 
 
 def test_both_stages_give_the_same_on_the_half_plane():

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
 
 from solver.arrays import space_time
 from solver.discrete.problem import Problem
-from solver.latin import StopRules, iterations, solve
+from solver.latin import Full, Iterate, StopRules, iterations, solve
 from solver.latin.at_work import AtWork
 from solver.latin.clock import Clock
+from solver.latin.criteria.estimate import ErrorEstimate
 from solver.latin.linear.full import FullLinearStage
 from solver.latin.linear.response import DenseResponse
 from solver.latin.local.stage import LocalStage
@@ -159,6 +160,18 @@ class Overhead:
     stop: float
 
 
+class _Unproven(ErrorEstimate):
+    def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
+        return False
+
+
+class _WithoutStep(Full):
+    """Full fields whose errors are estimated without a status step."""
+
+    def estimate(self, accuracy: float) -> ErrorEstimate:
+        return _Unproven(accuracy)
+
+
 def overhead(settings: Settings, repeats: int) -> Overhead:
     """Measure a run up to its accuracy in three ways, interleaved: bare, with iterates, judged."""
     settings = settings.replace(finish="none")
@@ -176,7 +189,7 @@ def overhead(settings: Settings, repeats: int) -> Overhead:
             pass
 
     def judged_without_step() -> None:
-        rules = StopRules(method)
+        rules = StopRules(replace(method, linear=_WithoutStep()))
         for iterate in islice(iterations(problem, method), number):
             rules.judge(iterate)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -243,3 +244,7 @@ def _print(cost: ReductionCost) -> None:
         f"{size}: {100.0 * n / cost.values:.0f} %" for size, n in cost.reduced_values.items()
     )
     print(f"{'':<11} state against the full field: {values}")
+
+
+if __name__ == "__main__":
+    print_reduction_cost(int(sys.argv[1]) if len(sys.argv) > 1 else 7)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+import sys
 from itertools import pairwise
 
 from solver.latin import Iterate, iterations
@@ -62,3 +63,7 @@ def print_thread_gain(threads: int, repeats: int) -> None:
         one, several = thread_gain(elements, threads, repeats)
         size = f"{elements} x {elements // 2}"
         print(f"{size:>10} {1e3 * one:10.2f} {1e3 * several:10.2f} {one / several:6.2f}")
+
+
+if __name__ == "__main__":
+    print_thread_gain(int(sys.argv[1]) if len(sys.argv) > 1 else 2, 7)

@@ -24,3 +24,7 @@ def print_overhead(side: int) -> None:
     print(f"{plan.size} runs of the bar at Table 1 in {width} processes: {whole:.1f} s")
     print(f"their own seconds, over the number of processes: {alone:.1f} s")
     print(f"ratio: {whole / alone:.2f}")
+
+
+if __name__ == "__main__":
+    print_overhead(20)
