@@ -193,15 +193,19 @@ class _Motion:
         places = [np.arange(part.size)[own] for part, own in zip(free, chosen, strict=True)]
         pairs = list(zip(free, places, strict=True))
         self._way = root * np.concatenate([_flat(part)[own] for part, own in pairs])
-        # In order of memory an instant is a run of places.
-        self._instants = np.concatenate([own * part.shape[-1] // part.size for part, own in pairs])
-        size = np.bincount(self._instants, self._way**2)
-        self._dual = self._way / np.where(size > 0.0, size, 1.0)[self._instants]
+        instants = np.concatenate([own * part.shape[-1] // part.size for part, own in pairs])
+        size = np.bincount(instants, self._way**2)
+        self._dual = self._way / np.where(size > 0.0, size, 1.0)[instants]
+        # In order of memory an instant is a run of places, in every part.
+        self._first = np.flatnonzero(np.diff(instants, prepend=-1))
+        self._lengths = np.diff(self._first, append=len(instants))
+        self._instants = instants[self._first]
 
     def leave_out(self, residual: Array) -> None:
         """Take out of a weighted residual what it has of the motion, instant by instant."""
-        share = np.bincount(self._instants, self._dual * residual)
-        residual -= self._way * share[self._instants]
+        runs = np.add.reduceat(self._dual * residual, self._first)
+        share = np.bincount(self._instants, runs)[self._instants]
+        residual -= self._way * np.repeat(share, self._lengths)
 
 
 def _in_a_row(sizes: list[int]) -> list[slice]:

@@ -1,0 +1,117 @@
+"""Friction of many points, a spring that may be slack, and a load, in balance at every instant.
+
+All points move by one shift. Their forces fall with it, in straight lines between the shifts at
+which a point begins to slip and the spring to pull, so that there is one zero. A point that sticks
+remembers where it came to rest, which ties each instant to the one before.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+
+BALANCED = 1e-14
+"""Share of all that friction and load may be, which is left over where they balance."""
+TRIALS = 8
+"""Straight lines that are followed to their zero, before it is looked for between two shifts."""
+
+
+class Balance:
+    """The shifts at which forces balance.
+
+    Parameters
+    ----------
+    stiffness
+        With which a point that sticks pulls the body back, shape (n_points,).
+    spring
+        Stiffness of the spring.
+    load
+        Shape (n_instants,).
+    """
+
+    def __init__(self, stiffness: Array, spring: float, load: Array) -> None:
+        self._stiffness, self._spring, self._load = stiffness, spring, load
+        # The steps of the time before, from which the new ones are looked for.
+        self._steps = np.zeros(len(load))
+
+    def __call__(self, targets: Array, reach: Array, ends: Array) -> Array:
+        """Give the shift of every instant, shape (n_instants,).
+
+        Parameters
+        ----------
+        targets
+            Where the points would be without friction or shift, shape (n_instants, n_points).
+        reach
+            How far a point can be behind before it slips, same shape.
+        ends
+            Shift up to which the spring pulls, shape (n_instants,).
+        """
+        enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
+        place, shift = np.zeros(targets.shape[1]), 0.0
+        numbers = (one.tolist() for one in (ends, self._load, self._steps, enough))
+        rows = enumerate(zip(targets, -reach, reach, *numbers, strict=True))
+        for instant, (target, least, most, end, load, guess, left) in rows:
+            # Places are those of the points before, seen from the body: their digits stay.
+            behind = place - target
+            given = behind, least, most, end - shift, load
+            step = self._followed(*given, guess, left)
+            if step is None:
+                step = self._between(*given)
+            place = target + np.minimum(np.maximum(behind - step, least), most)
+            shift += step
+            self._steps[instant] = step
+        return np.cumsum(self._steps)
+
+    def _followed(
+        self,
+        behind: Array,
+        least: Array,
+        most: Array,
+        end: float,
+        load: float,
+        step: float,
+        enough: float,
+    ) -> float | None:
+        """Follow straight lines to the step at which all balances; None where that fails."""
+        for _ in range(TRIALS):
+            wanted = behind - step
+            held = np.minimum(np.maximum(wanted, least), most)
+            slope = float(self._stiffness @ (held == wanted))
+            left = float(self._stiffness @ held) + load
+            if end > step:
+                slope += self._spring
+                left += self._spring * (end - step)
+            if not slope > 0.0:
+                return None
+            if abs(left) <= enough:
+                return step
+            step += left / slope
+        return None
+
+    def _between(self, behind: Array, least: Array, most: Array, end: float, load: float) -> float:
+        """Look for the same step between the shifts at which anything begins to slip or pull."""
+
+        def left(step: float) -> float:
+            held = np.minimum(np.maximum(behind - step, least), most)
+            return float(self._stiffness @ held) + self._spring * max(end - step, 0.0) + load
+
+        stays = float(behind.mean())
+        if left(stays) == 0.0:
+            return stays
+        turns = np.sort(np.concatenate([behind + least, behind + most, [end]]))
+        first, last = 0, len(turns) - 1
+        above, below = left(turns[first]), left(turns[last])
+        if above <= 0.0:
+            return float(turns[first] + above / self._spring)
+        if below >= 0.0:
+            return float(turns[last])
+        while last - first > 1:
+            middle = (first + last) // 2
+            value = left(turns[middle])
+            if value > 0.0:
+                first, above = middle, value
+            else:
+                last, below = middle, value
+        share = above / (above - below)
+        return float(turns[first] + share * (turns[last] - turns[first]))
