@@ -12,6 +12,8 @@ from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
 SMALL = {"elements": 30, "instants": 41, "substructures": 6}
+SMALL_BAR = ["--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
+"""A bar that a command solves in no time."""
 
 
 def options(**values):

@@ -1,0 +1,156 @@
+"""What is no setting, or no value of one, is refused in one clear line."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import param
+import pytest
+from valid_settings import DEFINITIONS, assert_names, refusal
+
+from solver.definitions import CurveParameter, allowed
+from solver.files import settings_from_command, settings_from_toml
+from solver.scenes.bar import BarSettings
+
+NUMBERS = [
+    name
+    for name, definition in DEFINITIONS.items()
+    if isinstance(definition, param.Number) and not isinstance(definition, param.Boolean)
+]
+
+
+CURVES = [
+    name for name, definition in DEFINITIONS.items() if isinstance(definition, CurveParameter)
+]
+
+
+CHOICES = [name for name, kind in DEFINITIONS.items() if isinstance(kind, param.Selector)]
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_numbers_out_of_range_or_of_another_kind_are_refused(name):
+    definition = DEFINITIONS[name]
+    low, high = definition.bounds
+    span = allowed(definition)
+    assert f"{low:g} to {high:g}" in span
+    beyond = [low - 1, high * 2 + 1, 10**400, -(10**400)]
+    for value in [*beyond, math.nan, math.inf, -math.inf, True, "many", None, [1.0], {"a": 1}]:
+        text = refusal(lambda value=value: BarSettings.checked({name: value}))
+        assert_names(text, name, json.dumps(value)[:57], span)
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in NUMBERS if isinstance(DEFINITIONS[name], param.Integer)]
+)
+def test_whole_numbers_may_be_written_with_a_point_and_nothing_behind_it(name):
+    low, _ = DEFINITIONS[name].bounds
+    base = {"elements": 100, "substructures": 1}
+    good = BarSettings.checked({**base, name: low + 1.0}).values()[name]
+    assert type(good) is int
+    assert_names(
+        refusal(lambda: BarSettings.checked({name: low + 1.5})),
+        name,
+        str(low + 1.5),
+        allowed(DEFINITIONS[name]),
+    )
+
+
+@pytest.mark.parametrize("value", [1, 0.0, "true", None, []])
+def test_only_true_and_false_are_switches(value):
+    text = refusal(lambda: BarSettings.checked({"multiscale": value}))
+    assert_names(text, "multiscale", json.dumps(value), "true or false")
+
+
+@pytest.mark.parametrize("name", CHOICES)
+@pytest.mark.parametrize("value", ["nothing", 3, True, None, ["none"], {"a": 1}])
+def test_only_the_names_of_a_choice_are_taken(name, value):
+    text = refusal(lambda: BarSettings.checked({name: value}))
+    assert_names(text, name, json.dumps(value), ", ".join(DEFINITIONS[name].objects))
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize(
+    ("value", "remedy"),
+    [
+        ([], "at least one pair"),
+        ("nowhere", "choose a preset"),
+        (3.0, "at least one pair"),
+        ([[0.0, 1.0], [1.0]], "row 2 must be a pair"),
+        ([[0.0, 1.0, 2.0]], "row 1 must be a pair"),
+        ([0.0, 1.0], "row 1 must be a pair"),
+        ([[0.0, 0.0], [0.5, 1.0], [0.5, 2.0]], "row 3"),
+        ([[1.0, 0.0], [0.0, 1.0]], "must increase"),
+        ([[0.0, math.nan]], "not finite"),
+        ([[math.inf, 0.0]], "not finite"),
+        ([[0.0, "much"]], "not a number"),
+        ([[0.0, True]], "not a number"),
+        ([[0.0, 1e16]], "1e15"),
+        ([[0.0, 10**400]], "1e15"),
+    ],
+    ids=str,
+)
+def test_bad_tables_are_refused_with_their_row(name, value, remedy):
+    text = refusal(lambda: BarSettings.checked({name: value}))
+    assert_names(text, name, json.dumps(value)[:57], ", ".join(DEFINITIONS[name].presets))
+    assert remedy in text
+
+
+def test_unknown_names_are_refused_with_the_nearest_one():
+    text = refusal(lambda: BarSettings.checked({"friktion": 0.3}))
+    assert_names(text, "friktion", "0.3", "substructures, multiscale")
+    assert "did you mean friction?" in text
+    for name in ("scene", "name", "param", "checked"):
+        assert "there is no such setting" in refusal(
+            lambda name=name: BarSettings.checked({name: "x"})
+        )
+
+
+def test_unknown_scenes_are_refused_with_the_known_ones():
+    for text in ('scene = "bridge"', "peak = 1.0", "scene = 3", 'scene = ["bar"]'):
+        assert "allowed: bar" in refusal(lambda text=text: settings_from_toml(text))
+    assert_names(refusal(lambda: settings_from_command("bridge", [])), "scene", "bridge", "bar")
+
+
+def test_values_that_do_not_fit_together_are_refused():
+    text = refusal(lambda: BarSettings.checked({"elements": 5}))
+    assert_names(text, "substructures", "10", "1 to elements (5)")
+    text = refusal(lambda: BarSettings.checked({"elements": 20_000, "instants": 20_001}))
+    assert_names(text, "instants", "20001", "at most 1249")
+    text = refusal(lambda: BarSettings.checked({"friction_profile": [[0.0, -1.0]]}))
+    assert_names(text, "friction_profile", "-1.0", "factors of at least 0")
+
+
+@pytest.mark.parametrize(
+    "text", ["9" * 5000, "1" + "0" * 400, "[" * 20_000, "1\nseed = 4", "", "nan", "true", "1,5"]
+)
+def test_text_that_is_no_number_is_refused_by_every_front(text):
+    from app.shell.address import query_of, settings_from_query
+
+    assert "peak = " in refusal(lambda: settings_from_command("bar", [f"peak={text}"]))
+    chosen, complaint = settings_from_query("?peak=" + text.replace("\n", "%0A") + "&seed=3")
+    assert query_of(chosen) == "?scene=bar&seed=3"
+    if text:
+        assert "peak = " in complaint
+
+
+@pytest.mark.parametrize("text", ["peak", "", "peak 3"])
+def test_an_assignment_without_an_equals_sign_is_refused(text):
+    assert "NAME=VALUE" in refusal(lambda: settings_from_command("bar", [text]))
+
+
+@pytest.mark.parametrize(
+    ("query", "words", "scene"),
+    [
+        ("?friction=-3", "friction = -3 is refused", "bar"),
+        ("?scene=strand&broken=9", "broken = 9 is refused", "strand"),
+        ("?scene=bridge", 'scene = "bridge" is refused', "bar"),
+    ],
+)
+def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(query, words, scene):
+    from app.shell.address import settings_from_query
+
+    chosen, complaint = settings_from_query(query)
+    assert words in complaint
+    assert chosen.scene == scene
+    assert not chosen.changed()
