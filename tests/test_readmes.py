@@ -81,7 +81,7 @@ def test_the_map_names_every_folder_of_the_code() -> None:
     folders = {f"{path.parent.relative_to(ROOT)}/" for path in SOURCES}
     rooms = {
         f"{readme.parent.relative_to(ROOT)}/{name}"
-        for readme in (PAGE, METHOD)
+        for readme in (PAGE, MATHEMATICS, METHOD)
         for name in paths_in(readme)
     }
     assert folders <= paths_in(FRONT) | rooms
