@@ -1,8 +1,7 @@
 """Singular values and modes of interface fields, per substructure (paper, section 3.2).
 
 A field is decomposed in the L2 inner product of the place and the time that it lives on: lengths of
-the friction rows and trapezoidal weights of the instants. Fields of a whole boundary, whose ends
-have no length, take the norm of the paper's eq. 2 instead.
+the friction rows and trapezoidal weights of the instants.
 """
 
 from __future__ import annotations
@@ -24,16 +23,12 @@ ALIKE = 1e-9
 class InterfaceFields(Protocol):
     """What is analysed: an iterate, or whatever else has fields on the boundary rows.
 
-    Shapes are those of `Iterate`: (n_rows,) for k, (n_rows, n_instants) for the fields; scaled.
+    Fields have the shape of those of `Iterate`, (n_rows, n_instants), scaled.
     """
 
     @property
     def problem(self) -> Problem:
         """The problem whose rows they live on."""
-
-    @property
-    def k(self) -> Array:
-        """Search direction."""
 
     @property
     def boundary_displacement(self) -> Array:
@@ -45,17 +40,13 @@ class InterfaceFields(Protocol):
 
 
 class InterfaceField(StrEnum):
-    """A field that can be decomposed, and the unit of its singular values.
+    """A field on the rows that rub, in L2 over length and time.
 
-    The first two live on the friction rows, as L2 fields over length and time: N sqrt(s/m) and
-    m sqrt(m s). The last two live on all boundary rows, in the norm of the paper's eq. 2 (k W^2 and
-    F^2/k): sqrt(N m s).
+    The unit of its singular values is N sqrt(s/m), of the displacement m sqrt(m s).
     """
 
     FRICTION_FORCE = "friction_force"
     DISPLACEMENT = "displacement"
-    BOUNDARY_FORCE = "boundary_force"
-    BOUNDARY_DISPLACEMENT = "boundary_displacement"
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,10 +92,6 @@ class Decomposition:
     def modes_for(self, share: float) -> int:
         """Count the modes that bring the error down to a share of the field's norm."""
         return int(np.argmax(self.errors <= share))
-
-    def approximation(self, rank: int) -> Array:
-        """Sum the first modes, shape (n_points, n_instants)."""
-        return (self.space_modes[:, :rank] * self.values[:rank]) @ self.time_modes[:rank]
 
     def correlations(self, modes: Array) -> Array:
         """Give the cosines between modes and the space modes of the same place in the order.
@@ -160,8 +147,7 @@ def decompositions(fields: InterfaceFields, name: InterfaceField) -> list[Decomp
     """
     problem = fields.problem
     field, weights = _field_and_weights(fields, name)
-    on_friction = name in (InterfaceField.FRICTION_FORCE, InterfaceField.DISPLACEMENT)
-    own = friction_rows(problem) if on_friction else [part.rows for part in problem.substructures]
+    own = friction_rows(problem)
     time_weights = problem.time_weights * problem.scales.time
     places = problem.positions[problem.row_dofs]
     return [decompose(field[rows], weights[rows], time_weights, places[rows]) for rows in own]
@@ -195,20 +181,6 @@ def friction_rows(problem: Problem) -> list[Indices]:
     rubs = np.zeros(problem.n_rows, dtype=bool)
     rubs[problem.sliding[0]] = True
     return [part.rows[rubs[part.rows]] for part in problem.substructures]
-
-
-def constant_speed_front(n_points: int, n_instants: int) -> Decomposition:
-    """Decompose a front that crosses its domain at constant speed in the time there is.
-
-    Scaled to the unit square the field is H(x - t), the kernel of an integration, whose singular
-    values are 2/((2n - 1) pi). Here it is sampled in the middle of cells; on the front itself it is
-    one half.
-    """
-    positions = (np.arange(n_points) + 0.5) / n_points
-    instants = (np.arange(n_instants) + 0.5) / n_instants
-    field = np.heaviside(positions[:, None] - instants, 0.5)
-    weights = np.full(n_points, 1.0 / n_points)
-    return decompose(field, weights, np.full(n_instants, 1.0 / n_instants), positions)
 
 
 def front_decay(count: int) -> Array:
@@ -245,13 +217,8 @@ def _field_and_weights(fields: InterfaceFields, name: InterfaceField) -> tuple[A
     """Give a field in SI and the weights of its rows; rows beyond it have no meaning."""
     problem, scales = fields.problem, fields.problem.scales
     sliding, weights = problem.sliding
-    k = fields.k * scales.force / scales.displacement
     lengths = np.ones(problem.n_rows)
     lengths[sliding] = weights
     if name is InterfaceField.FRICTION_FORCE:
         return fields.boundary_force * scales.force / lengths[:, None], lengths
-    if name is InterfaceField.DISPLACEMENT:
-        return fields.boundary_displacement * scales.displacement, lengths
-    if name is InterfaceField.BOUNDARY_FORCE:
-        return fields.boundary_force * scales.force, 1.0 / k
-    return fields.boundary_displacement * scales.displacement, k
+    return fields.boundary_displacement * scales.displacement, lengths
