@@ -14,16 +14,12 @@ import pytest
 
 from solver import report_commands
 from solver.cli import main
-from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.running.machine import LIMITS
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
-from solver.study import peers
 from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
 from solver.study.figure_data import HUES
 from solver.study.growth import Growth, Size, growth
-from solver.study.peers import PEERS, PeerError, solve_by_peer
 from solver.study.study_panels import error_panels
 from solver.study.study_report import growth_table, table, winners
 
@@ -31,7 +27,6 @@ TINY = ["study", "bar", "--set", "elements=20", "--set", "instants=21", "--set",
 TINY += ["--repeats", "1", "--no-growth"]
 BRIEF = ["--set", "elements=4", "--set", "instants=5", "--set", "substructures=2"]
 BRIEF += ["--repeats", "1", "--no-growth"]
-WHAT_PEERS_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
 
 
 def rows(file):
@@ -63,7 +58,7 @@ def course(method, kind, seconds, errors):
 
 
 def study_of(*courses):
-    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses, (), ())
+    return Study(BarSettings.checked({"method": "paper"}), 1, "machine", courses, ())
 
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
@@ -82,8 +77,7 @@ def test_the_curves_have_every_method_with_times_that_increase(measured):
     assert list(found[0]) == [
         *("method", "kind", "step", "seconds", "error_displacement", "error_force")
     ]
-    installed = {peer.name for peer in PEERS if peer.installed}
-    assert {row["method"] for row in found} == {*FORMS, INCREMENTAL, *installed}
+    assert {row["method"] for row in found} == {*FORMS, INCREMENTAL}
     for method in FORMS:
         seconds = [float(row["seconds"]) for row in found if row["method"] == method]
         assert (np.diff(seconds) > 0.0).all()
@@ -190,40 +184,6 @@ def test_without_matplotlib_the_tables_are_written_and_one_line_says_so(
     assert "The page needs matplotlib" in capsys.readouterr().out
 
 
-def test_absent_solvers_are_named(monkeypatch, tmp_path, capsys):
-    nowhere = replace(PEERS[0], module="no_such_module")
-    monkeypatch.setattr("solver.study.error_against_time.PEERS", (nowhere,))
-    assert main(["study", "bar", *BRIEF, "--out", str(tmp_path)]) == 0
-    assert "Not installed, so absent: PIQP." in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("peer", PEERS, ids=lambda peer: peer.name)
-@pytest.mark.parametrize(
-    "changes",
-    [{}, {"pressure_profile": "gap"}, {"support_displacement": 1e-4}, {"body_force": 500.0}],
-    ids=str,
-)
-def test_public_solvers_agree_with_the_incremental_solver(peer, changes):
-    if not peer.installed:
-        pytest.skip(f"{peer.module} is not installed")
-    problem = discretise(
-        BarSettings.checked({"method": "paper", "elements": 20, "instants": 21, **changes})
-    )
-    distance = distance_to(incremental(problem), problem)
-    fields = solve_by_peer(problem, peer, peer.tolerances[-1])
-    assert distance.of_friction_force(fields) < WHAT_PEERS_REACH[peer.name]
-    assert distance.of_displacement(fields) < WHAT_PEERS_REACH[peer.name]
-
-
-def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):
-    monkeypatch.setattr(peers, "TIME_LIMIT", -1.0)
-    idle = replace(PEERS[0], prepare=lambda *given: lambda lower, upper: 0.0 * lower)
-    with pytest.raises(PeerError, match="at instant 1"):
-        solve_by_peer(
-            discretise(BarSettings.checked({"method": "paper", "substructures": 2})), idle, 1.0
-        )
-
-
 def test_the_exponent_is_the_slope_and_needs_two_sizes():
     sizes = tuple(Size(n, 1e-6 * n**1.5, None, None) for n in (10, 20, 40))
     assert Growth("elements", "a", sizes).exponent.value == pytest.approx(1.5)
@@ -260,11 +220,9 @@ def test_the_report_states_the_threads_that_the_command_line_sets(tmp_path, give
 
 def test_every_method_of_a_study_has_a_color_of_its_own():
     names = [(name, "latin") for name in FORMS]
-    names += [(INCREMENTAL, "incremental"), *((peer.name, "peer") for peer in PEERS)]
+    names += [(INCREMENTAL, "incremental"), *((f"other {number}", "peer") for number in range(4))]
     courses = tuple(course(name, kind, [0.1, 0.2], [0.1, 0.01]) for name, kind in names)
-    for panel in error_panels(
-        Study(BarSettings.checked({"method": "paper"}), 1, "", courses, (), ())
-    ):
+    for panel in error_panels(Study(BarSettings.checked({"method": "paper"}), 1, "", courses, ())):
         hues = [curve.hue for curve in panel.curves]
         assert len(set(hues)) == len(hues) == len(names)
         assert max(hues) <= len(HUES)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Literal
@@ -19,13 +19,12 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin import judged
-from solver.reference.choice import is_alone, reference_of
-from solver.reference.distance import Distance, distance_to
+from solver.reference.choice import reference_of
+from solver.reference.distance import Distance, Fields, distance_to
 from solver.running.machine import machine
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.peers import PEERS, Peer, PeerError, solve_by_peer
 from solver.study.progress import Tell, silent
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
@@ -66,6 +65,29 @@ FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
 """The same of scenes where no run starts from coarser meshes."""
 INCREMENTAL = "incremental solver"
 Kind = Literal["latin", "incremental", "peer"]
+
+
+class PeerError(RuntimeError):
+    """Another solver gave up, or took too long; the message says at which instant."""
+
+
+@dataclass(frozen=True)
+class Peer:
+    """Another solver that is set beside these.
+
+    Attributes
+    ----------
+    name
+        What it is called.
+    tolerances
+        Those at which it runs; one alone for a method that ends exactly, in finitely many steps.
+    solve
+        Solves a problem at a tolerance, set-up included, or raises `PeerError`.
+    """
+
+    name: str
+    tolerances: tuple[float, ...]
+    solve: Callable[[Problem, float], Fields]
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,17 +143,14 @@ class Study:
         Processors, BLAS threads, versions.
     courses
         One per method that ran.
-    absent
-        Public solvers that are not installed.
     troubles
-        What a public solver said where it gave up.
+        What another solver said where it gave up.
     """
 
     settings: Settings
     repeats: int
     machine: str
     courses: tuple[ErrorCurve, ...]
-    absent: tuple[str, ...]
     troubles: tuple[str, ...]
 
 
@@ -146,7 +165,9 @@ class _Entry:
     timed: Callable[[], list[float]]
 
 
-def error_against_time(settings: Settings, repeats: int, tell: Tell = silent) -> Study:
+def error_against_time(
+    settings: Settings, repeats: int, tell: Tell = silent, peers: Sequence[Peer] = ()
+) -> Study:
     """Run every method `repeats` times, in turns.
 
     Parameters
@@ -157,38 +178,36 @@ def error_against_time(settings: Settings, repeats: int, tell: Tell = silent) ->
         Timed passes, at least 1.
     tell
         Is told how far it is, while no clock runs.
+    peers
+        Other solvers that are to be measured too.
     """
     troubles: list[str] = []
-    entries = _entries(settings, troubles, lambda doing, share: tell(doing, share / (repeats + 1)))
+    entries = _entries(settings, lambda doing, share: tell(doing, share / (repeats + 1)))
+    for peer in peers:
+        entries += _peer_entry(peer, settings, troubles)
     samples: list[list[list[float]]] = [[] for _ in entries]
     for turn in range(1, repeats + 1):
         tell(f"Timed pass {turn} of {repeats}", turn / (repeats + 1))
         for entry, times in zip(entries, samples, strict=True):
             times.append(entry.timed())
     courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
-    missing = tuple(peer.name for peer in PEERS if not peer.installed)
-    absent = missing if is_quadratic(discretise(settings)) else ()
-    return Study(settings, repeats, machine(), tuple(courses), absent, tuple(troubles))
+    return Study(settings, repeats, machine(), tuple(courses), tuple(troubles))
 
 
-def _entries(settings: Settings, troubles: list[str], tell: Tell) -> list[_Entry]:
+def _entries(settings: Settings, tell: Tell) -> list[_Entry]:
     """Find the errors of all methods, without the clock."""
     problem = discretise(settings)
     reference = reference_of(problem)
     distance = distance_to(reference, problem)
-    peers = [peer for peer in PEERS if peer.installed] if is_quadratic(problem) else []
     forms = forms_of(settings)
     entries = []
     for number, (method, form) in enumerate(forms.items()):
-        tell(f"Errors of {method}", number / (len(forms) + len(peers)))
+        tell(f"Errors of {method}", number / len(forms))
         entries.append(_latin_entry(method, form, distance))
     steps = [float(reference.steps)]
     entries.append(
         _Entry(INCREMENTAL, "incremental", steps, [(0.0, 0.0)], lambda: [by_increments(settings)])
     )
-    for number, peer in enumerate(peers, start=len(forms)):
-        tell(f"Errors of {peer.name}", number / (len(forms) + len(peers)))
-        entries += _peer_entry(peer, settings, distance, troubles)
     return entries
 
 
@@ -205,28 +224,13 @@ def acting(settings: Settings) -> set[str]:
     return {name for name in names if any(form.applies(name) for form in forms)}
 
 
-def is_quadratic(problem: Problem) -> bool:
-    """Tell whether public QP solvers are asked: for a known bound on a rigid support.
-
-    Unilateral contact with friction is no quadratic programme.
-    """
-    return is_alone(problem)
-
-
-def _latin_entry(
-    method: str,
-    settings: Settings,
-    distance: Distance,
-    goal: float = GOAL,
-    most: int = MOST_ITERATIONS,
-    least: int = 2,
-) -> _Entry:
+def _latin_entry(method: str, settings: Settings, distance: Distance) -> _Entry:
     """Find the errors of a form of LATIN, until its friction force is as near as the goal."""
     errors: list[tuple[float, float]] = []
-    for iterate, _ in islice(judged(discretise(settings), method_of(settings)), most):
+    for iterate, _ in islice(judged(discretise(settings), method_of(settings)), MOST_ITERATIONS):
         errors.append((distance.of_displacement(iterate), distance.of_friction_force(iterate)))
         force = errors[-1][1]
-        if not math.isfinite(force) or (force <= goal and iterate.number >= least):
+        if not math.isfinite(force) or (force <= GOAL and iterate.number > 1):
             break
     steps = [float(number) for number in range(1, len(errors) + 1)]
     return _Entry(method, "latin", steps, errors, lambda: _by_iterations(settings, len(steps)))
@@ -250,14 +254,14 @@ def by_increments(settings: Settings) -> float:
     return time.perf_counter() - start
 
 
-def _peer_entry(
-    peer: Peer, settings: Settings, distance: Distance, troubles: list[str]
-) -> list[_Entry]:
-    """Find the errors of a public solver at the tolerances that it manages, if any."""
+def _peer_entry(peer: Peer, settings: Settings, troubles: list[str]) -> list[_Entry]:
+    """Find the errors of another solver at the tolerances that it manages, if any."""
+    problem = discretise(settings)
+    distance = distance_to(reference_of(problem), problem)
     done, errors = [], []
     for tolerance in peer.tolerances:
         try:
-            fields = solve_by_peer(discretise(settings), peer, tolerance)
+            fields = peer.solve(problem, tolerance)
         except PeerError as trouble:
             troubles.append(f"{peer.name} at tolerance {tolerance:g} {trouble}.")
             continue
@@ -273,7 +277,7 @@ def _peer_entry(
 def _by_peer(peer: Peer, settings: Settings, tolerance: float) -> float:
     start = time.perf_counter()
     try:
-        solve_by_peer(discretise(settings), peer, tolerance)
+        peer.solve(discretise(settings), tolerance)
     except PeerError:  # it did well before, so this is its time limit, on a busier machine
         return math.inf
     return time.perf_counter() - start

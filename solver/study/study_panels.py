@@ -7,10 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.error_against_time import INCREMENTAL, ErrorCurve, Study
-from solver.study.figure_data import HUES, Line, Panel, PanelAxis, PanelCurve
+from solver.study.error_against_time import FORMS, INCREMENTAL, ErrorCurve, Study
+from solver.study.figure_data import Line, Panel, PanelAxis, PanelCurve
 from solver.study.growth import MEASURED, Growth
-from solver.study.peers import PEERS
 
 SPAN = (1e-9, 2.0)
 """Errors that are shown; smaller ones are drawn at SMALLEST, just above the lower edge."""
@@ -31,7 +30,7 @@ def error_panels(study: Study) -> list[Panel]:
         ("error_displacement", "Displacement"),
         ("error_force", "Friction force"),
     ):
-        numbers = {"latin": 0, "peer": len(HUES) - len(PEERS)}
+        numbers = {"latin": 0, "peer": len(FORMS)}
         curves = []
         for course in study.courses:
             if course.kind != "incremental":

@@ -33,11 +33,6 @@ BILLED = (
     "Errors are relative L2 distances over space and time to the result of the incremental solver "
     "on the same mesh and instants, whose own error is therefore 0.",
 )
-PEERS_NOTE = (
-    "The public QP solvers minimise 1/2 w'Kw under |g - Kw| <= r at every instant, in units of the "
-    "largest bound r, at several tolerances each (DAQP, which is exact, at one); the tables take "
-    "the quickest run that is near enough."
-)
 
 
 def conditions(study: Study) -> list[str]:
@@ -50,19 +45,6 @@ def conditions(study: Study) -> list[str]:
         f"All methods in one process, in turns; medians of {study.repeats} passes.",
         *BILLED,
     ]
-    asked = [
-        f"{course.method} {', '.join(f'{step:g}' for step in course.steps)}"
-        for course in study.courses
-        if course.kind == "peer"
-    ]
-    if asked:
-        lines += [PEERS_NOTE]
-        lines.append(
-            f"Tolerances: {'; '.join(asked)}. Interior points need far less than 1e-8, which with "
-            "Table 1 leaves 2e-4 in the friction force; PIQP and Clarabel test the duality gap."
-        )
-    if study.absent:
-        lines.append(f"Not installed, so absent: {', '.join(study.absent)}.")
     return [*lines, *study.troubles]
 
 

@@ -1,4 +1,6 @@
-"""Public QP solvers on the incremental problem, to compare with (the extra `peers`).
+"""Public QP solvers on the incremental problem, set beside a study (the extra `peers`).
+
+`python tests/benchmarks/peers.py bar --set elements=100`
 
 Over one instant the displacement increment w minimises
 
@@ -19,10 +21,13 @@ that does not (the default of ProxQP) may stop early with a wrong force.
 
 from __future__ import annotations
 
+import argparse
 import importlib.util
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,7 +36,12 @@ from scipy import sparse
 
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
+from solver.files import settings_from_command
 from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.choice import is_alone
+from solver.scenes import discretise
+from solver.study.error_against_time import Peer, PeerError, error_against_time
+from solver.study.study_report import aligned, conditions, table, winners
 
 Solve = Callable[[Array, Array], Array]
 """From the bounds of K w, each of shape (n,), to w, shape (n,)."""
@@ -40,12 +50,8 @@ TIME_LIMIT = 60.0
 """Seconds after which a solver is stopped between two instants."""
 
 
-class PeerError(RuntimeError):
-    """A solver gave up, or took too long; the message says at which instant."""
-
-
 @dataclass(frozen=True)
-class Peer:
+class Public:
     """A public solver.
 
     Attributes
@@ -70,7 +76,7 @@ class Peer:
 
 
 @dataclass(frozen=True, eq=False)
-class PeerFields:
+class PublicFields:
     """What a solver found, SI.
 
     Attributes
@@ -85,7 +91,7 @@ class PeerFields:
     contact_force: Array
 
 
-def solve_by_peer(problem: Problem, peer: Peer, tolerance: float) -> PeerFields:
+def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields:
     """Solve instant by instant, set-up included.
 
     Raises
@@ -103,7 +109,7 @@ def solve_by_peer(problem: Problem, peer: Peer, tolerance: float) -> PeerFields:
     stiffness, force = assembled_stiffness(problem), external_force(problem)
     unit = float(bound[free].max(initial=0.0)) or float(np.abs(force).max()) or 1.0
     reach = bound[free] / unit
-    solve = peer.prepare(sparse.csc_array(stiffness[free][:, free]), reach == 0.0, tolerance)
+    solve = public.prepare(sparse.csc_array(stiffness[free][:, free]), reach == 0.0, tolerance)
     displacement = space_time(problem.n_dofs, problem.n_instants)
     pull = space_time(problem.n_dofs, problem.n_instants)
     before = np.zeros(problem.n_dofs)
@@ -121,7 +127,7 @@ def solve_by_peer(problem: Problem, peer: Peer, tolerance: float) -> PeerFields:
             raise PeerError(f"stopped after {TIME_LIMIT:g} s, at instant {instant + 1}")
     dofs = np.zeros(len(law.positions), dtype=np.intp)
     dofs[law.points] = rubbing
-    return PeerFields(
+    return PublicFields(
         displacement * problem.scales.displacement, -pull[dofs] * problem.scales.force
     )
 
@@ -237,9 +243,42 @@ def _clarabel(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: 
     return solve
 
 
-PEERS = (
-    Peer("PIQP", "piqp", (1e-2, 1e-5, 1e-8, 1e-13), _piqp),
-    Peer("OSQP", "osqp", (1e-3, 1e-5, 1e-7, 1e-9), _osqp),
-    Peer("DAQP", "daqp", (1e-10,), _daqp),
-    Peer("Clarabel", "clarabel", (1e-2, 1e-5, 1e-8, 1e-12), _clarabel),
+PUBLIC = (
+    Public("PIQP", "piqp", (1e-2, 1e-5, 1e-8, 1e-13), _piqp),
+    Public("OSQP", "osqp", (1e-3, 1e-5, 1e-7, 1e-9), _osqp),
+    Public("DAQP", "daqp", (1e-10,), _daqp),
+    Public("Clarabel", "clarabel", (1e-2, 1e-5, 1e-8, 1e-12), _clarabel),
 )
+
+
+def peers() -> tuple[Peer, ...]:
+    """Give those that are installed."""
+    return tuple(
+        Peer(one.name, one.tolerances, partial(solve_by, one)) for one in PUBLIC if one.installed
+    )
+
+
+def main() -> int:
+    """Print a study with them."""
+    asked = argparse.ArgumentParser(description="A study with public QP solvers.")
+    asked.add_argument("scene", help="one of a known bound on a rigid support")
+    asked.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
+    asked.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
+    chosen = asked.parse_args()
+    settings = settings_from_command(chosen.scene, chosen.changes)
+    if not is_alone(discretise(settings)):
+        print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
+        return 2
+    found = error_against_time(settings, chosen.repeats, peers=peers())
+    absent = [one.name for one in PUBLIC if not one.installed]
+    print("\n".join(conditions(found)))
+    for one in peers():
+        print(f"{one.name} at tolerances {', '.join(f'{step:g}' for step in one.tolerances)}.")
+    print(f"Not installed: {', '.join(absent) or 'none'}.", end="\n\n")
+    print(aligned(table(found)), end="\n\n")
+    print(aligned(winners(found)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,62 @@
+"""Public QP solvers, where they are installed, agree with the incremental solver."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from benchmarks import peers
+from benchmarks.peers import PUBLIC, solve_by
+
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
+from solver.scenes import discretise
+from solver.scenes.bar import BarSettings
+from solver.study.error_against_time import Peer, PeerError, error_against_time
+
+WHAT_THEY_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
+
+
+@pytest.mark.parametrize("public", PUBLIC, ids=lambda public: public.name)
+@pytest.mark.parametrize(
+    "changes",
+    [{}, {"pressure_profile": "gap"}, {"support_displacement": 1e-4}, {"body_force": 500.0}],
+    ids=str,
+)
+def test_public_solvers_agree_with_the_incremental_solver(public, changes):
+    if not public.installed:
+        pytest.skip(f"{public.module} is not installed")
+    problem = discretise(
+        BarSettings.checked({"method": "paper", "elements": 20, "instants": 21, **changes})
+    )
+    distance = distance_to(incremental(problem), problem)
+    fields = solve_by(public, problem, public.tolerances[-1])
+    assert distance.of_friction_force(fields) < WHAT_THEY_REACH[public.name]
+    assert distance.of_displacement(fields) < WHAT_THEY_REACH[public.name]
+
+
+def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):
+    monkeypatch.setattr(peers, "TIME_LIMIT", -1.0)
+    idle = replace(PUBLIC[0], prepare=lambda *given: lambda lower, upper: 0.0 * lower)
+    with pytest.raises(PeerError, match="at instant 1"):
+        solve_by(
+            idle, discretise(BarSettings.checked({"method": "paper", "substructures": 2})), 1.0
+        )
+
+
+def test_other_solvers_stand_in_a_study_with_what_they_said_where_they_gave_up():
+    settings = BarSettings.checked(
+        {"elements": 6, "instants": 5, "substructures": 2, "max_iterations": 5}
+    )
+
+    def exact_or_nothing(problem, tolerance):
+        if tolerance < 0.1:
+            raise PeerError("gave up at instant 1: no more digits")
+        return incremental(problem)
+
+    study = error_against_time(settings, 1, peers=[Peer("other", (0.5, 1e-9), exact_or_nothing)])
+    *_, found = study.courses
+    assert (found.method, found.kind, list(found.steps)) == ("other", "peer", [0.5])
+    assert found.error_force[0] < 1e-9
+    assert found.seconds[0] > 0.0
+    assert study.troubles == ("other at tolerance 1e-09 gave up at instant 1: no more digits.",)
