@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Flags = NDArray[np.bool_]
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 """Share of the largest of some dozens of numbers that rounding leaves of their sum."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -21,9 +20,10 @@ from solver.study.audit.units import SCENE, invariance, is_same
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.error_against_time import error_against_time
+from solver.study.figure_page import write_figures
 from solver.study.growth import growth
 from solver.study.paper_figures import paper_figures
-from solver.study.study_files import NO_PAGE, write_study
+from solver.study.study_page import write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, winners
 
 REFUSED = 2
@@ -94,23 +94,14 @@ def _benchmark(chosen: argparse.Namespace) -> int:
 
 
 def _figures(chosen: argparse.Namespace) -> int:
-    try:
-        from solver.study.drawing import write_figures
-    except ModuleNotFoundError as missing:
-        if (missing.name or "").split(".")[0] != "matplotlib":
-            raise
-        print(
-            "slipfront: figures need matplotlib: pip install 'slipfront[figures]'", file=sys.stderr
-        )
-        return REFUSED
     with writing(chosen.out):
         figures = paper_figures()
-        files = write_figures(figures, chosen.out)
+        files, notes = write_figures(figures, chosen.out)
     for figure in figures:
         print(f"Fig. {figure.number}: {figure.title} ({figure.verdict})")
         for found in figure.findings:
             print(f"  {'+' if found.holds else '-'} {found.text}")
-    print(f"{len(files)} files in {chosen.out}")
+    print("\n".join([*notes, f"{len(files)} files in {chosen.out}"]))
     return 0
 
 
@@ -120,14 +111,14 @@ def _study(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         found = error_against_time(settings, chosen.repeats)
         sizes = growth(settings) if chosen.growth else []
-        files, drawn = write_study(found, sizes, chosen.out)
+        files, note = write_study(found, sizes, chosen.out)
     print("\n".join(conditions(found)), end="\n\n")
     print(aligned(table(found)), end="\n\n")
     print(aligned(winners(found)))
     if sizes:
         print(f"\n{aligned(growth_table(sizes))}")
-    if not drawn:
-        print(NO_PAGE)
+    if note:
+        print(note)
     print(f"{len(files)} files in {chosen.out}")
     return 0
 

@@ -15,13 +15,14 @@ from solver.files import settings_from_command
 from solver.report_commands import writing
 from solver.running.executors import FORMS, opened
 from solver.running.pool import GoneError
+from solver.study.page import write_page
 from solver.study.sweep import Plan, Row, VersionsDifferError, patience, plan_of, sweep
 from solver.study.sweep.adaptive import Chooser, sweep_adaptively
 from solver.study.sweep.growth import growth
 from solver.study.sweep.journal import Journal, journal_of
 from solver.study.sweep.plan import FORM
 from solver.study.sweep.point import field_file
-from solver.study.sweep.report import NO_CHARTS, counts, html, images
+from solver.study.sweep.report import counts, sections, title_of
 from solver.study.sweep.table import csv_of, write_parquet
 
 LIMIT = 600.0
@@ -133,9 +134,7 @@ def write_report(plan: Plan, rows: list[Row], folder: Path) -> list[Path]:
     """
     table, page_file = folder / "sweep.csv", folder / "sweep.html"
     write(table, csv_of(plan, rows))
-    drawn = images(plan, rows)
-    if drawn is None:
-        print(NO_CHARTS)
-    write(page_file, html(plan, rows, drawn))
+    if note := write_page(page_file, title_of(plan), sections(plan, rows)):
+        print(note)
     parquet = folder / "sweep.parquet"
     return [table, page_file, *([parquet] if write_parquet(plan, rows, parquet) else [])]

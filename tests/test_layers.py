@@ -83,6 +83,7 @@ FLOORS = [
     "worker",
     "lessons",
     "session",
+    "charts",
     "reports",
     "takeaway",
     "controls",

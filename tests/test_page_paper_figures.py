@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from typing import Any
 
-import holoviews as hv
 import numpy as np
 import panel as pn
 import pytest
@@ -19,15 +18,15 @@ from jobs import refuse, sleep
 from panel.io.state import set_curdoc
 from processes import PATIENCE, wait_for
 
+from app.charts.draw import draw
 from app.picture.glossary import explained
 from app.reports import reports
-from app.reports.report_plots import overlay, plot
 from app.reports.reports import PaperFigures
 from app.session.bench import Bench
 from app.session.desk import SECTIONS, Desk, said
 from app.session.errand import Errand, Found
 from app.session.studies import figures_of_the_paper
-from solver.study.figure_data import Panel
+from solver.study.chart import Panel
 from solver.study.page import PlotSection, Section
 
 
@@ -64,7 +63,7 @@ def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: lis
 @pytest.fixture(scope="module")
 def panels(found: Found) -> list[Panel]:
     return [
-        panel for plot in found.sections if isinstance(plot, PlotSection) for panel in plot.panels
+        panel for plot in found.sections if isinstance(plot, PlotSection) for panel in plot.charts
     ]
 
 
@@ -102,12 +101,11 @@ def test_they_come_one_by_one_and_say_how_far_they_are(
 
 def test_every_curve_is_drawn_with_its_values(panels: list[Panel]) -> None:
     for panel in panels:
-        drawn = {part.label: part for part in overlay(panel) if type(part).__name__ == "Curve"}
-        assert list(drawn) == [curve.label for curve in panel.curves]
-        for curve in panel.curves:
-            part = drawn[curve.label]
-            assert np.array_equal(part.dimension_values(0), curve.x)
-            values = part.dimension_values(1)
+        drawn = draw(panel)
+        for place, curve in enumerate(panel.curves):
+            part = drawn.select_one({"name": f"curve-{place}"}).data
+            assert np.array_equal(part["x"], curve.x)
+            values = part["y"]
             fits = (curve.y > 0.0) if panel.y.logarithmic else np.ones(len(curve.y), bool)
             assert np.array_equal(values[fits], curve.y[fits])
             assert np.isnan(values[~fits]).all()
@@ -116,7 +114,7 @@ def test_every_curve_is_drawn_with_its_values(panels: list[Panel]) -> None:
 def test_a_plot_can_be_read_and_enlarged_but_does_not_hold_a_page_that_is_scrolled(
     panels: list[Panel],
 ) -> None:
-    drawn = hv.renderer("bokeh").get_plot(overlay(panels[0])).state
+    drawn = draw(panels[0])
     kinds = {type(tool).__name__ for tool in drawn.tools}
     assert {"HoverTool", "BoxZoomTool", "PanTool", "WheelZoomTool", "ResetTool"} <= kinds
     assert drawn.toolbar.active_drag is None
@@ -137,10 +135,10 @@ def test_no_thread_touches_the_page_and_its_own_turns_put_each_plot_on_it_in_its
     def slowly(panel: Panel) -> Any:
         drawing.set()
         assert go.wait(PATIENCE)
-        return plot(panel)
+        return draw(panel)
 
     drawing, go = threading.Event(), threading.Event()
-    monkeypatch.setattr("app.reports.report._drawn", slowly)
+    monkeypatch.setattr("app.charts.filling._draw", slowly)
     page = Touched()
     # As the server has it for all threads while it is at work on a page.
     with patch_curdoc(page), set_curdoc(page):
@@ -177,7 +175,7 @@ def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
     for pane, section in zip(view._sheet, found.sections, strict=True):
         if isinstance(section, PlotSection):
             legend = re.sub("</?abbr[^>]*>", "", pane[0].object)
-            assert all(escape(c.label) in legend for p in section.panels for c in p.curves)
+            assert all(escape(c.label) in legend for p in section.charts for c in p.curves)
         else:
             assert pane.object == explained(section)
 

@@ -17,9 +17,10 @@ from solver.cli import main
 from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
+from solver.study.chart import HUES
 from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
-from solver.study.figure_data import HUES
 from solver.study.growth import Growth, Size, growth
+from solver.study.page import NO_CHARTS
 from solver.study.study_panels import error_panels
 from solver.study.study_report import growth_table, table, winners
 
@@ -65,8 +66,8 @@ def test_tables_and_a_page_that_stands_alone_are_written(measured):
     folder, study = measured
     assert {file.name for file in folder.iterdir()} == {"curves.csv", "levels.csv", "study.html"}
     page = (folder / "study.html").read_text(encoding="utf-8")
-    assert page.count('src="data:image/png;base64,') == 1
-    assert not re.search(r"https?:|href|@import|<script|url\(", page)
+    assert page.count("data-root-id") == 2
+    assert not re.search(r"<link|<script src|<img|@import", page)
     cells = {f"<td>{cell}</td>" for row in winners(study)[1:] for cell in row}
     for words in (*FORMS, INCREMENTAL, "BLAS threads: 1", *cells):
         assert words in page
@@ -172,16 +173,20 @@ def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_measured(
     assert "a folder that can be made and written to" in capsys.readouterr().err
 
 
-def test_without_matplotlib_the_tables_are_written_and_one_line_says_so(
+def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
     tmp_path, monkeypatch, capsys, measured
 ):
     monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
-    monkeypatch.setitem(report_commands.sys.modules, "matplotlib", None)
-    for module in ("solver.study.drawing", "solver.study.study_page", "matplotlib.axes"):
-        monkeypatch.delitem(report_commands.sys.modules, module, raising=False)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main([*TINY, "--out", str(tmp_path)]) == 0
-    assert {file.name for file in tmp_path.iterdir()} == {"curves.csv", "levels.csv"}
-    assert "The page needs matplotlib" in capsys.readouterr().out
+    page = (tmp_path / "study.html").read_text(encoding="utf-8")
+    assert page.count("data-root-id") == 2
+    assert NO_CHARTS not in capsys.readouterr().out
+    monkeypatch.setattr("solver.study.page.entry_points", lambda group: ())
+    assert main([*TINY, "--out", str(tmp_path)]) == 0
+    assert NO_CHARTS in capsys.readouterr().out.splitlines()
+    names = {file.name for file in tmp_path.iterdir()}
+    assert names == {"curves.csv", "levels.csv", "study.html"}
 
 
 def test_the_exponent_is_the_slope_and_needs_two_sizes():

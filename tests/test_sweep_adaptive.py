@@ -11,10 +11,10 @@ from sweeps import Here, tiny
 
 from solver.arrays import Array
 from solver.definitions import SettingError
-from solver.study.drawing import chart_png
+from solver.study.chart import Map
 from solver.study.sweep import Plan, Row
 from solver.study.sweep.adaptive import Chooser, sweep_adaptively
-from solver.study.sweep.chart import Map, charts
+from solver.study.sweep.chart import charts
 
 ES, LENGTH = 210e9 * 3.14e-6, 1.0
 
@@ -135,4 +135,4 @@ def test_a_curve_joins_what_was_sampled_and_a_map_lays_facets_through_it() -> No
         (area,) = charts(plan, given)
         assert isinstance(area, Map)
         assert area.is_sampled == (given is rows)
-        assert chart_png(area).startswith(b"\x89PNG")
+        assert not area.is_sampled or np.isfinite(area.z).all()

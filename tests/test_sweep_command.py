@@ -8,7 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +16,9 @@ from sweeps import TINY, Here, rows_of, tiny
 
 from solver import sweep_command
 from solver.cli import main
-from solver.study.sweep.chart import Map, charts
+from solver.study.chart import Chart, Map, Panel, PanelCurve
+from solver.study.sweep import Plan
+from solver.study.sweep.chart import chart_of, charts, ordered
 from solver.study.sweep.point import Row
 
 SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={value}")]
@@ -69,8 +70,9 @@ def test_the_table_holds_what_varies_what_is_asked_and_what_is_fixed(
 def test_the_page_needs_nothing_beside_it(tmp_path: Path) -> None:
     assert command(tmp_path, "--vary", "friction=0.2,0.3,0.4") == 0
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
-    assert page.count('src="data:image/png') == page.count("src=") == 2
-    assert "http" not in page
+    assert page.count("data-root-id") == 2
+    assert "<link" not in page
+    assert "<script src" not in page
     assert page.count("<tr>") == 1 + 12
 
 
@@ -194,6 +196,8 @@ def test_parquet_is_written_where_it_can_be(
     arrow, parquet = ModuleType("pyarrow"), ModuleType("pyarrow.parquet")
     arrow.__dict__.update(table=Table, parquet=parquet)
     parquet.__dict__.update(write_table=lambda table, file: written.update({file: table}))
+    # What draws charts would take it for the real one.
+    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
     monkeypatch.setitem(sys.modules, "pyarrow", arrow)
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", parquet)
     assert command(tmp_path) == 0
@@ -219,16 +223,47 @@ def test_progress_says_what_is_left(
     assert lines == ["2 of 5 runs, 6 s left", "3 of 5 runs, 4 s left"]
 
 
-def test_one_number_makes_a_curve_and_two_make_a_map() -> None:
-    (curve,) = charts(tiny(["peak=1:3:3"], ["iterations"]), [holding(4.0), holding(5.0, 2)])
-    assert not isinstance(curve, Map)
-    assert curve.curves[0].x.tolist() == [1.0, 3.0]
-    assert curve.curves[0].y.tolist() == [4.0, 5.0]
-    (area,) = charts(tiny(["peak=1:3:3", "friction=0.1,0.2"], ["iterations"]), [holding(7.0, 3)])
-    assert isinstance(area, Map)
-    assert area.z.shape == (2, 3)
-    assert area.z[1, 1] == 7.0
-    assert np.isnan(area.z).sum() == 5
+def curves_of(chart: Chart) -> tuple[PanelCurve, ...]:
+    """Give the curves through answers."""
+    assert isinstance(chart, Panel)
+    return tuple(curve for curve in chart.curves if curve.line == "solid")
+
+
+@pytest.mark.parametrize(
+    ("vary", "across", "size"),
+    [
+        (["friction=0.1:0.5:5"], "Friction coefficient μ", None),
+        (["friction=0.1:0.5:5", "peak=100:900:9"], "Friction coefficient μ", (9, 5)),
+        (["friction=0.1:0.5:5", "peak=100,900"], "Friction coefficient μ", None),
+        (["acceleration=none,anderson", "peak=100:900:9"], "Peak load", None),
+        (["multiscale=true,false"], "Multiscale (coarse problem)", None),
+    ],
+)
+def test_two_numbers_make_a_map_and_names_or_few_values_make_curves(
+    vary: list[str], across: str, size: tuple[int, int] | None
+) -> None:
+    plan = tiny(vary, ["seconds"])
+    chart = chart_of(plan, [holding(float(n), n) for n in range(plan.size)])
+    assert chart.x.quantity == across
+    assert (chart.z.shape if isinstance(chart, Map) else None) == size
+    assert chart.runs is not None
+    for number, x in zip(chart.runs.numbers, chart.runs.x, strict=True):
+        value = next(iter(v for k, v in plan.point(int(number)).items() if k == axis_name(plan)))
+        assert x == (list(plan.axes[0].values).index(value) if chart.x.names else value)
+
+
+def axis_name(plan: Plan) -> str:
+    return ordered(plan)[0].name
+
+
+def test_a_map_has_its_values_where_they_belong_whatever_their_order() -> None:
+    plan = tiny(["peak=900,300,500", "friction=0.7:0.1:7"], ["iterations"])
+    chart = chart_of(plan, [holding(7.0, 8)])
+    assert isinstance(chart, Map)
+    assert chart.x_values.tolist() == [300.0, 500.0, 900.0]
+    assert chart.y_values[-1] == 0.7
+    assert np.argwhere(np.isfinite(chart.z)).tolist() == [[5, 0]]
+    assert plan.point(8) == {"peak": 300.0, "friction": 0.6}
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -237,23 +272,48 @@ def test_names_make_a_curve_each(turned: bool) -> None:
     plan = tiny(vary[::-1] if turned else vary, ["iterations"])
     rows = [holding(float(plan.point(n)["k_scale"]), n) for n in range(6)]
     (panel,) = charts(plan, rows)
-    assert not isinstance(panel, Map)
-    assert [curve.label for curve in panel.curves] == ["none", "anderson"]
-    assert all(curve.y.tolist() == [0.1, 1.0, 10.0] for curve in panel.curves)
+    curves = curves_of(panel)
+    assert [curve.label for curve in curves] == ["Acceleration none", "Acceleration anderson"]
+    assert all(curve.y.tolist() == [0.1, 1.0, 10.0] for curve in curves)
     assert panel.x.logarithmic
     assert panel.y.logarithmic
 
 
-def test_what_has_not_converged_stands_apart_and_never_is_not_drawn() -> None:
-    plan = tiny(["peak=1:3:3"], ["iterations"])
-    rows: list[Any] = [holding(4.0), holding(9.0, 1, "exhausted"), holding(np.inf, 2)]
-    (panel,) = charts(plan, rows)
-    assert not isinstance(panel, Map)
-    good, other = panel.curves
-    assert other.label == "not converged"
-    assert [float(np.nan_to_num(y)) for y in good.y] == [4.0, 0.0, 0.0]
-    assert [float(np.nan_to_num(y)) for y in other.y] == [0.0, 9.0, 0.0]
+def test_rows_become_points_whatever_came_of_them_and_say_it() -> None:
+    plan = tiny(["friction=0.1:0.5:5"], ["iterations_to_force@0.1"])
+    rows = [
+        Row(4, "converged", "", (3.0,)),
+        Row(0, "exhausted", "Raise max_iterations.", (12.0,)),
+        Row(1, "converged", "", (np.inf,)),
+        Row(2, "refused", "no", (np.nan,)),
+    ]
+    chart = chart_of(plan, rows)
+    runs = chart.runs
+    assert runs is not None
+    assert runs.numbers.tolist() == [4, 0, 1, 2]
+    assert runs.holds.tolist() == [True, False, False, False]
+    assert [said.partition(": ")[2] for said in runs.said] == [
+        "3",
+        "12; exhausted: Raise max_iterations.",
+        "never",
+        "refused: no",
+    ]
+    (curve,) = curves_of(chart)
+    assert curve.x.tolist() == [0.1, 0.2, 0.3, 0.5]
+    assert np.isfinite(curve.y).tolist() == [False, False, False, True]
 
 
-def test_settings_without_a_scale_make_no_chart() -> None:
-    assert charts(tiny(["load=sine,ramp"], ["iterations"]), [holding(1.0)]) == []
+def test_shares_are_drawn_in_per_cent() -> None:
+    chart = chart_of(tiny(["friction=0.1,0.2"], ["slipped_share"]), [holding(0.25)])
+    assert chart.runs is not None
+    assert chart.runs.values.tolist() == [25.0]
+    assert chart.y.unit == "%"
+    assert chart.runs.said[0].endswith(": 25 %")
+
+
+def test_names_alone_make_points_without_lines() -> None:
+    chart = chart_of(tiny(["load=sine,ramp"], ["iterations"]), [holding(1.0)])
+    assert chart.x.names == ("sine", "ramp")
+    assert all(len(curve.x) == 0 for curve in curves_of(chart))
+    assert chart.runs is not None
+    assert chart.runs.x.tolist() == [0.0]

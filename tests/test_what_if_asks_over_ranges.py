@@ -1,4 +1,4 @@
-"""What the tab *What if* asks can be run, or is refused beside its field; rows become a chart."""
+"""What the tab *What if* asks can be run, or is refused beside its field."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from sweeps import tiny
 
 from app.shell.address import query_of, settings_from_query, sight_from_query
-from app.whatif.charted import described, drawn, is_of, stands
+from app.whatif.charted import is_of, stands
 from app.whatif.question import (
     READY,
     Question,
@@ -25,6 +25,7 @@ from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
 from solver.study.sweep import Row
+from solver.study.sweep.chart import chart_of
 
 DEFAULTS = BarSettings.checked({})
 
@@ -126,57 +127,20 @@ def test_another_setting_brings_its_own_values_and_a_list_begins_with_the_range(
     assert changed_span(DEFAULTS, typed, {"spacing": "even"}).text == "friction=0.1:0.3:3"
 
 
-def test_rows_become_values_and_states_whatever_came_of_them() -> None:
-    plan = tiny(["friction=0.1:0.5:5"], ["iterations_to_force@0.1"])
-    rows = [
-        Row(4, "converged", "", (3.0,)),
-        Row(0, "exhausted", "Raise max_iterations.", (12.0,)),
-        Row(1, "converged", "", (math.inf,)),
-        Row(2, "refused", "no", (math.nan,)),
-    ]
-    found = drawn(plan, rows)
-    assert found["values"] == [12.0, None, None, None, 3.0]
-    said = [found["words"][state] for state in found["states"]]
-    assert said == ["exhausted: Raise max_iterations.", "never", "refused: no", "waiting", ""]
-
-
-def test_shares_are_drawn_in_per_cent() -> None:
-    plan = tiny(["friction=0.1,0.2"], ["slipped_share"])
-    assert drawn(plan, [Row(0, "converged", "", (0.25,))])["values"] == [25.0, None]
-    assert described(plan)["quantity"]["unit"] == "%"
-
-
-@pytest.mark.parametrize(
-    ("vary", "across", "is_map", "steps"),
-    [
-        (["friction=0.1:0.5:5"], "friction", False, [1]),
-        (["friction=0.1:0.5:5", "peak=100:900:9"], "friction", True, [9, 1]),
-        (["friction=0.1:0.5:5", "peak=100,900"], "friction", False, [2, 1]),
-        (["acceleration=none,anderson", "peak=100:900:9"], "peak", False, [1, 9]),
-        (["multiscale=true,false"], "multiscale", False, [1]),
-    ],
-)
-def test_two_numbers_make_a_map_and_names_or_few_values_make_curves(
-    vary: list[str], across: str, is_map: bool, steps: list[int]
-) -> None:
-    plan = tiny(vary, ["seconds"])
-    chart = described(plan)
-    assert (chart["axes"][0]["name"], chart["map"]) == (across, is_map)
-    assert [axis["step"] for axis in chart["axes"]] == steps
-    for number in range(plan.size):
-        point = plan.point(number)
-        for axis in chart["axes"]:
-            value = point[axis["name"]]
-            value = ("off", "on")[value] if isinstance(value, bool) else value
-            assert axis["values"][number // axis["step"] % len(axis["values"])] == value
-
-
 def test_present_settings_stand_on_the_axes_and_others_are_told_from_them() -> None:
     plan = tiny(["acceleration=none,anderson", "peak=100:900:9"], ["seconds"])
     settings = plan.settings
-    assert stands(plan, settings.replace(peak=450.0)) == [450.0, "anderson"]
+    assert settings.acceleration == "anderson"
+    chart = chart_of(plan, [Row(14, "converged", "", (3.0,))])
+    assert plan.point(14) == {"acceleration": "anderson", "peak": 600.0}
+    assert stands(plan, chart, settings.replace(peak=600.0)) == (600.0, 3.0)
+    between = stands(plan, chart, settings.replace(peak=450.0))
+    assert between is not None
+    assert between[0] == 450.0
+    assert math.isnan(between[1])
+    assert stands(plan, chart, settings.replace(peak=50.0)) is None
     assert is_of(plan, settings.replace(peak=450.0))
     assert not is_of(plan, settings.replace(friction=0.1))
     other = CATALOGUE["strand"].settings.checked({})
-    assert stands(plan, other) == []
+    assert stands(plan, chart, other) is None
     assert not is_of(plan, other)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from functools import partial
 from html import escape
 from io import BytesIO
@@ -18,17 +18,12 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.charts.filling import drawn
+from app.charts.keys import legend
 from app.components.panes import button, column, select, text
 from app.picture.glossary import explained
-from app.reports.colors import COLORS
 from app.session.errand import Errand, Found
-from app.views.legend import Key, card_title
-from solver.study.figure_data import Panel
-from solver.study.page import PlotSection, Section
-
-MARKS = {"solid": "line", "points": "dot"}
-HAND = ThreadPoolExecutor(1, "drawing")
-"""Draws, and first imports what draws: at half a second each, all pages would stand still."""
+from solver.study.page import Section
 
 
 class Report:
@@ -176,8 +171,8 @@ class Report:
         if isinstance(section, str):
             return _words(explained(section), self._role)
         # A `FlexBox` would not do: what is put into it later misses the theme.
-        box = column(_words(legend(section), role="legend"), role="panels")
-        self._drawings.extend((box, HAND.submit(_drawn, panel)) for panel in section.panels)
+        box = column(_words(legend(section.charts), role="legend"), role="panels")
+        self._drawings.extend((box, drawn(chart)) for chart in section.charts)
         return box
 
 
@@ -190,19 +185,6 @@ def _row(*parts: Any, margin: Any = (0, 6), **options: Any) -> pn.FlexBox:
     return pn.FlexBox(
         *parts, flex_wrap="wrap", sizing_mode="stretch_width", margin=margin, **options
     )
-
-
-def _drawn(panel: Panel) -> Any:
-    from app.reports.report_plots import plot
-
-    return plot(panel)
-
-
-def legend(plot: PlotSection) -> str:
-    """Write one legend for panels side by side (HTML)."""
-    curves = {curve.label: curve for panel in plot.panels for curve in panel.curves}.values()
-    keys = [Key(COLORS[one.hue], MARKS.get(one.line, one.line), one.label) for one in curves]
-    return f'<div class="title">{card_title("", keys)}</div>'
 
 
 def downloads(files: Mapping[str, bytes]) -> list[Any]:

@@ -18,8 +18,7 @@ from solver.study.growth import growth
 from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
-from solver.study.study_files import write_study
-from solver.study.study_page import study_sections
+from solver.study.study_page import study_sections, write_study
 
 SHARE_OF_GROWTH = 0.8
 """Of the whole time, roughly, where growth is measured too."""

@@ -93,8 +93,8 @@ class Tabs:
         """Follow the sweep and the reports, and what is drawn of the one that is looked at."""
         if is_news:
             self.refresh()
-        if self.report is not None:
-            self.report.put_drawn()
+        if seen := self._beside.get(self.bar.value):
+            seen.put_drawn()
 
     def leave_the_header(self) -> None:
         """Stand above what is chosen: a phone's header has no room."""

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import param
 
+from app.charts.filling import Filling
+from app.charts.keys import legend
 from app.components.innards import Plain
 from app.components.panes import STATIC, column, script
 from app.picture.labels import label_of
 from app.session.session import Session
-from app.whatif.charted import described, drawn, is_comparable, is_of, stands
+from app.whatif.charted import is_comparable, is_of, stands
 from app.whatif.question import (
     READY,
     Question,
@@ -26,8 +27,10 @@ from app.whatif.question import (
 )
 from solver.definitions import SettingError, about
 from solver.settings import Settings
+from solver.study.chart import Chart, Map
 from solver.study.quantities import QUANTITIES
-from solver.study.sweep import Plan, Row
+from solver.study.sweep import Plan
+from solver.study.sweep.chart import chart_of
 from solver.study.sweep.report import counts
 from solver.study.sweep.table import csv_of
 
@@ -44,22 +47,18 @@ class Asker(Plain):
         What can be chosen, what is, and what of it is refused.
     progress
         How far the runs are.
-    picture
-        As JSON, which is written sooner, the `chart` and its `points` as `app.whatif.charted` says
-        them, and where the present settings are on its axes (`here`).
-    ghost
-        The same of the question before, and the key of the chart that it stands in (`of`).
+    chart
+        The `id` of its figure, its `legend`, and a `label` for those who do not see it.
     file
         A text that the browser is to save, its name, and a number that tells it from others.
     """
 
     form = param.Dict(default={})
     progress = param.Dict(default={})
-    picture = param.String(default="{}")
-    ghost = param.String(default="{}")
+    chart = param.Dict(default={})
     file = param.List(default=[])
 
-    _esm = script("whatif/chart.js", "whatif/whatif.js")
+    _esm = script("components/exports.js", "whatif/chart.js", "whatif/whatif.js")
     _stylesheets: ClassVar[list[str]] = [(STATIC / "whatif.css").read_text(encoding="utf-8")]
 
 
@@ -91,8 +90,9 @@ class WhatIf:
         self._asked, self._question = question, question
         self._asker: Asker | None = None
         self._drawn: Plan | None = None
+        self._filling = Filling()
         self._scene = session.wanted.scene
-        self.view = column(role="paper", margin=(4, 10), visible=False)
+        self.view = column(role="paper what-if", margin=(4, 10), visible=False)
 
     @property
     def question(self) -> Question | None:
@@ -112,12 +112,17 @@ class WhatIf:
         self._refresh()
         if is_first:
             # Not before it has its fields: the browser builds it with what it comes with.
-            self.view[:] = [self._asker]
+            self.view[:] = [self._asker, self._filling.view]
 
     def refresh(self) -> None:
         """Follow the sweep and the sidebar, as soon as somebody looks."""
         if self.view.visible:
             self._refresh()
+
+    def put_drawn(self) -> None:
+        """Put the chart in its place, if it is drawn."""
+        if self._asker is not None and self._filling.catch_up():
+            self._label()
 
     def hear(self, kind: str, value: Any) -> None:
         """Follow what the user does."""
@@ -127,6 +132,7 @@ class WhatIf:
             "ready": lambda: self._on_ready(value),
             "start": self.start,
             "cancel": self._session.inquiry.cancel,
+            "there": lambda: self._filling.go_on(value),
             "run": lambda: self._on_run(value),
             "table": self._on_table,
         }[kind]()
@@ -178,12 +184,13 @@ class WhatIf:
         inquiry, settings = self._session.inquiry, self._session.wanted
         plan = inquiry.plan
         self._keep_to(settings)
-        if plan is not None and plan is not self._drawn:
-            self._drawn = plan
-            self._asker.ghost = json.dumps(self._ghost(plan))
         if plan is not None:
-            here = stands(plan, settings)
-            self._asker.picture = json.dumps({**pictured(plan, inquiry.rows), "here": here})
+            if plan is not self._drawn:
+                self._drawn = plan
+                self._filling.clear()
+                self._label()
+            chart = chart_of(plan, inquiry.rows)
+            self._filling.show(chart, self._ghost(plan), stands(plan, chart, settings))
         form, progress = form_of(self._question, settings), self._progress()
         self._asker.param.update(form=form, progress=progress)
 
@@ -195,11 +202,22 @@ class WhatIf:
             if not all(span.name in settings.definitions() for span in self._question.spans):
                 self._question = bathtub(settings)
 
-    def _ghost(self, plan: Plan) -> dict[str, Any]:
+    def _ghost(self, plan: Plan) -> Chart | None:
         before = self._session.inquiry.before
-        if before is None or not is_comparable(plan, before[0]):
-            return {}
-        return {**pictured(*before), "of": plan.digest}
+        return chart_of(*before) if before and is_comparable(plan, before[0]) else None
+
+    def _label(self) -> None:
+        """Say beside the chart what it shows; nothing where there is none."""
+        shown, found = self._filling.shown, {}
+        if shown is not None:
+            chart, before, _ = shown
+            axes = [chart.x, chart.y, chart.scale] if isinstance(chart, Map) else [chart.x, chart.y]
+            *over, asked = axes
+            words = f"{asked.label} over {' and '.join(axis.quantity for axis in over)}."
+            keys = legend([chart], asked.label, has_ghost=before is not None)
+            found = {"id": self._filling.figure.id, "legend": keys, "label": words}
+        assert self._asker is not None
+        self._asker.chart = found
 
     def _progress(self) -> dict[str, Any]:
         inquiry = self._session.inquiry
@@ -216,11 +234,6 @@ class WhatIf:
             "words": " ".join(filter(None, (inquiry.notice, words))),
             "moved": not is_of(plan, self._session.wanted),
         }
-
-
-def pictured(plan: Plan, rows: Sequence[Row]) -> dict[str, Any]:
-    """Give the chart of a plan and its points."""
-    return {"chart": described(plan), "points": drawn(plan, rows)}
 
 
 def form_of(question: Question, settings: Settings) -> dict[str, Any]:

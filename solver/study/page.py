@@ -1,27 +1,37 @@
-"""A report: sections of words, tables and plots, and the one HTML page that a command makes of it.
+"""A report: sections of words, tables and charts, and the one HTML page that a command makes of it.
 
-Whoever shows a report takes its words and tables as they are, and draws its plots in its own way.
+Whoever shows a report takes its words and tables as they are, and draws its charts in its own way.
+For pages they are drawn by an entry point of the group `slipfront.renderers`: the engine has none.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from html import escape
+from importlib.metadata import entry_points
+from pathlib import Path
 
-from solver.study.figure_data import Panel
+from solver.disk import write
+from solver.study.chart import Chart
+
+GROUP = "slipfront.renderers"
+NO_CHARTS = "The page has no charts, as nothing that draws them is installed: pip install slipfront"
 
 
 @dataclass(frozen=True, eq=False)
 class PlotSection:
-    """Panels side by side, and words for those who cannot see them."""
+    """Charts side by side, and words for those who cannot see them."""
 
     heading: str
-    panels: Sequence[Panel]
+    charts: Sequence[Chart]
 
 
 Section = str | PlotSection
 """Words and tables are HTML."""
+Renderer = Callable[[Sequence[PlotSection]], tuple[str, Sequence[str]]]
+"""Gives what all charts of a page need, once, and each section (HTML that loads nothing)."""
 PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
@@ -32,7 +42,6 @@ body {{ font: 16px/1.5 system-ui, sans-serif; max-width: 90rem; margin: 2rem aut
   color: #222; background: #fff; }}
 p, ul {{ max-width: 62rem; }}
 h2 {{ margin-top: 3rem; }}
-img {{ max-width: 100%; height: auto; }}
 .caption {{ opacity: 0.75; font-size: 0.9rem; }}
 table {{ display: block; overflow-x: auto; border-collapse: collapse; font-size: 0.85rem; }}
 th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: left;
@@ -41,15 +50,43 @@ td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
 td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
 td.settings {{ overflow-wrap: anywhere; min-width: 24rem; }}
 </style>
+{head}
 <h1>{title}</h1>
 {body}
 </html>
 """
 
 
-def page(title: str, sections: Sequence[str]) -> str:
-    """Write a page that needs nothing beside it."""
-    return PAGE.format(title=escape(title), body="\n".join(sections))
+def write_page(file: Path, title: str, report: Sequence[Section]) -> str:
+    """Write a report as a page that needs nothing beside it.
+
+    Returns
+    -------
+    What whoever asked for it is to be told; nothing where it has all of its charts.
+
+    Raises
+    ------
+    OSError
+        When the file cannot be written.
+    """
+    plots = [one for one in report if isinstance(one, PlotSection)]
+    render = renderer() if plots else None
+    head, drawn = render(plots) if render else ("", [""] * len(plots))
+    note = NO_CHARTS if plots and render is None else ""
+    places = iter(drawn)
+    parts = [one if isinstance(one, str) else next(places) for one in report]
+    body = "\n".join([f"<p>{escape(note)}</p>" * bool(note), *parts])
+    write(file, PAGE.format(title=escape(title), head=head, body=body))
+    return note
+
+
+def renderer() -> Renderer | None:
+    """Find who draws charts, if anybody is installed."""
+    for found in entry_points(group=GROUP):
+        with contextlib.suppress(ImportError):  # the engine may be there alone
+            render: Renderer = found.load()
+            return render
+    return None
 
 
 def bullets(lines: Sequence[str]) -> str:

@@ -13,7 +13,8 @@ from solver.latin import Iterate
 from solver.reduction.svd import Decomposition, front_decay
 from solver.reference.distance import Fields
 from solver.study import paper_findings as findings
-from solver.study.figure_data import Line, Panel, PanelAxis, PanelCurve, PaperFigure
+from solver.study.chart import Line, Panel, PanelAxis, PanelCurve
+from solver.study.figure_data import PaperFigure
 from solver.study.paper_runs import EARLY, LONG, PaperRuns
 
 LOAD = (

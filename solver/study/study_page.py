@@ -1,12 +1,13 @@
-"""A study as a report: curves of error over time, of growth, and the tables."""
+"""A study as a report: curves of error over time, of growth, and the tables; and its files."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from solver.study.error_against_time import Study
 from solver.study.growth import Growth
-from solver.study.page import PlotSection, Section, bullets, plain_table
+from solver.study.page import PlotSection, Section, bullets, plain_table, write_page
 from solver.study.study_panels import CAPTION, CURVES, GROWTH, error_panels, growth_panels
 from solver.study.study_report import (
     GROWTH_NOTE,
@@ -18,6 +19,7 @@ from solver.study.study_report import (
     growth_table,
     table,
     winners,
+    write_tables,
 )
 
 TITLE = "Error against run time"
@@ -32,8 +34,33 @@ def study_sections(study: Study, found: Sequence[Growth]) -> list[Section]:
     ]
     return [
         f"<h2>{WINNERS}</h2>\n{plain_table(winners(study))}\n<p>{WINNERS_NOTE}</p>",
+        f"<h2>{CURVES}</h2>",
         PlotSection(CURVES, error_panels(study)),
         f"<p>{CAPTION}</p>\n<h2>{TIMES}</h2>\n<p>{TIMES_NOTE}</p>\n{plain_table(table(study))}",
         *(growth if found else []),
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
     ]
+
+
+def write_study(study: Study, found: Sequence[Growth], folder: Path) -> tuple[list[Path], str]:
+    """Write the tables and `study.html`.
+
+    Parameters
+    ----------
+    study, found
+        Errors against run time; growth with the size, or nothing.
+    folder
+        An existing folder; files of these names are replaced.
+
+    Returns
+    -------
+    The files, and what whoever asked for them is to be told, if anything.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be written.
+    """
+    file = folder / "study.html"
+    note = write_page(file, TITLE, study_sections(study, found))
+    return [*write_tables(study, found, folder), file], note

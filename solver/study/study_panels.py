@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array
+from solver.study.chart import Line, Panel, PanelAxis, PanelCurve
 from solver.study.error_against_time import FORMS, INCREMENTAL, ErrorCurve, Study
-from solver.study.figure_data import Line, Panel, PanelAxis, PanelCurve
 from solver.study.growth import MEASURED, Growth
 
 SPAN = (1e-9, 2.0)

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 
-from solver.disk import check_place, whole_file, write
+from solver.disk import check_place, whole_file
 from solver.study.audit.audit import MEANING, Audited, Verdict
-from solver.study.page import bullets, page, plain_table, table
+from solver.study.page import bullets, plain_table, table, write_page
 from solver.study.study_report import aligned
 
 COLOURS: dict[str, str] = {
@@ -174,7 +174,7 @@ class AuditReport:
             writer = csv.DictWriter(out, self.columns)
             writer.writeheader()
             writer.writerows(self._entries())
-        write(page_file, page(self.title, self.sections()))
+        write_page(page_file, self.title, self.sections())
         return [table_file, page_file]
 
 

@@ -24,7 +24,7 @@ def _lines(plan: Plan, rows: Sequence[Row]) -> Iterator[str]:
     (along,) = (axis for axis in plan.axes if axis.is_numeric)
     names = next((axis for axis in plan.axes if axis is not along), None)
     for place, reading in enumerate(plan.readings):
-        good, _ = grid(plan, rows, place)
+        good = grid(plan, rows, place)
         if plan.axes[0] is along and names is not None:
             good = good.T
         for number, curve in enumerate(np.atleast_2d(good)):

@@ -1,4 +1,4 @@
-"""A sweep as one HTML page that needs nothing beside it: charts, and a line for every run."""
+"""A sweep as a report: charts, and a line for every run."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ from collections import Counter
 from collections.abc import Sequence
 from html import escape
 
-from solver.study.page import bullets, page, plain_table
+from solver.study.page import PlotSection, Section, bullets, plain_table
 from solver.study.sweep.chart import charts
 from solver.study.sweep.growth import growth
 from solver.study.sweep.plan import Plan
 from solver.study.sweep.point import Row
 from solver.study.sweep.table import cells, head, heads
 
-NO_CHARTS = "Charts need matplotlib: pip install 'slipfront[figures]'"
-
+CAPTION = (
+    "Hollow points and hatched cells are of runs that have not converged, crosses of runs without "
+    "a value."
+)
 GROWTH = (
     "Powers by least squares of the logarithms, with their margins at 95 % where there are more "
     "than two runs; small sizes, at which other things cost, make them lower."
@@ -29,33 +31,26 @@ def counts(plan: Plan, rows: Sequence[Row]) -> str:
     return f"{len(rows)} of {plan.size} runs: {told or 'none yet'}."
 
 
-def images(plan: Plan, rows: Sequence[Row]) -> list[str] | None:
-    """Draw the charts for a page; None without matplotlib."""
-    try:
-        from solver.study.drawing import chart_png, inline
-    except ModuleNotFoundError as missing:
-        if (missing.name or "").split(".")[0] not in ("matplotlib", "PIL"):
-            raise
-        return None
-    return [inline(chart_png(chart), chart.title) for chart in charts(plan, rows)]
-
-
-def html(plan: Plan, rows: Sequence[Row], drawn: Sequence[str] | None) -> str:
-    """Write the page of rows, in the order of their points."""
+def title_of(plan: Plan) -> str:
+    """Say what is asked."""
     asked = ", ".join(one.title[0].lower() + one.title[1:] for one in plan.readings)
     over = " and ".join(plan.title(axis)[0].lower() + plan.title(axis)[1:] for axis in plan.axes)
+    return f"{plan.settings.scene.capitalize()}: {asked} over {over}"
+
+
+def sections(plan: Plan, rows: Sequence[Row]) -> list[Section]:
+    """Write rows, in the order of their points."""
+    drawn = charts(plan, rows)
     laws = growth(plan, rows)
     table = [heads(plan), *([_text(cell) for cell in cells(plan, row)] for row in rows)]
-    return page(
-        f"{plan.settings.scene.capitalize()}: {asked} over {over}",
-        [
-            f"<p><b>{escape(counts(plan, rows))}</b></p>",
-            *([f"<p>{escape(NO_CHARTS)}</p>"] if drawn is None else drawn),
-            *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
-            f"<h2>Every run</h2>\n{plain_table(table)}",
-            f"<h2>Settings</h2>\n{bullets(head(plan))}",
-        ],
-    )
+    return [
+        f"<p><b>{escape(counts(plan, rows))}</b></p>",
+        PlotSection(f"Charts of {len(rows)} runs", drawn),
+        *([] if all(row.holds for row in rows) else [f'<p class="caption">{CAPTION}</p>']),
+        *([f"<h2>Growth</h2>\n<p>{GROWTH}</p>\n{bullets(laws)}"] if laws else []),
+        f"<h2>Every run</h2>\n{plain_table(table)}",
+        f"<h2>Settings</h2>\n{bullets(head(plan))}",
+    ]
 
 
 def _text(cell: object) -> str:
