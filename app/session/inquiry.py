@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 
 from solver.definitions import SettingError
-from solver.running.executors import executor_of_the_server, opened, processors
+from solver.running.executors import executor_of_the_server, opened
+from solver.running.machine import processors
 from solver.running.pool import Pool
 from solver.study.sweep import Plan, Row, VersionsDifferError, patience, sweep
 

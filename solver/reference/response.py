@@ -154,6 +154,8 @@ class Response:
         if self._is_plain:
             return np.asarray(own)
         moved = -self._stiffness[np.ix_(place, self._kept)] @ gauge[self._kept]
+        if not len(self._others):
+            return np.hstack([own, moved])
         found = np.hstack([own, -self._ties.T[place], moved])
         follows = place < 0
         found[follows] = 0.0

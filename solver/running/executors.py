@@ -16,6 +16,7 @@ from typing import Any
 
 from solver.definitions import SettingError
 from solver.running.calls import Call, ProcessSlot
+from solver.running.machine import processors
 from solver.running.pool import Pool
 
 __all__ = ["FORMS", "VARIABLE", "Pool", "Processes", "executor_of_the_server", "opened"]
@@ -110,11 +111,6 @@ class Processes(Pool):
                 if not self._lasting:
                     slot.clear()
         slot.clear()
-
-
-def processors() -> int:
-    """Count the processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextlib.contextmanager

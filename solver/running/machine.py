@@ -12,13 +12,15 @@ LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 """What `python -m solver` sets to 1 before it imports NumPy, unless its user said otherwise."""
 
 
+def processors() -> int:
+    """Count the processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def machine() -> str:
     """Describe processors, BLAS threads and versions in a line."""
-    processors = (
-        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    )
     limits = {os.environ[name] for name in LIMITS if name in os.environ}
     return (
-        f"{processors} processors; BLAS threads: {', '.join(sorted(limits)) or 'not limited'}; "
+        f"{processors()} processors; BLAS threads: {', '.join(sorted(limits)) or 'not limited'}; "
         f"Python {sys.version.split()[0]}, NumPy {np.__version__}, SciPy {scipy.__version__}"
     )

@@ -124,7 +124,7 @@ def _often(name: str, group: str, mixed: bool) -> float:
         return CHANGED
     if name.startswith("k_") and name.endswith("_scale"):
         return 2.0 * CHANGED if name == "k_scale" else 0.5 * CHANGED
-    if name.startswith(("pgd_", "local_")) or name == "seed":
+    if name.startswith("pgd_") or name == "seed":
         return 0.5  # taken back without separated bases, or a random path
     if group == "Method":
         return 2.0 * CHANGED if mixed else 0.0
