@@ -239,6 +239,17 @@ def test_a_shifted_local_stage_balances_the_load_at_every_instant():
     assert np.abs(own).max() > 1e-3 * values.weight  # it had to be shifted for that
 
 
+@pytest.mark.parametrize("method", ["fast", "paper"])
+def test_a_body_that_slides_goes_on_from_a_checkpoint_to_the_bit(method):
+    values = InclineSettings.checked({**SMALL, "method": method, "finish": "none"})
+    problem, latin = discretise(values), method_of(values)
+    straight = list(islice(iterations(problem, latin), 12))
+    again = next(islice(iterations(problem, latin, straight[4].checkpoint), 6, None))
+    assert again.number == 12
+    np.testing.assert_array_equal(again.outgoing, straight[-1].outgoing)
+    np.testing.assert_array_equal(again.local_incoming, straight[-1].local_incoming)
+
+
 @pytest.mark.parametrize("finish", ["none", "status"])
 def test_a_run_that_rigid_motion_hides_from_says_what_to_do_and_that_helps(finish):
     hidden = {**SMALL, "young": STEEL, "spring": 2.0, "method": "paper"}

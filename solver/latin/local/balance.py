@@ -32,8 +32,6 @@ class Balance:
 
     def __init__(self, stiffness: Array, spring: float, load: Array) -> None:
         self._stiffness, self._spring, self._load = stiffness, spring, load
-        # The steps of the time before, from which the new ones are looked for.
-        self._steps = np.zeros(len(load))
 
     def __call__(self, targets: Array, reach: Array, ends: Array) -> Array:
         """Give the shift of every instant, shape (n_instants,).
@@ -49,19 +47,19 @@ class Balance:
         """
         enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
         place, shift = np.zeros(targets.shape[1]), 0.0
-        numbers = (one.tolist() for one in (ends, self._load, self._steps, enough))
-        rows = enumerate(zip(targets, -reach, reach, *numbers, strict=True))
-        for instant, (target, least, most, end, load, guess, left) in rows:
+        numbers = (one.tolist() for one in (ends, self._load, enough))
+        steps = []
+        for target, least, most, end, load, left in zip(
+            targets, -reach, reach, *numbers, strict=True
+        ):
             # Places are those of the points before, seen from the body: their digits stay.
             behind = place - target
             given = behind, least, most, end - shift, load
-            step = self._followed(*given, guess, left)
-            if step is None:
-                step = self._between(*given)
-            place = target + np.minimum(np.maximum(behind - step, least), most)
+            step, held = self._followed(*given, left) or self._between(*given)
+            place = target + held
             shift += step
-            self._steps[instant] = step
-        return np.cumsum(self._steps)
+            steps.append(step)
+        return np.cumsum(steps)
 
     def _followed(
         self,
@@ -70,48 +68,58 @@ class Balance:
         most: Array,
         end: float,
         load: float,
-        step: float,
         enough: float,
-    ) -> float | None:
-        """Follow straight lines to the step at which all balances; None where that fails."""
+    ) -> tuple[float, Array] | None:
+        """Follow straight lines to the step at which all balances, None where that fails.
+
+        With it, how far the points are behind then.
+        """
+        # The nearer the iteration is to its end, the less is left to shift.
+        pulled, step = self._stiffness.dot, 0.0
         for _ in range(TRIALS):
             wanted = behind - step
             held = np.minimum(np.maximum(wanted, least), most)
-            slope = float(self._stiffness @ (held == wanted))
-            left = float(self._stiffness @ held) + load
+            slope = float(pulled(held == wanted))
+            left = float(pulled(held)) + load
             if end > step:
                 slope += self._spring
                 left += self._spring * (end - step)
             if not slope > 0.0:
                 return None
             if abs(left) <= enough:
-                return step
+                return step, held
             step += left / slope
         return None
 
-    def _between(self, behind: Array, least: Array, most: Array, end: float, load: float) -> float:
-        """Look for the same step between the shifts at which anything begins to slip or pull."""
+    def _between(
+        self, behind: Array, least: Array, most: Array, end: float, load: float
+    ) -> tuple[float, Array]:
+        """Look for the same between the shifts at which anything begins to slip or pull."""
+
+        def held(step: float) -> Array:
+            return np.minimum(np.maximum(behind - step, least), most)
 
         def left(step: float) -> float:
-            held = np.minimum(np.maximum(behind - step, least), most)
-            return float(self._stiffness @ held) + self._spring * max(end - step, 0.0) + load
+            pull = self._spring * max(end - step, 0.0)
+            return float(self._stiffness.dot(held(step))) + pull + load
 
         stays = float(behind.mean())
         if left(stays) == 0.0:
-            return stays
-        turns = np.sort(np.concatenate([behind + least, behind + most, [end]]))
+            return stays, held(stays)
+        turns = np.sort(np.concatenate([behind + least, behind + most, [end]])).tolist()
         first, last = 0, len(turns) - 1
         above, below = left(turns[first]), left(turns[last])
         if above <= 0.0:
-            return float(turns[first] + above / self._spring)
-        if below >= 0.0:
-            return float(turns[last])
-        while last - first > 1:
-            middle = (first + last) // 2
-            value = left(turns[middle])
-            if value > 0.0:
-                first, above = middle, value
-            else:
-                last, below = middle, value
-        share = above / (above - below)
-        return float(turns[first] + share * (turns[last] - turns[first]))
+            step = turns[first] + above / self._spring
+        elif below >= 0.0:
+            step = turns[last]
+        else:
+            while last - first > 1:
+                middle = (first + last) // 2
+                value = left(turns[middle])
+                if value > 0.0:
+                    first, above = middle, value
+                else:
+                    last, below = middle, value
+            step = turns[first] + above / (above - below) * (turns[last] - turns[first])
+        return step, held(step)
