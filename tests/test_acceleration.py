@@ -51,14 +51,14 @@ def test_and_so_on_random_paths(seed):
 
 
 @pytest.mark.parametrize("load", ["sine", "decaying"])
-@pytest.mark.parametrize("peak", [300.0, 600.0, 1200.0, 1500.0, 2400.0])
+@pytest.mark.parametrize("peak", [300.0, 1200.0, 2400.0])
 def test_and_at_every_peak(load, peak):
     assert within(run(options(load=load, peak=peak, max_iterations=60)), 0.01) <= 30
 
 
 @pytest.mark.parametrize(
     ("setting", "sizes", "most"),
-    [("substructures", (1, 2, 5, 10, 25, 50), 1.2), ("elements", (50, 100, 200, 400, 800), 2.0)],
+    [("substructures", (1, 5, 50), 1.2), ("elements", (50, 100, 400), 2.0)],
     ids=str,
 )
 def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
@@ -67,7 +67,7 @@ def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
     assert max(found) <= most * min(found)
 
 
-@pytest.mark.parametrize("change", [{}, {"load": "random"}, {"load": "decaying"}], ids=str)
+@pytest.mark.parametrize("change", [{}, {"load": "random"}], ids=str)
 def test_the_limit_is_the_same(change):
     solution = run(options(tolerance=1e-24, max_iterations=3000, **change))
     assert solution.status.ending is Ending.CONVERGED

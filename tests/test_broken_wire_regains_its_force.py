@@ -77,7 +77,7 @@ def test_it_regains_its_force_linearly_over_the_tension_by_the_friction_bound(ch
 )
 def test_refinement_brings_it_to_the_closed_form(change):
     errors = []
-    for elements in (20, 40, 80):
+    for elements in (20, 80):
         scene, iterate = solved(**change, elements=elements, instants=21, tolerance=1e-14)
         exact = broken_wire(scene)
         number = scene.broken[0]
@@ -149,7 +149,7 @@ def test_equal_wires_without_a_break_never_slip(wires, grip):
         assert not contact.status.any()
 
 
-@pytest.mark.parametrize("wires", [3, 6, 40])
+@pytest.mark.parametrize("wires", [3, 6, 15])
 def test_every_section_carries_what_the_grip_gives_whatever_the_number_of_wires(wires):
     scene, iterate = solved(
         wires=wires, elements=24, substructures=4, instants=9, peak=400.0, load="triangle"

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
+from studios import SMALL
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import Compliant, Component, Contact, Sliders, Unilateral
@@ -22,7 +23,7 @@ COMPLIANT = {"friction_law": "compliant"}
 
 
 def run(scene="bar", **values):
-    chosen = CATALOGUE[scene].settings.checked({**COMPLIANT, **values})
+    chosen = CATALOGUE[scene].settings.checked({**SMALL[scene], **COMPLIANT, **values})
     problem = discretise(chosen)
     return solve(problem, method_of(chosen), distance=distance_to(reference_of(problem), problem))
 
@@ -41,12 +42,12 @@ def pulled(force, stiffness):
     return BOUND / density + (force * zone - 0.5 * BOUND * zone**2) / AXIAL, zone
 
 
-@pytest.mark.parametrize("stiffness", [3.0, 100.0, 1e3])
-@pytest.mark.parametrize("peak", [100.0, 900.0, 1400.0])
+@pytest.mark.parametrize("stiffness", [3.0, 1e3])
+@pytest.mark.parametrize("peak", [100.0, 1400.0])
 def test_a_pulled_bar_moves_as_in_closed_form_and_the_better_the_finer(stiffness, peak):
     exact, _ = pulled(peak, stiffness)
     errors = []
-    for elements in (50, 100, 200):
+    for elements in (50, 200):
         found = run(
             load=[[0.0, 0.0], [1.0, peak]],
             instants=11,
@@ -55,8 +56,8 @@ def test_a_pulled_bar_moves_as_in_closed_form_and_the_better_the_finer(stiffness
         )
         assert found.status.ending is Ending.CONVERGED
         errors.append(abs(found.iterate.displacement[-1, -1] - exact) / exact)
-    assert errors[2] < 2e-3
-    assert errors[2] < 0.6 * errors[0]
+    assert errors[1] < 2e-3
+    assert errors[1] < 0.6 * errors[0]
 
 
 def test_where_nothing_slips_the_bar_stands_on_springs():
@@ -101,7 +102,7 @@ def test_every_scene_ends_with_a_certified_solution(scene, stiffness):
 @pytest.mark.parametrize("scene", ["bar", "strand"])
 @pytest.mark.parametrize("stiffness", [3.0, 30.0])
 def test_a_soft_contact_is_solved_in_a_few_iterations(scene, stiffness):
-    changes = {**COMPLIANT, "contact_stiffness": stiffness}
+    changes = {**SMALL[scene], **COMPLIANT, "contact_stiffness": stiffness}
     chosen = CATALOGUE[scene].settings.checked(changes)
     problem = discretise(chosen)
     distance = distance_to(reference_of(problem), problem)

@@ -20,11 +20,15 @@ BLOCK = (
     "substructures=5 substructures_up=3 instants=3 friction=2.273 top=traction "
     "top_normal_traction=-119201409.28 top_tangential_traction=1082234.742"
 )
-HARD = [
-    "bar elements=200",
+FINE = [
     "bar elements=400",
     "bar elements=800",
     "bar elements=800 substructures=5 max_iterations=3000",
+]
+"""Bars that the paper's method leaves unsolved after a thousand iterations, some seconds each."""
+HARD = [
+    *FINE,
+    "bar elements=200",
     "bar elements=100 substructures=5 peak=6000",
     "bar instants=7 friction=0.317 k_scale=0.437 k_update=status elements=128 load=random "
     "peak=6444.1 substructures=5 start=nested section_profile=rising",
@@ -32,7 +36,6 @@ HARD = [
     "substructures=5 support_displacement=5.7068957715271356e-05",
     "bar tolerance=1",
     BLOCK,
-    BLOCK.replace("height=0.321", "height=0.32").replace("elements=59", "elements=60"),
     "layers poisson=0.4999",
 ]
 """Commands that once were called converged with contact forces 0.2 to 11 per cent wrong."""
@@ -47,22 +50,18 @@ def outcome_of(settings):
     return run(settings.scene, settings.changed())
 
 
-@pytest.mark.parametrize("method", ["fast", "paper"])
-@pytest.mark.parametrize("command", HARD)
-def test_a_hard_command_ends_right_or_told(command, method):
+@pytest.mark.parametrize("command", [one for one in HARD if one not in FINE])
+def test_the_papers_method_ends_right_or_told_on_a_hard_command(command):
     settings = from_words(command)
-    if method == "paper":
-        # Its own tolerance, 1e-10, would hide what the accuracy says, and take long.
-        settings = settings.replace(
-            method="paper", tolerance=settings.tolerance, max_iterations=1000
-        )
+    # Its own tolerance, 1e-10, would hide what the accuracy says, and take long.
+    settings = settings.replace(method="paper", tolerance=settings.tolerance, max_iterations=1000)
     outcome = outcome_of(settings)
     assert outcome.finite
     assert judge(outcome, ALLOWED * settings.accuracy) is not Verdict.WRONG, outcome
 
 
-@pytest.mark.parametrize("command", [command for command in HARD if command.startswith("bar")])
-def test_the_fast_method_finds_the_solution_of_a_hard_bar(command):
+@pytest.mark.parametrize("command", HARD)
+def test_the_fast_method_finds_the_solution_of_a_hard_command(command):
     outcome = outcome_of(from_words(command))
     assert outcome.ending == Ending.CONVERGED
     assert outcome.certified

@@ -51,13 +51,13 @@ def test_a_millionth_of_friction_force_takes_at_most_150_iterations(load):
     assert within(chosen, 1e-6) <= 150
 
 
-@pytest.mark.parametrize("substructures", [1, 5, 10])
+@pytest.mark.parametrize("substructures", [1, 10])
 def test_it_makes_the_plain_iteration_shorter(substructures):
     chosen = options(substructures=substructures, max_iterations=500)
     assert within(chosen, 1e-3) < within(chosen.replace(k_update="none"), 1e-3)
 
 
-@pytest.mark.parametrize("change", [{}, {"load": "random"}, {"multiscale": False}], ids=str)
+@pytest.mark.parametrize("change", [{"load": "random"}, {"multiscale": False}], ids=str)
 def test_the_limit_is_the_same(change):
     solution = run(options(**FAST, tolerance=1e-24, max_iterations=3000, **change))
     assert solution.iterate.course.phase == "updated"

@@ -68,13 +68,13 @@ def test_every_load_path_reaches_the_reference(load, peak):
     assert_reached(options(**SMALL, load=load, peak=peak))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_random_tables_of_points_reach_the_reference(seed):
     forces = np.random.default_rng(seed).uniform(-1800.0, 1800.0, 9)
     assert_reached(options(**SMALL, load=table(forces)))
 
 
-@pytest.mark.parametrize("seed", range(2, 6))
+@pytest.mark.parametrize("seed", [2, 3])
 def test_random_walks_reach_the_reference(seed):
     assert_reached(options(**SMALL, load="random", seed=seed, peak=1300.0))
 
@@ -99,7 +99,7 @@ def test_every_kind_of_bar_reaches_the_reference(change):
     assert_reached(options(**{**SMALL, **change}))
 
 
-@pytest.mark.parametrize("substructures", [1, 3, 7, 10, 25, 50])
+@pytest.mark.parametrize("substructures", [1, 7, 50])
 def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     chosen = balanced(substructures)
     other = balanced(5)
@@ -107,12 +107,12 @@ def test_the_decomposition_changes_the_path_and_not_the_limit(substructures):
     assert relative(sample(chosen, 5).displacement, sample(other, 5).displacement) > 1e-3
 
 
-@pytest.mark.parametrize("substructures", [4, 6, 10])
+@pytest.mark.parametrize("substructures", [4, 10])
 def test_substructures_of_unequal_size_reach_the_reference(substructures):
-    assert_reached(options(elements=53, substructures=substructures, instants=31))
+    assert_reached(options(elements=33, substructures=substructures, instants=31))
 
 
-@pytest.mark.parametrize("k_scale", [0.3, 0.6, 1.7, 3.0])
+@pytest.mark.parametrize("k_scale", [0.3, 3.0])
 def test_k_changes_the_path_and_not_the_limit(k_scale):
     chosen = options(**SMALL, k_scale=k_scale)
     assert_reached(chosen)
@@ -125,7 +125,7 @@ def test_relaxation_does_not_change_the_limit(relaxation):
     assert_reached(options(**SMALL, relaxation=relaxation))
 
 
-@pytest.mark.parametrize("substructures", [3, 6, 10])
+@pytest.mark.parametrize("substructures", [3, 6])
 def test_monoscale_and_multiscale_differ_on_the_way_and_agree_in_the_limit(substructures):
     multi, mono = (
         options(**{**SMALL, "substructures": substructures}, multiscale=multiscale)

@@ -80,7 +80,7 @@ def test_a_certificate_is_the_solution_of_the_incremental_solver(scene: str, met
 
 @pytest.mark.parametrize("scene", SMALL)
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("accuracy", [1e-1, 1e-2, 1e-6])
+@pytest.mark.parametrize("accuracy", [1e-1, 1e-6])
 def test_a_run_that_converges_is_as_accurate_as_was_asked(
     scene: str, method: str, accuracy: float
 ) -> None:
@@ -140,7 +140,7 @@ def test_numbers_that_are_not_finite_end_a_run_and_it_says_so(
 @pytest.mark.parametrize("scene", SMALL)
 @pytest.mark.parametrize("method", METHODS)
 def test_seconds_increase_from_record_to_record(scene: str, method: str) -> None:
-    settings = small(scene, method=method, max_iterations=60)
+    settings = small(scene, method=method, max_iterations=10)
     solution = solve(discretise(settings), method_of(settings))
     assert all(one.seconds < other.seconds for one, other in pairwise(solution.records))
 
@@ -191,7 +191,7 @@ def test_without_a_reference_the_estimate_is_still_there(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     for method in METHODS:
-        words = ["--set", f"method={method}", "--no-reference", "--json"]
+        words = ["--set=elements=30", "--set", f"method={method}", "--no-reference", "--json"]
         assert main(["run", "bar", *words]) == 0
         told = json.loads(capsys.readouterr().out)
         assert told["error_force"] is None

@@ -12,6 +12,7 @@ import pytest
 
 from solver import report_commands
 from solver.cli import main
+from solver.study import paper_runs
 from solver.study.chart import Panel, PanelAxis, PanelCurve
 from solver.study.figure_data import Finding, PaperFigure
 from solver.study.paper_figures import paper_figures
@@ -36,9 +37,34 @@ SMALL = PaperFigure(
 )
 
 
+def counted(name, calls):
+    real = getattr(paper_runs, name)
+
+    def call(*given, **options):
+        calls.append(name)
+        return real(*given, **options)
+
+    return call
+
+
 @pytest.fixture(scope="module")
-def figures(paper_runs):
-    return paper_figures(paper_runs)
+def solved():
+    """Give what was called to solve the runs of the figures, in order."""
+    return []
+
+
+@pytest.fixture(scope="module")
+def figures(solved):
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("solve", "incremental"):
+            patch.setattr(paper_runs, name, counted(name, solved))
+        return paper_figures()
+
+
+def test_all_figures_together_solve_nothing_twice(figures, solved):
+    assert tuple(figure.number for figure in figures) == NUMBERS
+    assert solved.count("incremental") == 1
+    assert solved.count("solve") == 2 * 4  # to the early iterate, and on from there
 
 
 @pytest.fixture(scope="module")

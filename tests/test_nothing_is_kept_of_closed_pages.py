@@ -15,9 +15,7 @@ from app.server import serve
 from app.session.session import Session
 from app.shell.dashboard import Dashboard
 
-WAVES, PAGES = 2, 3
-
-
+WAVES, PAGES = 2, 2
 KEPT_FOR = 30.0
 """Seconds after which what is left of a closed page is kept."""
 

@@ -14,8 +14,7 @@ from solver.reduction.svd import InterfaceField, decompositions
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
-from solver.study import paper_runs
-from solver.study.paper_figures import figure_5, figure_6, figure_7, figure_8, paper_figures
+from solver.study.paper_figures import figure_5, figure_6, figure_7, figure_8
 
 
 def test_the_analysed_solution_is_converged(paper_runs):
@@ -108,23 +107,3 @@ def test_fig_8_the_displacement_is_right_and_the_friction_force_is_not_yet(paper
     assert values["error_displacement"] < 0.01
     assert 0.01 < values["error_force"] < 0.2
     assert values["largest_basis"] <= 11
-
-
-def test_all_figures_together_solve_nothing_twice(monkeypatch):
-    solved = []
-
-    def counted(name):
-        real = getattr(paper_runs, name)
-
-        def call(*arguments, **options):
-            solved.append(name)
-            return real(*arguments, **options)
-
-        return call
-
-    for name in ("solve", "incremental"):
-        monkeypatch.setattr(paper_runs, name, counted(name))
-    figures = paper_figures()
-    assert [figure.number for figure in figures] == [3, 4, 5, 6, 7, 8]
-    assert solved.count("incremental") == 1
-    assert solved.count("solve") == 2 * 4  # to the early iterate, and on from there

@@ -233,7 +233,8 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
     scene: str, changes: dict[str, Any]
 ) -> None:
     run = ran(scene, errors=True, **{**SMALL, **changes})
-    for name, quantity in QUANTITIES.items():
+    # that of memory takes a process of its own
+    for name, quantity in (one for one in QUANTITIES.items() if one[0] != "memory"):
         needed = quantity.parameter is not None and quantity.parameter.needed
         value = taken(f"{name}@0.1" if needed else name, run)
         if not quantity.applies(run.settings):

@@ -21,7 +21,8 @@ from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
-FEW = settings(RANDOM, max_examples=int(RUNS or 15))
+FEW = settings(RANDOM, max_examples=int(RUNS or 6))
+TIGHTLY = settings(RANDOM, max_examples=int(RUNS or 12))
 SIZES = {
     "strand": {"elements": (2, 12), "wires": (2, 5), "instants": (1, 10)},
     "block": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
@@ -68,7 +69,7 @@ def test_any_run_ends_finite_with_a_status_or_is_refused(scene, data):
 
 
 @pytest.mark.parametrize("scene", SIZES)
-@FEW
+@TIGHTLY
 @given(st.data())
 def test_whatever_is_called_converged_at_a_tight_tolerance_is_right(scene, data):
     assert_ends(scene, data.draw(values(scene, st.floats(-30.0, -16.0))))

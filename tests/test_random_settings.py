@@ -27,11 +27,11 @@ RANDOM = settings(
     derandomize=RUNS is None,
     database=None,
     deadline=None,
-    max_examples=int(RUNS or 60),
+    max_examples=int(RUNS or 25),
     print_blob=True,
     suppress_health_check=list(HealthCheck),
 )
-TIGHTLY = settings(RANDOM, max_examples=int(RUNS or 25))
+TIGHTLY = settings(RANDOM, max_examples=int(RUNS or 20))
 TIGHT, WRONG = 1e-16, 1e-3
 DEFINITIONS = BarSettings.definitions()
 SMALL = {

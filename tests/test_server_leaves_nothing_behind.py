@@ -10,7 +10,6 @@ import time
 import urllib.request
 from pathlib import Path
 
-import pytest
 from browser import Server
 from processes import wait_for
 from web_pages import WebPage, run_apart, until
@@ -37,6 +36,27 @@ def share(server: Server, seconds: float = 2.0) -> float:
 def pages(server: Server) -> int:
     with urllib.request.urlopen(server.health) as answer:
         return int(json.load(answer)["pages"])
+
+
+def end_with_pages(server: Server, number: signal.Signals) -> None:
+    """Interrupt a server while two pages are open; no process of it stays, and no complaint."""
+
+    async def visit() -> None:
+        pages = [WebPage(server.address) for _ in range(2)]
+        for page in pages:
+            await page.open()
+        lives = [asyncio.create_task(page.live()) for page in pages]
+        await until(lambda: all(page.times for page in pages))
+        os.kill(server.pid, number)
+        await asyncio.gather(*lives)
+        for page in pages:
+            page.close()
+
+    assert len(server.processes()) > 1
+    run_apart(visit())
+    wait_for(lambda: server.processes() == [])
+    for word in ("Error", "WARNING", "Traceback"):
+        assert word not in server.log, server.log
 
 
 def test_a_page_at_rest_takes_next_to_nothing_and_one_asked_for_or_closed_nothing(
@@ -70,33 +90,15 @@ def test_a_page_at_rest_takes_next_to_nothing_and_one_asked_for_or_closed_nothin
         run_apart(visit())
         wait_for(lambda: pages(server) == 0)
         assert share(server) < AT_REST
+        end_with_pages(server, signal.SIGTERM)
     finally:
         server.stop()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_server_starts_without_a_complaint_and_leaves_no_worker_at_hand_or_of_its_pages(
-    tmp_path: Path, number: signal.Signals
-) -> None:
-    async def visit() -> None:
-        pages = [WebPage(server.address) for _ in range(2)]
-        for page in pages:
-            await page.open()
-        lives = [asyncio.create_task(page.live()) for page in pages]
-        await until(lambda: all(page.times for page in pages))
-        for word in ("Error", "WARNING", "Traceback"):
-            assert word not in server.log, server.log
-        os.kill(server.pid, number)
-        await asyncio.gather(*lives)
-        for page in pages:
-            page.close()
-
+def test_an_interrupted_server_leaves_no_worker_at_hand_or_of_its_pages(tmp_path: Path) -> None:
     server = Server(tmp_path / "log")
     try:
         server.wait()
-        assert len(server.processes()) > 1
-        run_apart(visit())
-        wait_for(lambda: server.processes() == [])
-        assert "Traceback" not in server.log, server.log
+        end_with_pages(server, signal.SIGINT)
     finally:
         server.stop()

@@ -26,8 +26,6 @@ from solver.study.study_report import growth_table, table, winners
 
 TINY = ["study", "bar", "--set", "elements=20", "--set", "instants=21", "--set", "substructures=4"]
 TINY += ["--repeats", "1", "--no-growth"]
-BRIEF = ["--set", "elements=4", "--set", "instants=5", "--set", "substructures=2"]
-BRIEF += ["--repeats", "1", "--no-growth"]
 
 
 def rows(file):
@@ -209,12 +207,15 @@ def test_growth_leaves_out_the_sizes_that_a_scene_cannot_have(monkeypatch):
     assert all(size.seconds > 0.0 for one in found for size in one.sizes)
 
 
+PROGRAM = "import solver.__main__, solver.running.machine as found; print(found.machine())"
+
+
 @pytest.mark.parametrize(("given", "stated"), [(None, "1"), ("2", "2")])
-def test_the_report_states_the_threads_that_the_command_line_sets(tmp_path, given, stated):
+def test_the_report_states_the_threads_that_the_command_line_sets(given, stated):
     surroundings = {name: value for name, value in os.environ.items() if name not in LIMITS}
     surroundings |= dict.fromkeys(LIMITS, given) if given else {}
     done = subprocess.run(
-        [sys.executable, "-m", "solver", "study", "bar", "--out", str(tmp_path), *BRIEF],
+        [sys.executable, "-c", PROGRAM],
         env=surroundings,
         capture_output=True,
         text=True,

@@ -44,7 +44,7 @@ def shown_run(values: dict[str, Any], **options: Any) -> Shown:
     return shown
 
 
-WHOLE = {"method": "paper", "substructures": 1, "max_iterations": 200}
+WHOLE = {"method": "paper", "substructures": 1, "max_iterations": 40}
 
 
 @pytest.mark.parametrize("values", [{}, STALLING, WHOLE])

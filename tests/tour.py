@@ -9,11 +9,8 @@ from typing import Any
 import param
 
 from app.components.form import item_of
-from app.picture.shown import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError
-from solver.reference.choice import reference_of
-from solver.reference.condensation import NoReferenceError
-from solver.scenes import CATALOGUE, discretise, points_of
+from solver.scenes import CATALOGUE, points_of
 from solver.settings import Settings
 
 SIZES: dict[str, dict[str, Any]] = {
@@ -68,16 +65,6 @@ def small(scene: str) -> Settings:
 
 def never_apply(scene: str) -> set[str]:
     return NEVER[scene]
-
-
-def has_errors(settings: Settings) -> bool:
-    """Tell whether the page can measure the errors of a run with such settings."""
-    if not has_reference(settings):
-        return False
-    try:
-        return bool(reference_of(discretise(settings)).converged.all())
-    except NoReferenceError:
-        return False
 
 
 def has_choice(definition: Parameter) -> bool:

@@ -19,7 +19,7 @@ STALLING = {
     "tolerance": 1e-30,
     "elements": 20,
     "substructures": 4,
-    "max_iterations": 150,
+    "max_iterations": 60,
 }
 
 

@@ -7,12 +7,6 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-from scipy.interpolate import (
-    Akima1DInterpolator,
-    CloughTocher2DInterpolator,
-    LinearNDInterpolator,
-)
-from scipy.spatial import Delaunay
 
 from solver.arrays import Array
 from solver.definitions import SettingError
@@ -156,6 +150,14 @@ class Chooser:
 
     def _surfaces(self, points: Array, heights: Array, where: Array | slice) -> tuple[Array, Array]:
         """Lay a smooth and a faceted surface through points; NaN outside of them."""
+        # to load them takes a quarter of a second, which other commands need not wait
+        from scipy.interpolate import (
+            Akima1DInterpolator,
+            CloughTocher2DInterpolator,
+            LinearNDInterpolator,
+        )
+        from scipy.spatial import Delaunay
+
         order = np.argsort(points)
         x, heights = self._places[points[order]], heights[order]
         there = self._places[where]
