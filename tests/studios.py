@@ -17,6 +17,7 @@ from app.wire.orders import Order, Ready, Run, Watch
 from app.wire.reports import File, Picture
 from app.worker.run import WorkerRun
 from app.worker.studio import Studio
+from solver.scenes import CATALOGUE
 
 ALL = Look(views=tuple(view.name for view in VIEWS))
 SMALL: dict[str, dict[str, Any]] = {
@@ -28,6 +29,14 @@ SMALL: dict[str, dict[str, Any]] = {
 }
 """Settings of every scene with which a run takes next to no time."""
 Models = dict[str, dict[str, Any]]
+
+
+def run_of(ticket: int, scene: str, values: dict[str, Any], **options: Any) -> Run:
+    """Give the order for a run with settings of a scene."""
+    settings = CATALOGUE[scene].settings
+    if (twin := options.pop("twin", None)) is not None:
+        options["twin"] = settings.checked(twin)
+    return Run(ticket, settings.checked(values), **options)
 
 
 class Shown:
@@ -56,7 +65,7 @@ class Shown:
         self.work()
 
     def run(self, ticket: int, scene: str, values: dict[str, Any], **options: Any) -> None:
-        self.obey(Run(ticket, scene, values, **options))
+        self.obey(run_of(ticket, scene, values, **options))
 
     def work(self) -> None:
         """Go on until there is nothing to do."""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import panel as pn
 import pytest
+from clock import Clock
 from lone_link import LoneLink
 
 from app.lessons.lesson import LESSONS, NO_CHOICE
@@ -35,7 +36,7 @@ class Follower:
     def __init__(self, room: Room) -> None:
         self.given: list[Report] = []
         self.seat = room.seat(self.given.append)
-        self.seat.send(Run(7, "bar", {}))
+        self.seat.send(Run(7, BAR))
 
     def paint(self) -> None:
         self.seat.send(Ready())
@@ -210,19 +211,48 @@ def test_whoever_is_left_alone_with_a_question_may_see_the_answer(pages: Two) ->
     room.ask("best-k", is_answered=False)
     dashboard = Dashboard(follower)
     teaching = dashboard._teaching
-    teaching.catch_up()
+    follower.attendance.note()
     assert (teaching.view.lesson["follows"], teaching.view.lesson["alone"]) == (True, False)
     teaching._hear(CHOICE, 1, False, 1.0)
-    assert teaching.asks
+    assert follower.asks
     leader.close()
-    teaching.catch_up()
+    follower.attendance.note()
     assert teaching.view.lesson["alone"]
     teaching._hear(CHOICE, NO_CHOICE, False, 2.0)
-    assert (teaching.asks, teaching.view.lesson["choice"]) == (False, 1)
+    assert (follower.asks, teaching.view.lesson["choice"]) == (False, 1)
     assert follower.attendance.follows is None
     assert own.hired == 1
     assert room.poll is not None
     assert room.poll.counts(3) == [0, 1, 0]
+
+
+def test_a_class_at_rest_has_nothing_to_do_and_says_who_comes_and_goes() -> None:
+    pn.extension(notifications=True)
+    links, clocks = (LoneLink(), LoneLink()), (Clock(), Clock())
+    leader, follower = (
+        Session(Pages(2), Bench(), BAR, link.hire, clock)
+        for link, clock in zip(links, clocks, strict=True)
+    )
+    pages = [Dashboard(leader)]
+    pages[0].loaded()
+    leader.attendance.lead(BAR)
+    room = leader.attendance.leads
+    assert room is not None
+    follower.attendance.follow(room)
+    pages.append(Dashboard(follower))
+    pages[1].loaded()
+
+    def said() -> list[str]:
+        for clock in clocks * 3:
+            clock.pass_(1.0)
+        assert all(clock.is_idle for clock in clocks)
+        return [page._banner._words.object for page in pages]
+
+    assert ["1 follows" in said()[0], "You follow" in said()[1]] == [True, True]
+    follower.start(STEEPER)
+    assert ["0 follow" in said()[0], "You have left" in said()[1]] == [True, True]
+    leader.attendance.end()
+    assert said() == ["", ""]
 
 
 @pytest.mark.parametrize("host", ["localhost", "127.0.0.1"])

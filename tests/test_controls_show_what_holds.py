@@ -11,6 +11,7 @@ import pytest
 from lone_link import LoneLink
 
 from app.components.form import ENDS, POINTS, USUAL, item_of
+from app.controls.items import SHARE
 from app.controls.refusals import refused
 from app.controls.sidebar import Sidebar
 from app.session.bench import Bench
@@ -28,11 +29,7 @@ TABLE = [(0.0, 0.0), (1.0, 500.0)]
 def sidebar() -> Sidebar:
     settings = BarSettings.checked({"method": "paper", "load": TABLE})
     session = Session(Pages(1), Bench(), settings, LoneLink().hire)
-    made = Sidebar(
-        session, lambda: None, lambda text: None, lambda text: None, lambda: None, lambda name: None
-    )
-    made.show(settings)
-    return made
+    return Sidebar(session, lambda: None, lambda name: None)
 
 
 def edited(sidebar: Sidebar, value: Any) -> Any:
@@ -65,58 +62,51 @@ def test_what_is_brought_back_has_the_value_of_its_method(sidebar: Sidebar) -> N
 
 
 def test_a_word_in_place_of_a_number_is_refused(sidebar: Sidebar) -> None:
-    told: list[str] = []
-    sidebar._complain = told.append
     sidebar.hear("pressure", "many", False, 1)
-    sidebar.obey()
-    (words,) = told
     said = "Pressure p cannot be “many”: write a number. Allowed: a number from 0 to 1e+15 N/m."
-    assert words == said
+    assert sidebar._session.refusal == said
     assert sidebar.view.shown["pressure"] == 5000.0
     sidebar.hear("pressure", 6000.0, False, 2)
     sidebar.obey()
-    assert told[1:] == [""], "it is told until the value is right"
+    assert sidebar._session.refusal == "", "it is told until the value is right"
 
 
-def strand(told: list[str]) -> Sidebar:
+@pytest.fixture
+def strand() -> Sidebar:
     settings = CATALOGUE["strand"].settings.checked({})
     session = Session(Pages(1), Bench(), settings, LoneLink().hire)
-    made = Sidebar(
-        session, lambda: None, told.append, lambda text: None, lambda: None, lambda name: None
-    )
-    made.show(settings)
-    return made
+    return Sidebar(session, lambda: None, lambda name: None)
 
 
-def test_what_was_moved_is_refused_and_not_what_it_does_not_go_with() -> None:
+def test_what_was_moved_is_refused_and_not_what_it_does_not_go_with(strand: Sidebar) -> None:
+    strand._on_setting("friction", 0.01)
+    told = strand._session.refusal
+    assert told.startswith("Friction coefficient μ cannot be 0.01 while Peak tension is 600. ")
+    assert "peak =" not in told
+
+
+def test_a_slider_that_is_dragged_ends_where_values_do(strand: Sidebar) -> None:
     told: list[str] = []
-    strand(told)._on_setting("friction", 0.01)
-    assert told[0].startswith("Friction coefficient μ cannot be 0.01 while Peak tension is 600. ")
-    assert "peak =" not in told[0]
-
-
-def test_a_slider_that_is_dragged_ends_where_values_do() -> None:
-    told: list[str] = []
-    sidebar = strand(told)
-    sidebar._on_setting("friction", 0.0, by_hand=True)
-    end = sidebar._session.wanted.friction
+    session = strand._session
+    session.param.watch(lambda event: told.append(event.new), "refusal", onlychanged=False)
+    strand._on_setting("friction", 0.0, by_hand=True)
+    end = session.wanted.friction
     assert 0.0 < end < 0.3
     with pytest.raises(SettingError):
-        sidebar._session.wanted.with_change("friction", end - 0.02)
-    sidebar.obey()
-    sidebar._on_setting("friction", 0.005, by_hand=True)
-    sidebar.obey()
-    assert sidebar._session.wanted.friction == end
+        session.wanted.with_change("friction", end - 0.02)
+    strand.obey()
+    strand._on_setting("friction", 0.005, by_hand=True)
+    strand.obey()
+    assert session.wanted.friction == end
     assert len(told) == 1, "told once a drag"
-    sidebar._on_setting("friction", 0.5, by_hand=True)
-    assert (sidebar._session.wanted.friction, told[1:]) == (0.5, [""])
+    strand._on_setting("friction", 0.5, by_hand=True)
+    assert (session.wanted.friction, told[1:]) == (0.5, [""])
 
 
-def test_a_number_of_parts_ends_where_there_are_no_more() -> None:
-    sidebar = strand([])
-    assert sidebar.view.shown[ENDS]["broken"] == 3
-    sidebar._on_setting("wires", 7)
-    assert sidebar.view.shown[ENDS]["broken"] == 7
+def test_a_number_of_parts_ends_where_there_are_no_more(strand: Sidebar) -> None:
+    assert strand.view.shown[ENDS]["broken"] == 3
+    strand._on_setting("wires", 7)
+    assert strand.view.shown[ENDS]["broken"] == 7
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
@@ -174,9 +164,19 @@ def test_a_refusal_stays_until_something_changes(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(notes.pn, "state", area)
     session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire)
     told = notes.Notes(session)
-    told.complain("Friction cannot be this.")
-    told.follow()
+    session.refusal = "Friction cannot be this."
+    session.watch(phase=0.5)
     assert stand == ["Friction cannot be this."]
     session.change("friction", 0.4)
-    told.follow()
     assert stand == []
+    assert told
+
+
+def test_a_file_is_refused_in_titles_with_its_names_in_brackets(sidebar: Sidebar) -> None:
+    for scene, name, said in (
+        ("bar", "friction", "Friction coefficient μ (friction) cannot be -1: "),
+        ("strand", "broken", "(broken) cannot be -1: "),
+        ("bar", "frictoin", "did you mean friction?"),
+    ):
+        sidebar.hear(SHARE, ["mine.toml", f'scene = "{scene}"\n{name} = -1'], False, 1)
+        assert said in sidebar._session.refusal

@@ -19,7 +19,6 @@ from app.session.session import Session
 from app.shell.address import Sight, query_of, settings_from_query, sight_from_query
 from app.shell.dashboard import Dashboard
 from app.teaching.teaching import CHOICE
-from app.views.catalogue import VIEWS
 from app.wire.orders import Run, Seek
 from app.worker.readings import measured
 from solver.lessons.lesson import Lesson
@@ -56,9 +55,7 @@ def tell(page: Dashboard, name: str, value: Any) -> None:
 
 
 def drawn(page: Dashboard) -> set[str]:
-    """Give the views that are drawn, once all of their cards are made."""
-    for _ in VIEWS:
-        page.tick()
+    """Give the views that are drawn."""
     return set(page.session.look.views)
 
 
@@ -141,7 +138,6 @@ def test_a_control_in_a_sentence_moves_the_run_and_shows_what_holds(page: Dashbo
     tell(page, "multiscale", False)
     assert page.session.wanted.values()["multiscale"] is False
     assert page._teaching.view.shown["multiscale"] is False
-    page._link.follow()
     assert "lesson=coarse-problem" in page.pulse.query
 
 
@@ -151,10 +147,10 @@ def test_the_next_lesson_starts_its_own_run_which_is_compared_with_none_before(
     tell(page, "the-lesson", "small-indicator")
     lesson = LESSONS["small-indicator"]
     order = next(one for one in reversed(link.orders) if isinstance(one, Run))
-    assert order.values == lesson.settings.values()
+    assert order.settings is lesson.settings
     assert (order.is_alone, order.label) == (True, "")
     assert page._sidebar.view.shown["the-lesson"] == "small-indicator"
-    assert page._teaching.asks
+    assert page.session.asks
 
 
 def test_the_plots_of_a_lesson_stand_where_it_says(page: Dashboard) -> None:
@@ -186,7 +182,8 @@ def test_who_leaves_a_lesson_keeps_the_run_and_has_all_views_and_controls(page: 
 
 def test_another_scene_ends_a_lesson(page: Dashboard) -> None:
     page._sidebar.hear("the-scene", "strand", False, 1.0)
-    assert page._teaching.name == page._sidebar.lesson == ""
+    assert page.session.lesson is None
+    assert page._sidebar.view.shown["the-lesson"] == ""
     assert page.session.wanted.scene == "strand"
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
+from clock import Clock
 from lone_link import LoneLink
 
 from app.session.bench import Bench
@@ -14,24 +17,16 @@ from app.wire.reports import Facts
 from solver.scenes.bar import BarSettings
 
 
-class Clock:
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     made = Clock()
-    monkeypatch.setattr(module, "time", made)
+    monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=lambda: made.now))
     return made
 
 
 @pytest.fixture
-def transport() -> Transport:
-    session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire)
+def transport(clock: Clock) -> Transport:
+    session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire, clock)
     session.facts = Facts(instants=11, instant=4)
     session.watch(phase=0.4)
     return Transport(session)
@@ -47,22 +42,20 @@ def test_it_goes_on_from_the_chosen_instant_to_the_end_and_then_begins_again(
     transport.play()
     seen = []
     for _ in range(7):
-        transport.tick()
+        clock.pass_(PLAYED_IN / 10 if seen else 1e-3)
         seen.append(round(phase(transport), 3))
-        clock.now += PLAYED_IN / 10 + 1e-6
     assert seen == [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
     assert not transport._instant.playing
     transport.play()
-    transport.tick()
+    clock.pass_(0.0)
     assert phase(transport) == 0.0
 
 
 def test_another_press_stops_it(transport: Transport, clock: Clock) -> None:
     transport.play()
-    transport.tick()
+    clock.pass_(0.0)
     transport.play()
-    clock.now += PLAYED_IN
-    transport.tick()
+    clock.pass_(PLAYED_IN)
     assert phase(transport) == 0.4
     assert not transport._instant.playing
 
@@ -70,8 +63,7 @@ def test_another_press_stops_it(transport: Transport, clock: Clock) -> None:
 def test_who_chooses_an_instant_stops_it(transport: Transport, clock: Clock) -> None:
     transport.play()
     transport.move_instant(1)
-    clock.now += PLAYED_IN
-    transport.tick()
+    clock.pass_(PLAYED_IN)
     assert phase(transport) == 0.5
 
 

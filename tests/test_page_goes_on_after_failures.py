@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from clock import Clock
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
 from studios import Shown
@@ -23,7 +24,7 @@ from app.session.bench import STOPPED, Bench
 from app.session.errand import Errand
 from app.session.keeper import GIVEN_UP, RESTARTS
 from app.session.pages import Pages
-from app.session.session import Session
+from app.session.session import LEFT_ALONE, Session
 from app.shell.transport import Transport
 from app.wire.orders import Run, Seek, Step
 from app.wire.reports import Died, Facts, Picture, Report
@@ -45,8 +46,14 @@ def lone() -> LoneLink:
 
 
 @pytest.fixture
-def session(lone: LoneLink) -> Session:
-    made = Session(Pages(1), Bench(), BarSettings.checked({"method": "paper"}), lone.hire)
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def session(lone: LoneLink, clock: Clock) -> Session:
+    settings = BarSettings.checked({"method": "paper"})
+    made = Session(Pages(1), Bench(), settings, lone.hire, clock)
     made.start()
     return made
 
@@ -56,15 +63,12 @@ def test_the_button_starts_a_broken_run_again(
     session: Session, lone: LoneLink, reports: list[Report]
 ) -> None:
     transport = Transport(session)
-    transport.show()
     assert transport._run.label == "Pause"
     hear(session, lone, reports)
-    transport.show()
     assert transport._run.label == "Run"
     transport.toggle()
     assert runs(lone)[-1].ticket == 2
     assert runs(lone)[-1].pause_after is None
-    transport.show()
     assert transport._run.label == "Pause"
 
 
@@ -85,7 +89,6 @@ ENDED = Picture(1, Facts(iteration=4, done=4, is_over=True), b"")
 def test_the_button_replays_a_run_that_has_ended(session: Session, lone: LoneLink) -> None:
     transport = Transport(session)
     hear(session, lone, [ENDED])
-    transport.show()
     assert transport._run.label == "Replay"
     transport.toggle()
     assert (runs(lone)[-1].ticket, runs(lone)[-1].pause_after) == (2, None)
@@ -138,14 +141,13 @@ def test_what_a_process_said_before_it_died_is_not_heard_of_the_next(
 
 
 def test_a_page_left_alone_gives_its_process_back_and_gets_another(
-    session: Session, lone: LoneLink, monkeypatch: pytest.MonkeyPatch
+    session: Session, lone: LoneLink, clock: Clock
 ) -> None:
     session.rest(True)
-    session.attend()
+    clock.pass_(LEFT_ALONE - 1.0)
     assert not lone.is_closed
     assert not session.is_at_work
-    monkeypatch.setattr("app.session.keeper.LEFT_ALONE", -1.0)
-    session.attend()
+    clock.pass_(1.0)
     assert lone.is_closed
     session.rest(False)
     assert (lone.hired, session.is_at_work) == (2, True)
@@ -241,17 +243,10 @@ def test_a_killed_process_is_replaced_and_the_run_goes_on(session_at_work: Sessi
 def test_where_a_run_broke_is_logged(caplog: pytest.LogCaptureFixture) -> None:
     shown = Shown()
     nothing: Any = None
-    shown.run(1, "bar", nothing)
+    shown.obey(Run(1, nothing))
     assert "AttributeError" in shown.words
     assert "Traceback" in caplog.text
     assert "app/worker/run.py" in caplog.text
-
-
-def test_settings_that_are_refused_leave_no_trace_in_the_log(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    Shown().run(1, "bar", {"friction": -1.0})
-    assert caplog.text == ""
 
 
 def test_a_worker_whose_process_does_not_start_counts_as_gone(
@@ -271,12 +266,14 @@ from app.worker.link import Link
 from app.wire.orders import Run
 from app.wire.orders import Ready
 from app.wire.reports import Picture
+from solver.scenes.bar import BarSettings
 
+settings = BarSettings.checked({"method": "paper", "tolerance": 1e-30, "instants": 401})
 seen = set()
 links = [Link(lambda report, number=number: seen.add((number, type(report)))) for number in (0, 1)]
 for link, pace in zip(links, (2.0, None)):
     link.send(Ready())
-    link.send(Run(1, "bar", {"method": "paper", "tolerance": 1e-30, "instants": 401}, pace=pace))
+    link.send(Run(1, settings, pace=pace))
 while not {(0, Picture), (1, Picture)} <= seen:
     time.sleep(0.01)
 print(*(link.pid for link in links), flush=True)

@@ -95,7 +95,7 @@ def test_load_points_are_dragged_added_and_taken_away_in_a_drawing(open_page: Vi
 
 def test_a_bad_address_is_explained_and_its_scene_is_shown(open_page: Visit) -> None:
     page = open_page("?scene=layers&layers=1")
-    expect(page.get_by_text("layers = 1 is refused").first).to_be_visible()
+    expect(page.get_by_text("Layers cannot be 1: ").first).to_be_visible()
     expect(status(page)).to_contain_text("16 substructures")
 
 

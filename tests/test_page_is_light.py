@@ -60,6 +60,7 @@ def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
         pn.extension(notifications=True)
         session = Session(Pages(1), Bench(), scene_settings("bar").checked({}), LoneLink().hire)
         page = weakref.ref(Dashboard(session).page)
+        del session
     gc.collect()
     assert page() is None
 
@@ -67,7 +68,7 @@ def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
 def test_a_page_that_nobody_has_built_starts_no_process(
     dashboard: Dashboard, link: LoneLink
 ) -> None:
-    dashboard.tick()
+    dashboard.hear()
     assert link.hired == 0
     dashboard.loaded()
     assert link.hired == 1
@@ -116,7 +117,7 @@ def test_views_and_sliders_are_those_that_apply(
 ) -> None:
     dashboard = make(query)
     dashboard.loaded()
-    transport = dashboard.transport
+    transport = dashboard._transport
     assert len(dashboard._gallery.shown) == views
     assert (transport._substructure in transport._sliders.objects) == substructures
 

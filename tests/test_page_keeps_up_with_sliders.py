@@ -6,20 +6,32 @@ from typing import Any
 
 import panel as pn
 import pytest
+from clock import Clock
 from lone_link import LoneLink
 
-from app.controls.sidebar import Sidebar
+from app.controls.sidebar import MOMENT, Sidebar
 from app.session.bench import Bench
 from app.session.pages import Pages
-from app.session.session import Session
+from app.session.session import HELD_STILL, Session
 from app.shell.dashboard import Dashboard
 from app.wire.reports import Facts, Picture
 from solver.scenes.bar import BarSettings
 
 
 @pytest.fixture
-def session() -> Session:
-    return Session(Pages(1), Bench(), BarSettings.checked({"method": "paper"}), LoneLink().hire)
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def link() -> LoneLink:
+    return LoneLink()
+
+
+@pytest.fixture
+def session(clock: Clock, link: LoneLink) -> Session:
+    settings = BarSettings.checked({"method": "paper"})
+    return Session(Pages(1), Bench(), settings, link.hire, clock)
 
 
 @pytest.fixture
@@ -37,15 +49,8 @@ def changed(session: Session, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str
 
 
 @pytest.fixture
-def complaints() -> list[str]:
-    return []
-
-
-@pytest.fixture
-def sidebar(session: Session, complaints: list[str]) -> Sidebar:
-    return Sidebar(
-        session, lambda: None, complaints.append, lambda text: None, lambda: None, lambda name: None
-    )
+def sidebar(session: Session) -> Sidebar:
+    return Sidebar(session, lambda: None, lambda name: None)
 
 
 def move(sidebar: Sidebar, name: str, value: Any) -> None:
@@ -57,26 +62,25 @@ def test_the_first_move_is_obeyed_at_once(sidebar: Sidebar, changed: list[Any]) 
     assert changed == [("peak", 910.0)]
 
 
-def test_of_the_moves_between_two_ticks_the_newest_of_each_setting_counts(
-    sidebar: Sidebar, session: Session, changed: list[Any]
+def test_of_the_moves_of_a_moment_the_newest_of_each_setting_counts(
+    sidebar: Sidebar, session: Session, changed: list[Any], clock: Clock
 ) -> None:
     for value in (910.0, 920.0, 930.0):
         move(sidebar, "peak", value)
     for value in (9, 8):
         move(sidebar, "substructures", value)
-    sidebar.obey()
+    clock.pass_(MOMENT)
     assert changed == [("peak", 910.0), ("peak", 930.0), ("substructures", 8)]
     assert (session.wanted.peak, session.wanted.substructures) == (930.0, 8)
     assert sidebar.view.shown["peak"] == 930.0
 
 
-def test_after_a_tick_without_a_move_the_next_is_obeyed_at_once_again(
-    sidebar: Sidebar, changed: list[Any]
+def test_after_a_moment_without_a_move_the_next_is_obeyed_at_once_again(
+    sidebar: Sidebar, changed: list[Any], clock: Clock
 ) -> None:
     move(sidebar, "peak", 910.0)
     move(sidebar, "peak", 920.0)
-    sidebar.obey()
-    sidebar.obey()
+    clock.pass_(2 * MOMENT)
     move(sidebar, "peak", 930.0)
     assert changed[-1] == ("peak", 930.0)
 
@@ -87,7 +91,6 @@ def test_a_move_that_waits_is_made_before_the_scene_is_left(
     move(sidebar, "peak", 910.0)
     move(sidebar, "peak", 920.0)
     move(sidebar, "the-scene", "strand")
-    sidebar.obey()
     assert session.wanted.scene == "strand"
     move(sidebar, "the-scene", "bar")
     assert session.wanted.peak == 920.0
@@ -102,24 +105,14 @@ def test_reset_keeps_a_change_that_waits_for_the_first_picture(session: Session)
 
 
 def test_a_refused_move_is_told_and_the_others_are_made(
-    sidebar: Sidebar, session: Session, complaints: list[str]
+    sidebar: Sidebar, session: Session, clock: Clock
 ) -> None:
     sidebar._on_setting("peak", 910.0)
     sidebar._on_setting("friction", -1.0)
     sidebar._on_setting("substructures", 9)
-    sidebar.obey()
+    clock.pass_(MOMENT)
     assert session.wanted.substructures == 9
-    assert [text.split()[0] for text in complaints if text] == ["Friction"]
-
-
-def test_the_page_obeys_at_every_tick(session: Session) -> None:
-    pn.extension(notifications=True)
-    dashboard = Dashboard(session)
-    for value in (910.0, 920.0):
-        dashboard._sidebar._on_setting("peak", value)
-    assert session.wanted.peak == 910.0
-    dashboard.tick()
-    assert session.wanted.peak == 920.0
+    assert session.refusal.startswith("Friction")
 
 
 def shown(session: Session, link: LoneLink) -> None:
@@ -128,25 +121,22 @@ def shown(session: Session, link: LoneLink) -> None:
     session.collect()
 
 
-def test_a_dragged_slider_hurries_and_let_go_it_replays() -> None:
-    link = LoneLink()
-    session = Session(Pages(1), Bench(), BarSettings.checked({}), link.hire)
-    sidebar = Sidebar(
-        session, lambda: None, lambda text: None, lambda text: None, lambda: None, lambda name: None
-    )
+def test_a_dragged_slider_hurries_and_let_go_it_replays(
+    sidebar: Sidebar, session: Session, link: LoneLink, clock: Clock
+) -> None:
     session.start()
     shown(session, link)
     move(sidebar, "peak", 910.0)
     assert (link.orders[-1].follows_hand, link.orders[-1].pace) == (True, None)
     move(sidebar, "peak", 920.0)
-    sidebar.obey()
-    assert link.orders[-1].values["peak"] == 910.0
+    clock.pass_(MOMENT)
+    assert link.orders[-1].settings.peak == 910.0
     shown(session, link)
-    assert (link.orders[-1].values["peak"], link.orders[-1].follows_hand) == (920.0, True)
+    assert (link.orders[-1].settings.peak, link.orders[-1].follows_hand) == (920.0, True)
     move(sidebar, "peak", None)
     shown(session, link)
     last = link.orders[-1]
-    assert (last.values["peak"], last.follows_hand, last.pace) == (920.0, False, session.pace)
+    assert (last.settings.peak, last.follows_hand, last.pace) == (920.0, False, session.pace)
     assert last.label == "peak 920 N"
     count = len(link.orders)
     shown(session, link)
@@ -154,15 +144,29 @@ def test_a_dragged_slider_hurries_and_let_go_it_replays() -> None:
     assert len(link.orders) == count
 
 
-def test_a_slider_that_stands_still_counts_as_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    link = LoneLink()
-    session = Session(Pages(1), Bench(), BarSettings.checked({}), link.hire)
+def test_a_slider_that_stands_still_counts_as_let_go(
+    session: Session, link: LoneLink, clock: Clock
+) -> None:
     session.start()
     shown(session, link)
     session.change("peak", 910.0, by_hand=True)
     shown(session, link)
+    clock.pass_(0.9 * HELD_STILL)
     assert link.orders[-1].follows_hand
-    monkeypatch.setattr("app.session.pending.HELD_STILL", -1.0)
-    session.attend()
+    clock.pass_(0.1 * HELD_STILL)
     assert not link.orders[-1].follows_hand
-    assert link.orders[-1].values["peak"] == 910.0
+    assert link.orders[-1].settings.peak == 910.0
+
+
+def test_a_page_at_rest_has_nothing_to_do(session: Session, link: LoneLink, clock: Clock) -> None:
+    pn.extension(notifications=True)
+    dashboard = Dashboard(session)
+    dashboard.loaded()
+    link.say(Picture(session.ticket, Facts(is_over=True), b""))
+    clock.pass_(0.0)
+    assert session.is_over
+    dashboard._delivery._on_painted(1)
+    assert clock.is_idle
+    dashboard._sidebar._on_setting("peak", 910.0)
+    clock.pass_(2 * MOMENT)
+    assert clock.is_idle

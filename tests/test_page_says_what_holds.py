@@ -31,13 +31,21 @@ DESK = "Mozilla/5.0 (X11; Linux x86_64) AppleWebKit/537.36 Chrome/130.0 Safari/5
 @pytest.mark.parametrize(
     ("query", "kept", "refused"),
     [
-        ("?friction=-3&substructures=5", {"substructures": 5}, ["friction = -3"]),
-        ("?friction=-3&peak=many&seed=2", {"seed": 2}, ["friction = -3", 'peak = "many"']),
+        (
+            "?friction=-3&substructures=5",
+            {"substructures": 5},
+            ["Friction coefficient μ (friction) cannot be -3"],
+        ),
+        (
+            "?friction=-3&peak=many&seed=2",
+            {"seed": 2},
+            ["(friction) cannot be -3", "(peak) cannot be “many”"],
+        ),
         ("?frictoin=0.2&seed=2", {"seed": 2}, ["there is no setting frictoin"]),
-        ("?elements=5&substructures=20&seed=2", {"substructures": 20, "seed": 2}, ["elements is"]),
+        ("?elements=5&substructures=20&seed=2", {"substructures": 20, "seed": 2}, ["Elements is"]),
         ("?scene=strand&broken=6&wires=9", {"broken": 6, "wires": 9}, []),
-        ("?scene=strand&broken=6&wires=9&grip=x", {"broken": 6, "wires": 9}, ["grip"]),
-        ("?scene=strand&broken=99&peak=500", {"peak": 500.0}, ["broken = 99"]),
+        ("?scene=strand&broken=6&wires=9&grip=x", {"broken": 6, "wires": 9}, ["Grip cannot be"]),
+        ("?scene=strand&broken=99&peak=500", {"peak": 500.0}, ["(broken) cannot be 99"]),
         ("?scene=rope&seed=2", {}, ["scene"]),
     ],
 )

@@ -67,14 +67,7 @@ def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> Non
 def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     settings = BarSettings.checked({"method": "paper", "peak": 910.0})
     with closing(Session(Pages(1), Bench(), settings)) as session:
-        sidebar = Sidebar(
-            session,
-            lambda: None,
-            lambda text: None,
-            lambda text: None,
-            lambda: None,
-            lambda name: None,
-        )
+        sidebar = Sidebar(session, lambda: None, lambda name: None)
         sidebar.hear(SHARE, SAVE, hand=False, count=1.0)
         plain, _ = sidebar.view.file
         session.facts = Facts(was_warm=True)

@@ -19,6 +19,7 @@ from app.session.desk import Desk, files
 from app.session.errand import Errand, Found
 from app.session.session import Session
 from app.session.studies import stability_of, study_of
+from app.session.turns import Turns
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
 from solver.study.audit.audit import Audited, Verdict, audit
@@ -111,7 +112,7 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
 def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
     for layers, refused in ((3, False), (20, True)):
         settings = LayersSettings.checked({"layers": layers, "instants": 11})
-        page = SimpleNamespace(study=errand, wanted=settings, crowd=0)
+        page = SimpleNamespace(study=errand, wanted=settings, crowd=0, turns=Turns())
         report = StudyReport(cast(Session, page))
         report.open()
         assert report._start.disabled == refused

@@ -123,10 +123,10 @@ def test_events_of_a_page_are_logged(
         (page,) = dashboards
         for facts in (Facts(), Facts(), Facts(is_over=True)):
             link.say(Picture(page.session.ticket, facts, b""))
-            page.tick()
+            page.hear()
         page.session.start()
         link.say(Picture(page.session.ticket, Facts(is_broken=True), b""))
-        page.tick()
+        page.hear()
         serve._end(page, document, SimpleNamespace())
     events = [one.split('"')[1] for one in caplog.messages if "logged" in one]
     assert events == [

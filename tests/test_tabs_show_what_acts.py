@@ -31,16 +31,11 @@ def session() -> Iterator[Session]:
 
 @pytest.fixture
 def sidebar(session: Session) -> Sidebar:
-    made = Sidebar(
-        session, lambda: None, lambda text: None, lambda text: None, lambda: None, lambda name: None
-    )
-    made.show(BAR)
-    return made
+    return Sidebar(session, lambda: None, lambda name: None)
 
 
 def shown_for(sidebar: Sidebar, report: Report | None) -> dict[str, Any]:
-    sidebar.report = report
-    sidebar.show(BAR)
+    sidebar.show_for(report)
     found: dict[str, Any] = sidebar.view.shown
     return found
 
@@ -83,7 +78,7 @@ def test_results_of_other_settings_are_marked_until_these_are_back(session: Sess
     report.open()
 
     def marked(**changes: Any) -> str:
-        session.settings = BAR.replace(**changes)
+        session.wanted = BAR.replace(**changes)
         report._refresh()
         words: str = report._older.object
         assert report._again.visible == ("other settings" in words)

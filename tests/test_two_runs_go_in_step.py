@@ -16,7 +16,7 @@ from unpacking import unpack
 from app.controls.comparing import PRESETS, pair
 from app.picture.sampler import Sampler
 from app.views import convergence, error_time, friction, loop, tractions
-from app.wire.orders import Pace, Run, Seek, Step, Watch
+from app.wire.orders import Pace, Seek, Step, Watch
 from app.worker.words import NONE_YET
 from solver.files import scene_settings
 from solver.scenes import CATALOGUE
@@ -160,13 +160,6 @@ def test_a_picture_of_b_comes_before_that_of_a(hand: bool) -> None:
     first = unpack(shown.pictures[0].block)
     assert "B (" in first["figures"]["text"]
     assert shown.pictures[-1].facts.is_over
-
-
-def test_a_run_a_that_is_refused_is_told() -> None:
-    shown = Shown()
-    shown.studio.obey(Run(1, "bar", BRIEF, twin={"elements": 0}))
-    shown.work()
-    assert "elements = 0 is refused" in shown.words
 
 
 def test_a_run_of_many_changes_is_named_in_whole_for_who_asks() -> None:

@@ -13,12 +13,11 @@ import numpy as np
 import pytest
 from direct_runs import direct
 from processes import PATIENCE
-from studios import ALL, Shown
+from studios import ALL, Shown, run_of
 from worker_line import SHORT, STALLING, Line
 
 from app.picture.recording import COLUMNS, History
 from app.picture.sampler import Sampler
-from app.wire.orders import Run
 from app.worker import run
 from solver import latin
 from solver.latin import Ending, Iterate, Record
@@ -144,19 +143,19 @@ def test_history_grows_and_is_thinned_from_end_to_end() -> None:
 
 @pytest.mark.parametrize("values", [SLOW_TO_SET_UP, LONG_REFERENCE], ids=["set-up", "reference"])
 def test_a_run_that_takes_long_gives_way_to_the_next(line: Line, values: dict[str, Any]) -> None:
-    line.send(Run(1, "bar", SHORT))
+    line.send(run_of(1, "bar", SHORT))
     line.until(lambda picture: picture.facts.is_over)
-    line.send(Run(2, "bar", values), Run(3, "bar", {**SHORT, "friction": 0.31}))
+    line.send(run_of(2, "bar", values), run_of(3, "bar", {**SHORT, "friction": 0.31}))
     picture = line.until(lambda picture: picture.ticket == 3 and picture.facts.is_over)
     assert not picture.facts.is_broken
 
 
 @pytest.mark.parametrize("busy", [False, True])
 def test_a_process_ends_with_its_pipe_whatever_it_does(line: Line, busy: bool) -> None:
-    line.send(Run(1, "bar", SHORT))
+    line.send(run_of(1, "bar", SHORT))
     line.until(lambda picture: picture.facts.is_over)
     if busy:
-        line.send(Run(2, "bar", SLOW_TO_SET_UP))
+        line.send(run_of(2, "bar", SLOW_TO_SET_UP))
     line.connection.close()
     line.process.join(PATIENCE)
     assert line.process.exitcode == 0

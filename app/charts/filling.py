@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, NamedTuple
 
@@ -41,6 +42,11 @@ class ChartShown(NamedTuple):
 class Filling:
     """The place of one chart, which only the page's own turns touch.
 
+    Parameters
+    ----------
+    on_drawn
+        Called on a thread once there is something for `catch_up`.
+
     Attributes
     ----------
     view
@@ -51,10 +57,11 @@ class Filling:
         What that is of.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, on_drawn: Callable[[], None] = lambda: None) -> None:
         self.view = column(role="filling", sizing_mode="stretch_both")
         self.figure: Any = None
         self.shown: ChartShown | None = None
+        self._on_drawn = on_drawn
         self._form: tuple[Any, ...] = ()
         self._drawing: Future[Any] | None = None
         self._wanted: ChartShown | None = None
@@ -72,6 +79,7 @@ class Filling:
         if form(chart) != self._form:
             self._form = form(chart)
             self._drawing = drawn(*self._wanted, height=None)
+            self._drawing.add_done_callback(lambda drawing: self._on_drawn())
         elif self._is_there:
             self._fill()
 

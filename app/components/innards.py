@@ -43,6 +43,22 @@ def connections() -> set[Any]:
     return set(context.session._subscribed_connections) if context is not None else set()
 
 
+def on_sockets(does: Callable[[], None]) -> None:
+    """Have something done now, and whenever a socket of the present session opens or closes."""
+    context: Any = pn.state.curdoc.session_context if pn.state.curdoc else None
+    if context is None:
+        return
+    for name in ("subscribe", "unsubscribe"):
+        act = getattr(context.session, name)
+
+        def heed(connection: Any, act: Callable[[Any], None] = act) -> None:
+            act(connection)
+            does()
+
+        setattr(context.session, name, heed)
+    does()
+
+
 def accepts(host: str) -> bool:
     """Tell whether the server of the present session takes pages of a host, named with its port."""
     return any(

@@ -10,6 +10,8 @@ import param
 
 from app.components.form import item_of
 from solver.definitions import CurveParameter, Parameter, SettingError, about, allowed
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 CLOSE = 16
@@ -40,6 +42,28 @@ def refused(refusal: SettingError, settings: Settings, moved: str = "", value: A
         return f"{title} cannot be {written(refusal.value)}: {remedy}. Allowed: {limits}."
     own = f"{about(definitions[moved]).title} cannot be {written(value)}"
     return f"{own} while {title} is {written(refusal.value)}. Allowed for this: {limits}; {remedy}."
+
+
+def refused_by_name(refusal: RefusedError, settings: Settings) -> str:
+    """Say what a file or an address has that is refused, with its name there in brackets.
+
+    What is no setting, or none that there is, is called what it is called there.
+    """
+    kinds = type(settings), *(entry.settings for entry in CATALOGUE.values())
+    kind = next((one for one in kinds if refusal.name in one.definitions()), None)
+    if kind is None:
+        return str(refusal)
+    definition = kind.definitions()[refusal.name]
+    limits = refusal.allowed
+    limits = allowed_here(definition) if limits == allowed(definition) else limits
+    title, value = title_and_name(refusal.name, definition), written(refusal.value)
+    return f"{title} cannot be {value}: {refusal.remedy}. Allowed: {limits}."
+
+
+def title_and_name(name: str, definition: Parameter) -> str:
+    """Call a setting what the page calls it and, where that is another word, what a file does."""
+    title = about(definition).title
+    return title if title.lower() == name else f"{title} ({name})"
 
 
 def sentence(remedy: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from app.components.form import ENDS, POINTS, USUAL, Form, shown_value
@@ -21,15 +21,19 @@ from app.controls.items import (
     WARM,
     items,
 )
-from app.controls.refusals import last_that_holds, refused
+from app.controls.refusals import last_that_holds, refused, refused_by_name
 from app.reports.report import Report
 from app.session.session import Session
 from app.session.uploads import load_in, saved
-from app.views.catalogue import VIEWS as ALL_VIEWS
+from app.views.catalogue import fitting
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
 from solver.scenes import ends_of, points_of
 from solver.settings import Settings
+
+NO_TEXT = "The file is not text: give a settings file (.toml) or a table (.csv)."
+MOMENT = 0.025
+"""Seconds within which of several moves of a control the newest counts."""
 
 
 class Sidebar:
@@ -38,11 +42,7 @@ class Sidebar:
     Parameters
     ----------
     session
-        Is told what the user changes.
-    rearrange
-        Called when settings or the choice of views have changed.
-    complain, tell
-        Tell the user what was refused and why, until nothing is; and what was done.
+        Is told what the user changes, and shown.
     copy
         Copies the page's address.
     teach
@@ -50,12 +50,6 @@ class Sidebar:
 
     Attributes
     ----------
-    lesson
-        Name of the one that is open, or empty.
-    named
-        Whether the views are those that a lesson or an address names.
-    report
-        What is looked at, whose settings alone are shown; None for the live run.
     view
         What stands on the page.
     """
@@ -63,53 +57,55 @@ class Sidebar:
     def __init__(
         self,
         session: Session,
-        rearrange: Callable[[], None],
-        complain: Callable[[str], None],
-        tell: Callable[[str], None],
         copy: Callable[[], None],
         teach: Callable[[str], None],
     ) -> None:
         self._session = session
-        self._rearrange = rearrange
-        self._complain, self._tell = complain, tell
         self._copy = copy
         self._teach = teach
-        self.lesson = ""
-        self.report: Report | None = None
-        self._views: list[str] = []
-        self._unwanted: set[str] = set()
-        self.named = False
+        self._report: Report | None = None
         self._asked: dict[str, Any] = {}
         self._in_hand: set[str] = set()
         self._ends: set[str] = set()
-        self._has_obeyed = False
+        self._moment = session.turns.timer(self.obey)
         self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
         self.view.on_msg(lambda message: self.hear(**message.data))
+        shown = ["wanted", "twin", "warm_start", "undrawn", "lesson"]
+        session.param.watch(lambda *events: self._show(), shown)
+        self._show()
 
-    def show(self, settings: Settings) -> None:
+    def show_for(self, report: Report | None) -> None:
+        """Show the settings of a report that is looked at alone, or those of the run."""
+        self._report = report
+        self._show()
+
+    def _show(self) -> None:
         """Show the settings that hold."""
-        definitions = settings.definitions()
+        session = self._session
+        settings: Settings = session.wanted
+        definitions, lesson = settings.definitions(), session.lesson
         acting = (
             [name for name, one in definitions.items() if about(one).applies(settings)]
-            if self.report is None
-            else self.report.acting()
+            if self._report is None
+            else self._report.acting()
         )
         values = {name: shown_value(getattr(settings, name)) for name in acting}
-        wanted = [name for name in self._views if name not in self._unwanted]
+        views = [view.name for view in fitting(settings)]
+        drawn = [name for name in views if name not in session.undrawn]
         own = {
             SCENE: settings.scene,
-            LESSON: self.lesson,
-            COMPARE: choice_of(self._session.twin, settings),
-            WARM: self._session.warm_start,
-            VIEWS: [self._views, wanted],
+            LESSON: lesson.name if lesson else "",
+            COMPARE: choice_of(session.twin, settings),
+            WARM: session.warm_start,
+            VIEWS: [views, drawn],
             SHARE: None,
             "": self._answered,
             ENDS: ends_of(settings),
         }
-        if self.report is not None:
+        if self._report is not None:
             kept = {SCENE, SHARE, ENDS, ""} if acting else {SHARE, ""}
-            own = {NOTE: self.report.note, **{name: own[name] for name in kept}}
+            own = {NOTE: self._report.note, **{name: own[name] for name in kept}}
         changes: dict[str, Any] = {"shown": {**values, **own}}
         # Param takes longer to compare the controls with themselves than to pass on the values.
         if (controls := items(type(settings))) is not self.view.items:
@@ -129,9 +125,9 @@ class Sidebar:
         elif name == WARM:
             self._session.warm_start = value
         elif name == VIEWS:
-            self._unwanted = (self._unwanted | set(self._views)) - set(value)
-            self.named = False
-            self._rearrange()
+            offered = {view.name for view in fitting(self._session.wanted)}
+            undrawn = (self._session.undrawn | offered) - set(value)
+            self._session.param.update(undrawn=undrawn, is_named=False)
         elif name == SHARE:
             self._on_share(value)
         elif value is None:
@@ -145,14 +141,23 @@ class Sidebar:
             self._on_setting(name, value, by_hand=hand)
 
     def obey(self) -> None:
-        """Make the changes that were asked for since the last one; to be called at every tick."""
+        """Make the changes that were asked for; those of the next moment wait for its end."""
         asked, self._asked = self._asked, {}
-        self._has_obeyed, self._answered = bool(asked), self._heard
-        said = [self._change(name, value) for name, value in asked.items()]
-        if asked and None not in said:
-            self._complain(" ".join(filter(None, said)))
-        if asked:
-            self._after_change()
+        self._answered = self._heard
+        if not asked:
+            self._moment.stop()
+            return
+        self._moment.set(MOMENT)
+        with self._session.together():
+            said = [self._change(name, value) for name, value in asked.items()]
+            if None not in said:
+                self._session.refusal = " ".join(filter(None, said))
+        self._answer()
+
+    def _answer(self) -> None:
+        """Show what holds, unless that was done: the controls wait for the number of their move."""
+        if self.view.shown[""] != self._answered:
+            self._show()
 
     def _change(self, name: str, value: Any) -> str | None:
         """Change a setting; say why not, or nothing if that was said already.
@@ -176,38 +181,21 @@ class Sidebar:
                 session.change(name, end, by_hand=True)
         return words
 
-    def offer(self, views: Sequence[str]) -> list[str]:
-        """Offer these views, and give those of them that are wanted."""
-        if self._views != list(views):
-            self._views = list(views)
-            self.show(self._session.wanted)
-        return [name for name in views if name not in self._unwanted]
-
-    @property
-    def plots(self) -> str:
-        """The views that are wanted, separated by commas, or nothing if all are."""
-        wanted = (view.name for view in ALL_VIEWS if view.name not in self._unwanted)
-        return ",".join(wanted) if self._unwanted else ""
-
-    def draw(self, views: Iterable[str]) -> None:
-        """Draw these views and no others, until the user wants more."""
-        self._unwanted = {view.name for view in ALL_VIEWS} - set(views)
-        self.named = bool(self._unwanted)
-        self.show(self._session.wanted)
-
     def _on_scene(self, scene: str) -> None:
         self.obey()
         self._session.choose_scene(scene)
-        self._after_change()
+        self._answer()
 
     def _on_compare(self, choice: str) -> None:
         self.obey()
+        session = self._session
         try:
-            self._session.twin, settings = pair(choice, self._session.wanted)
-            self._session.start(settings)
+            with session.together():
+                session.twin, settings = pair(choice, session.wanted)
+                session.start(settings)
         except SettingError as refusal:
-            self._complain(refused(refusal, self._session.wanted))
-        self._after_change()
+            session.refusal = refused(refusal, session.wanted)
+        self._answer()
 
     def _on_share(self, value: Any) -> None:
         if value == LINK:
@@ -231,32 +219,28 @@ class Sidebar:
         self._ends.discard(name)
         self._session.let_go()
         # A slider whose move was refused waits for the answer to this, its last message.
-        self.show(self._session.wanted)
+        self._answer()
 
     def _on_setting(self, name: str, value: Any, *, by_hand: bool = False) -> None:
-        """Make the first change at once, and of those before the next tick the newest then.
+        """Make the first change at once, and of those of the next moment the newest then.
 
         A slider that is dragged sends more of them than the server could obey.
         """
         self._asked[name] = value
         (self._in_hand.add if by_hand else self._in_hand.discard)(name)
-        if not self._has_obeyed:
+        if not self._moment.is_set:
             self.obey()
 
     def _adopt(self, settings: Settings) -> None:
         self.obey()
-        self._complain("")
+        self._session.refusal = ""
         self._session.adopt(settings)
-        self._after_change()
-
-    def _after_change(self) -> None:
-        self.show(self._session.wanted)
-        self._rearrange()
+        self._answer()
 
     def _open(self, filename: str, text: str | None) -> None:
         """Take the settings or the load path of a file."""
         if text is None:
-            self._complain("The file is not text: give a settings file (.toml) or a table (.csv).")
+            self._session.refusal = NO_TEXT
             return
         settings = self._session.wanted
         try:
@@ -265,7 +249,7 @@ class Sidebar:
             else:
                 found, said = load_in(text, filename, settings)
                 self._adopt(found)
-                self._tell(said)
+                self._session.told = said
         except SettingError as refusal:
-            is_settings = filename.endswith(".toml")
-            self._complain(str(refusal) if is_settings else refused(refusal, settings))
+            say = refused_by_name if filename.endswith(".toml") else refused
+            self._session.refusal = say(refusal, settings)

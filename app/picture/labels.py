@@ -27,4 +27,5 @@ def label_of(settings: Settings, changed: dict[str, Any], most: int = FEW) -> st
         text = ("off", "on")[value] if isinstance(value, bool) else text
         text = "points" if isinstance(value, tuple) else text
         parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
-    return ", ".join(parts) + (", ..." if len(changed) > most else "")
+    more = len(changed) - most
+    return ", ".join(parts) + (f" and {more} more" if more > 0 else "")

@@ -8,7 +8,7 @@ Bokeh lets that go from a hold is lost, and what document is the current one is 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from concurrent.futures import Future
 from functools import partial
 from html import escape
@@ -36,6 +36,8 @@ class Report:
     ----------
     errand
         The state that it shows.
+    soon
+        Has something done on a turn of the page.
 
     Attributes
     ----------
@@ -47,8 +49,10 @@ class Report:
     note = "Nothing here depends on a setting."
     """What stands in the sidebar, above the settings that do something here."""
 
-    def __init__(self, errand: Errand) -> None:
-        self._errand = errand
+    def __init__(
+        self, errand: Errand, soon: Callable[[Callable[[], object]], None] = lambda act: None
+    ) -> None:
+        self._errand, self._soon = errand, soon
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
@@ -172,7 +176,9 @@ class Report:
             return _words(explained(section), self._role)
         # A `FlexBox` would not do: what is put into it later misses the theme.
         box = column(_words(legend(section.charts), role="legend"), role="panels")
-        self._drawings.extend((box, drawn(chart)) for chart in section.charts)
+        for chart in section.charts:
+            self._drawings.append((box, drawing := drawn(chart)))
+            drawing.add_done_callback(lambda drawing: self._soon(self.put_drawn))
         return box
 
 

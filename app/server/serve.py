@@ -11,21 +11,21 @@ import panel as pn
 from bokeh.document import Document
 from panel.io.state import set_curdoc
 from panel_material_ui.template.base import Page
-from tornado.ioloop import IOLoop
 
 from app.components.innards import forget
 from app.server.lateness import Lateness
 from app.session.bench import shared_bench
 from app.session.pages import Pages, most_pages
 from app.session.session import Session
+from app.session.state import PACES
+from app.session.turns import Turns
 from app.shell.address import (
-    PACES,
     class_from_query,
     settings_from_query,
     sight_from_query,
     twin_from_query,
 )
-from app.shell.dashboard import TICK_MS, Dashboard
+from app.shell.dashboard import Dashboard
 from app.whatif.question import question_from_query
 from app.worker.link import warm_up
 
@@ -61,7 +61,9 @@ def open_page() -> Page:
     settings, complaint = settings_from_query(query)
     sight, more = sight_from_query(query)
     twin, refused = twin_from_query(query, settings)
-    session = Session(PAGES, shared_bench(), room.settings if room else settings)
+    turns = Turns(document.add_next_tick_callback)
+    first = room.settings if room else settings
+    session = Session(PAGES, shared_bench(), first, turns=turns)
     if room is not None:
         session.attendance.follow(room)
     else:
@@ -77,10 +79,6 @@ def open_page() -> Page:
     )
     NAMES.add(dashboard.pulse.page)
     pn.state.onload(dashboard.loaded)
-    document.add_periodic_callback(dashboard.tick, TICK_MS)
-    # The loop's thread alone touches documents: what others add may be lost (`report.py`).
-    wake = partial(IOLoop.current().add_callback, document.add_next_tick_callback, dashboard.tick)
-    dashboard.session.keeper.wake = wake
     pn.state.on_session_destroyed(partial(_end, dashboard, document))
     pn.state.log(f"page opened, {len(PAGES)} in all")
     return dashboard.page

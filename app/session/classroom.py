@@ -29,6 +29,8 @@ class Poll:
     ----------
     lesson
         Its name.
+    tell
+        Tells the class what is new.
 
     Attributes
     ----------
@@ -38,9 +40,10 @@ class Poll:
         Whether all see how many predicted what.
     """
 
-    def __init__(self, lesson: str) -> None:
+    def __init__(self, lesson: str, tell: Callable[[], None]) -> None:
         self.lesson = lesson
         self.is_answered = self.is_open = False
+        self._tell = tell
         self._choices: dict[object, int] = {}
 
     @property
@@ -51,6 +54,12 @@ class Poll:
     def vote(self, voter: object, choice: int) -> None:
         """Take what one predicts, in place of what the same one did before."""
         self._choices[voter] = choice
+        self._tell()
+
+    def open(self) -> None:
+        """Have all see how many predicted what."""
+        self.is_open = True
+        self._tell()
 
     def counts(self, choices: int) -> list[int]:
         """Count how often each of so many choices was made."""
@@ -76,6 +85,8 @@ class Room:
         What is asked at present, if it is a lesson that the leader shows.
     key
         Who knows it may lead: the page that began the class, after it was loaded again.
+    told
+        Called, for every page of the class, when anything but the picture is new.
     """
 
     def __init__(self, code: str, settings: Settings) -> None:
@@ -84,6 +95,7 @@ class Room:
         self.settings = settings
         self.views: tuple[str, ...] = ()
         self.poll: Poll | None = None
+        self.told: set[Callable[[], None]] = set()
         self._is_ended = False
         self._leader: object | None = None
         self._alone_since: float | None = None
@@ -110,6 +122,7 @@ class Room:
     def lead(self, leader: object) -> None:
         """Have it led by this one, in place of whoever did."""
         self._leader, self._alone_since = leader, None
+        self._tell()
 
     def is_led_by(self, one: object) -> bool:
         """Tell whether this one leads it."""
@@ -119,38 +132,56 @@ class Room:
         """Wait for the leader, whose page is closed; another one may lead already."""
         if self._leader is leader:
             self._leader, self._alone_since = None, time.monotonic()
+            self._tell()
 
     def show(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:
         """Give all followers a whole picture, each as soon as it has painted the one before."""
+        is_new = settings is not self.settings or views != self.views
         self.settings, self.views, self._newest = settings, views, picture
         self._number += 1
+        if is_new:
+            self._tell()
         for seat in list(self._seats):
             seat.give()
 
     def ask(self, lesson: str, *, is_answered: bool) -> None:
         """Ask what a lesson asks, or nothing without a name."""
-        if lesson != (self.poll.lesson if self.poll is not None else ""):
-            self.poll = Poll(lesson) if lesson else None
+        before = self._asked
+        if lesson != before[0]:
+            self.poll = Poll(lesson, self._tell) if lesson else None
         if self.poll is not None:
             self.poll.is_answered = is_answered
+        if self._asked != before:
+            self._tell()
 
     def seat(self, listener: Callable[[Report], None]) -> Seat:
         """Let one more follow; reports go to the listener."""
         found = Seat(self, listener)
         self._seats.add(found)
+        self._tell()
         return found
 
     def leave(self, seat: Seat) -> None:
         """Let one go."""
         self._seats.discard(seat)
+        self._tell()
 
     def end(self) -> None:
         """End the class; who follows keeps the last picture."""
         self._is_ended = True
+        self._tell()
 
     def newer_than(self, number: int) -> tuple[int, Picture | None]:
         """Give the newest picture with its number, if there is one after a number."""
         return self._number, self._newest if self._number > number else None
+
+    @property
+    def _asked(self) -> tuple[str, bool]:
+        return (self.poll.lesson, self.poll.is_answered) if self.poll is not None else ("", False)
+
+    def _tell(self) -> None:
+        for tell in list(self.told):
+            tell()
 
 
 class Seat:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import time
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -40,6 +40,8 @@ class Errand:
     ----------
     executor
         Makes it.
+    began
+        Called when one is asked for, which has to be looked at by `collect` from then on.
 
     Attributes
     ----------
@@ -55,8 +57,8 @@ class Errand:
         Why the last one came to nothing, or empty.
     """
 
-    def __init__(self, executor: Executor) -> None:
-        self._executor = executor
+    def __init__(self, executor: Executor, began: Callable[[], object] = lambda: None) -> None:
+        self._executor, self._began = executor, began
         self._future: Future[Any] | None = None
         self._folder: TemporaryDirectory[str] | None = None
         self._read = b"", b""
@@ -96,6 +98,7 @@ class Errand:
             self._end(str(refusal))
             return
         self.doing, self._asked = STARTING, time.monotonic()
+        self._began()
 
     def cancel(self) -> None:
         """End it; what has been found so far stays."""

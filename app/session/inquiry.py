@@ -122,6 +122,8 @@ class Inquiry:
     ----------
     lent
         Lends the executor.
+    began
+        Called when a sweep begins, of which `collect` has to take what comes from then on.
 
     Attributes
     ----------
@@ -133,10 +135,14 @@ class Inquiry:
         Why it came to nothing, or empty.
     """
 
-    def __init__(self, lent: Callable[[], AbstractContextManager[Pool]] = LENDER.lent) -> None:
-        self._lent = lent
+    def __init__(
+        self,
+        lent: Callable[[], AbstractContextManager[Pool]] = LENDER.lent,
+        began: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._lent, self._began = lent, began
         self._course: SweepThread | None = None
-        self._began = self._looked = 0.0
+        self._asked = self._looked = 0.0
         self.plan: Plan | None = None
         self.rows: list[Row] = []
         self.before: tuple[Plan, Sequence[Row]] | None = None
@@ -152,7 +158,7 @@ class Inquiry:
         """Seconds that the rest will take, if it goes on so; infinite before the first row."""
         if self.plan is None or not self.rows:
             return math.inf
-        spent = self._looked - self._began
+        spent = self._looked - self._asked
         return spent / len(self.rows) * (self.plan.size - len(self.rows))
 
     def ask(self, plan: Plan) -> None:
@@ -161,8 +167,9 @@ class Inquiry:
         if self.plan is not None and self.rows:
             self.before = self.plan, self.rows
         self.plan, self.rows, self.notice = plan, [], ""
-        self._began = self._looked = time.monotonic()
+        self._asked = self._looked = time.monotonic()
         self._course = SweepThread(plan, self._lent)
+        self._began()
 
     def cancel(self) -> None:
         """End it; what has come so far stays."""

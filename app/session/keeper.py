@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -14,8 +13,6 @@ from app.wire.orders import Order
 from app.wire.reports import Died, Report
 from app.worker.link import Link
 
-LEFT_ALONE = 180.0
-"""Seconds after which a page that nobody sees gives its process back."""
 RESTARTS = 2
 """Times that a run is started again after its process died, without getting any farther."""
 AGAIN = "The worker stopped unexpectedly; the run was started again."
@@ -39,13 +36,15 @@ class Keeper:
         Called on another thread when a report has come.
     deaths
         How often it has died since the run began, or since that got farther than ever.
+    is_alone
+        Whether nobody sees the page.
     """
 
     def __init__(self, hire: Hire) -> None:
         self.link: Link | Seat | None = None
         self.wake: Callable[[], object] = lambda: None
         self.deaths = self._reached = 0
-        self._alone_since: float | None = None
+        self.is_alone = False
         self._hire = hire
         self._hired = 0
         self._closed = False
@@ -100,28 +99,11 @@ class Keeper:
         """Whether the run has not been given up yet."""
         return self.deaths <= RESTARTS
 
-    def rest(self, alone: bool) -> None:
-        """Take it that nobody sees the page from now on, or that somebody does."""
-        self._alone_since = time.monotonic() if alone else None
-
-    @property
-    def is_alone(self) -> bool:
-        """Whether nobody sees the page."""
-        return self._alone_since is not None
-
     def part(self) -> None:
         """End the process, and hear nothing more of it."""
         if self.link is not None:
             self.link.close()
             self.link = None
-
-    def give_back(self) -> bool:
-        """End the process if nobody has seen the page for long; tell."""
-        since = self._alone_since
-        if since is None or time.monotonic() - since <= LEFT_ALONE:
-            return False
-        self.part()
-        return True
 
     def close(self) -> None:
         """End the process for good."""

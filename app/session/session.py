@@ -6,17 +6,18 @@ All of it happens on the page's own event loop; pictures go through as bytes.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from app.picture.labels import changes_of, label_of
-from app.picture.shown import Look
 from app.session.attendance import Attendance
 from app.session.bench import Bench
 from app.session.errand import Errand
 from app.session.inquiry import Inquiry
 from app.session.keeper import AGAIN, GIVEN_UP, Hire, Keeper
 from app.session.pages import Pages
-from app.session.pending import Pending
+from app.session.state import State
+from app.session.turns import Turns
 from app.session.uploads import cut_off
 from app.wire.block import said
 from app.wire.orders import Pace, Ready, Run, Seek, Step, Watch
@@ -26,11 +27,17 @@ from app.worker.words import REPLAYED
 from solver.files import scene_settings
 from solver.settings import Settings
 
-DEFAULT_PACE = 20.0
+HELD_STILL = 0.5
+"""Seconds after which a slider that does not move counts as let go."""
+LEFT_ALONE = 180.0
+"""Seconds after which a page that nobody sees gives its process back."""
+LOOKS = 0.2
+"""Seconds between two looks at reports and the sweep, while one is at work: what makes them may be
+another machine, which tells by files."""
 
 
-class Session:
-    """The state of one page.
+class Session(State):
+    """The state of one page, and what changes it.
 
     Parameters
     ----------
@@ -42,23 +49,11 @@ class Session:
         Of the first run, for which `start` has to be called.
     hire
         Gives a worker process.
+    turns
+        On the event loop; without it nothing comes by itself.
 
     Attributes
     ----------
-    settings
-        Of the run at work.
-    twin
-        Those of run A, which goes in step with it as run B, from the next start on; None has none.
-    ticket
-        Its number; 0 before the first.
-    facts
-        What its newest picture says; None before there is one.
-    look
-        Where one looks.
-    running, pace
-        Whether iterations go on by themselves, and how many a second (None: all it can).
-    warm_start
-        Whether a changed setting starts from the run before, where that is better.
     follows_hand, is_held
         Whether the run is one of many while a slider is dragged, and whether it stands still for a
         study that is timed.
@@ -70,23 +65,31 @@ class Session:
         Have the worker process, and the page's part in a class.
     """
 
-    def __init__(self, pages: Pages, bench: Bench, settings: Settings, hire: Hire = Link) -> None:
-        self.settings = settings
+    def __init__(
+        self,
+        pages: Pages,
+        bench: Bench,
+        settings: Settings,
+        hire: Hire = Link,
+        turns: Turns | None = None,
+    ) -> None:
+        super().__init__(settings=settings, wanted=settings)  # type: ignore[no-untyped-call]
+        self.turns = turns or Turns()
         self.keeper = Keeper(hire)
-        self.attendance = Attendance(self.keeper, hire)
-        self.twin: Settings | None = None
-        self.ticket = self.crowd = 0
-        self.facts: Facts | None = None
-        self.look = Look()
-        self.running = True
-        self.pace: float | None = DEFAULT_PACE
-        self.warm_start = self.follows_hand = self.is_held = False
-        self.figures, self.study, self.stability = (Errand(bench) for _ in range(3))
-        self.inquiry = Inquiry()
+        self.attendance = Attendance(self, self.keeper, hire, self.turns, self.start)
+        self.crowd = 0
+        self.follows_hand = self.is_held = False
+        timer = self.turns.timer
+        self._stands_still, self._is_left_alone = timer(self.let_go), timer(self._give_back)
+        self._looks = timer(self.attend)
+        began = partial(self._looks.set, LOOKS)
+        self.figures, self.study, self.stability = (Errand(bench, began) for _ in range(3))
+        self.inquiry = Inquiry(began=began)
         self._asked = self.figures, self.study, self.stability, self.inquiry
         self._left: dict[str, Settings] = {}
         self._label = ""
-        self._pending = Pending()
+        self._due: Settings | None = None
+        self._by_hand = False
         self._pages = pages
         pages.add(self)
 
@@ -98,21 +101,22 @@ class Session:
         What it means to follow a hand, and all of `how`, stands with the order `Run`.
         """
         settings = settings or self.wanted
-        self.attendance.heed(settings)
-        if settings.scene != self.settings.scene:
-            self._left[self.settings.scene] = self.wanted
-            self._label, self.twin = "", None
-            self.watch(interface="", substructure=None, place=None)
-        elif self.ticket:
-            self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
-        if "is_alone" in how:
-            self._label, self.twin = "", None
-        self.settings = settings
-        self.ticket += 1
-        self.facts = self._pending.settings = None
-        self.keeper.renew()
-        self.follows_hand = follows_hand and self._is_free
-        self._work(**how)
+        with self.together():
+            self.attendance.heed(settings)
+            if settings.scene != self.settings.scene:
+                self._left[self.settings.scene] = self.wanted
+                self._label, self.twin = "", None
+                self.watch(interface="", substructure=None, place=None)
+            elif self.ticket:
+                self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
+            if "is_alone" in how:
+                self._label, self.twin = "", None
+            self.settings, self.facts, self._due = settings, None, None
+            self._want(settings)
+            self.ticket += 1
+            self.keeper.renew()
+            self.follows_hand = follows_hand and self._is_free
+            self._work(**how)
 
     def change(self, name: str, value: Any, *, by_hand: bool = False) -> None:
         """Change one setting; the run starts again as soon as the last change was shown.
@@ -130,16 +134,21 @@ class Session:
         """Take new settings as a whole; those of another scene start at once."""
         if settings.scene != self.settings.scene:
             self.start(settings)
-        elif settings.values() != self.settings.values() or self._pending.settings is not None:
-            self._pending.put(settings, by_hand=by_hand)
-            self._start_pending()
+        elif settings.values() != self.settings.values() or self._due is not None:
+            with self.together():
+                self._due, self._by_hand = settings, by_hand
+                if by_hand:
+                    self._stands_still.set(HELD_STILL)
+                self._want(settings)
+                self._start_due()
 
     def let_go(self) -> None:
         """Replay the iteration of what a hand has chosen."""
-        self._pending.by_hand = False
+        self._stands_still.stop()
+        self._by_hand = False
         if self.follows_hand:
-            self._pending.settings = self.wanted
-            self._start_pending()
+            self._due = self.wanted
+            self._start_due()
 
     def choose_scene(self, scene: str) -> None:
         """Go to another scene, with the settings that it was left with, or its defaults."""
@@ -149,14 +158,15 @@ class Session:
     def collect(self) -> list[bytes]:
         """Take the waiting reports; give the pictures that the page has to be given."""
         blocks: list[bytes] = []
-        for report in self.keeper.collect():
-            blocks.append(self._bury() if isinstance(report, Died) else report.block)
-            if isinstance(report, Picture):
-                self.attendance.share(self.settings, self.look.views, report)
-                if report.ticket == self.ticket:
-                    self.facts = report.facts
-                    self.keeper.note(report.facts.done)
-        self._start_pending()
+        with self.together():
+            for report in self.keeper.collect():
+                blocks.append(self._bury() if isinstance(report, Died) else report.block)
+                if isinstance(report, Picture):
+                    self.attendance.share(self.settings, self.look.views, report)
+                    if report.ticket == self.ticket:
+                        self.facts = report.facts
+                        self.keeper.note(report.facts.done)
+            self._start_due()
         return blocks
 
     def ask(self, *, rest: float = 0.0, afresh: bool = False) -> None:
@@ -204,6 +214,7 @@ class Session:
 
     def close(self) -> None:
         """Leave: the process of the run ends, and so do the reports."""
+        self.turns.close()
         self.keeper.close()
         self.attendance.close()
         self._pages.remove(self)
@@ -212,18 +223,15 @@ class Session:
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody sees the page, and let it go on afterwards."""
-        self.keeper.rest(alone)
+        self.keeper.is_alone = alone
+        self._is_left_alone.set(LEFT_ALONE) if alone else self._is_left_alone.stop()
         if not alone and self.keeper.link is None and self.ticket and not self.is_over:
             self._work()
         else:
             self._keep_pace()
 
     def attend(self) -> bool:
-        """Do what is due: hear the reports, hold the run while one is timed; tell if it is new."""
-        if self.keeper.give_back():
-            self.facts = None
-        if self.follows_hand and self._pending.is_still:
-            self.let_go()
+        """See what reports and the sweep have come to, and soon again; tell if that is new."""
         heard = [one.collect() for one in self._asked]
         if self.study.is_begun != self.is_held:
             self.is_held = not self.is_held
@@ -231,17 +239,10 @@ class Session:
             self._keep_pace()
         if self.is_held:
             self.crowd = max(self.crowd, self._pages.at_work_beside(self))
+        if any(one.is_busy for one in self._asked):
+            self._looks.set(LOOKS)
+        self.reported += any(heard)
         return any(heard)
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the run ended or broke: only another run can go on."""
-        return self.facts is not None and (self.facts.is_over or self.facts.is_broken)
-
-    @property
-    def goes_on(self) -> bool:
-        """Whether the run is one that goes on until the user pauses it."""
-        return self.running and not self.is_over
 
     @property
     def is_at_work(self) -> bool:
@@ -249,20 +250,25 @@ class Session:
         return self.keeper.link is not None and not self.is_over and self._is_free
 
     @property
-    def wanted(self) -> Settings:
-        """The settings that the user sees: of the run at work, or of the one about to start."""
-        return self._pending.settings or self.settings
-
-    @property
     def _is_free(self) -> bool:
         """Whether iterations go on by themselves at present."""
         return self.running and not self.keeper.is_alone and not self.is_held
 
-    def _start_pending(self) -> None:
+    def _want(self, settings: Settings) -> None:
+        """Take it that these are wanted: what was refused before is past."""
+        if settings is not self.wanted:
+            self.wanted, self.refusal = settings, ""
+            self.watch(complaint="")
+
+    def _start_due(self) -> None:
         """Start with what is wanted, once the run before was shown."""
-        wanted = self._pending.settings
-        if wanted is not None and (self.facts is not None or self.ticket == 0):
-            self.start(wanted, warm=self.warm_start, follows_hand=self._pending.by_hand)
+        if self._due is not None and (self.facts is not None or self.ticket == 0):
+            self.start(self._due, warm=self.warm_start, follows_hand=self._by_hand)
+
+    def _give_back(self) -> None:
+        """End the process of a page that nobody sees."""
+        self.keeper.part()
+        self.facts = None
 
     def _replay(self) -> None:
         self.start(notice=REPLAYED if self.facts and self.facts.is_over else "")
@@ -279,8 +285,7 @@ class Session:
         self.keeper.send(
             Run(
                 self.ticket,
-                self.settings.scene,
-                self.settings.values(),
+                self.settings,
                 label=self._label,
                 notice=" ".join(filter(None, (again, cut_off(self.settings)))),
                 pace=None if self.follows_hand else self.pace,
@@ -288,7 +293,7 @@ class Session:
                 is_held=self.is_held,
                 **how,
                 follows_hand=self.follows_hand,
-                twin=self.twin.values() if self.twin else None,
+                twin=self.twin,
             )
         )
 

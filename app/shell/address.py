@@ -8,11 +8,12 @@ from textwrap import shorten
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
+from app.controls.refusals import refused_by_name, title_and_name
 from app.lessons.lesson import LESSONS
 from app.picture.labels import changes_of
 from app.picture.shown import Look
 from app.session.classroom import ROOMS, Room
-from app.session.session import DEFAULT_PACE
+from app.session.state import PACES, TABS, VIEWS
 from app.views.catalogue import VIEWS as CATALOGUE
 from app.whatif.question import OF, VARY, Question
 from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
@@ -22,15 +23,11 @@ from solver.scenes import CATALOGUE as SCENES
 from solver.settings import Settings
 
 DEFAULT_SCENE = next(iter(SCENES))
-TABS = ("Live", "What if", "Figures", "Study", "Stability")
 TAB_OF = {tab.lower(): tab for tab in TABS}
 """Who writes an address by hand need not mind their case."""
-PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
-"""Iterations per second."""
 CLASS = "class"
 """Names in an address the class that a page follows."""
 MOST_STEPS = 100_000
-VIEWS = ("page", "present", "embed")
 MOST_TOLD = 3
 LONGEST_NAME = 40
 
@@ -140,7 +137,7 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
         try:
             values[name] = checked_value(definitions[name], name, parse(text))
         except SettingError as refusal:
-            refused.append(str(refusal))
+            refused.append(refused_by_name(refusal, base))
     settings, apart = _together(base, values)
     return settings, complaint_of([*refused, *apart])
 
@@ -170,7 +167,7 @@ def twin_from_query(query: str, settings: Settings) -> tuple[Settings | None, st
     try:
         return type(settings).checked({**settings.values(), **_object(text)}), ""
     except SettingError as refusal:
-        return None, complaint_of([str(refusal)])
+        return None, complaint_of([refused_by_name(refusal, settings)])
 
 
 def _object(text: str) -> dict[str, Any]:
@@ -189,6 +186,7 @@ def _together(base: Settings, values: dict[str, Any]) -> tuple[Settings, list[st
         return base.replace(**values), []
     except SettingError:
         pass
+    definitions = base.definitions()
     taken: dict[str, Any] = {}
     left = values
     refused: dict[str, str] = {}
@@ -200,8 +198,11 @@ def _together(base: Settings, values: dict[str, Any]) -> tuple[Settings, list[st
                 base.replace(**{**taken, name: value})
                 taken[name] = value
             except SettingError as refusal:
-                alone = refusal.name == name
-                refused[name] = str(refusal) if alone else f"{name} is left out: {refusal}"
+                said, title = (
+                    refused_by_name(refusal, base),
+                    title_and_name(name, definitions[name]),
+                )
+                refused[name] = said if refusal.name == name else f"{title} is left out: {said}"
         if len(refused) == len(left):
             break
         left = {name: left[name] for name in refused}
@@ -214,7 +215,8 @@ def complaint_of(refused: list[str]) -> str:
         return ""
     more = len(refused) - MOST_TOLD
     rest = f"; and {more} more" if more > 0 else ""
-    return f"From the address: {'; '.join(refused[:MOST_TOLD])}{rest}."
+    said = "; ".join(one.rstrip(".") for one in refused[:MOST_TOLD])
+    return f"From the address: {said}{rest}."
 
 
 def class_from_query(query: str) -> tuple[Room | None, str]:

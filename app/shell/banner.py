@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from html import escape
@@ -28,8 +27,6 @@ class Banner:
     ----------
     session
         Of the page.
-    rearrange
-        Called when other settings or views are to be shown.
 
     Attributes
     ----------
@@ -37,27 +34,15 @@ class Banner:
         What stands on the page.
     """
 
-    def __init__(self, session: Session, rearrange: Callable[[], None]) -> None:
+    def __init__(self, session: Session) -> None:
         self._session = session
-        self._rearrange = rearrange
         self._said = "", ""
-        self._views: tuple[str, ...] = ()
         self._words = text(role="class", sizing_mode="stretch_width")
         self._code = text(role="code", visible=False)
-        self._button = button("", "group", self._press, variant="outlined")
+        self._button = button("", "group", self._press, variant="outlined", min_width=150)
         line = pn.FlexBox(self._words, self._button, align_items="center", flex_wrap="nowrap")
         self.view = column(line, self._code, role="banner", visible=False)
-
-    def catch_up(self) -> None:
-        """Follow the class to other settings or views, and say how it stands."""
-        session, room = self._session, self._session.attendance.follows
-        if room is not None and room.settings is not session.settings:
-            session.start(room.settings)
-            self._rearrange()
-        elif room is not None and room.views != self._views:
-            self._rearrange()
-        self._views = room.views if room else ()
-        self._say()
+        session.param.watch(lambda event: self._say(), "in_class")
 
     def _say(self) -> None:
         attendance = self._session.attendance
@@ -101,9 +86,6 @@ class Banner:
             session.start(session.settings.replace())
         elif attendance.left is not None and not attendance.left.is_over:
             attendance.follow(attendance.left)
-            session.start(attendance.left.settings)
-        self._rearrange()
-        self._say()
 
 
 def _picture_of(code: str) -> str:

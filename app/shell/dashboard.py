@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import panel as pn
@@ -11,7 +12,8 @@ from app.components.panes import column, page, text
 from app.components.pulse import pulse
 from app.controls.sidebar import Sidebar
 from app.session.session import Session
-from app.shell.address import TABS, Sight, sight_from_query
+from app.session.state import TABS
+from app.shell.address import Sight, sight_from_query
 from app.shell.banner import Banner
 from app.shell.delivery import Delivery
 from app.shell.gallery import gallery
@@ -25,13 +27,12 @@ from app.shell.stage import EMBED, PRESENT, Stage
 from app.shell.tabs import Tabs
 from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
-from app.teaching.teaching import Teaching
+from app.teaching.teaching import Teaching, name_of
 from app.views.catalogue import fitting
 from app.whatif.question import Question
 from app.whatif.whatif import WhatIf
 from solver.settings import Settings
 
-TICK_MS = 25
 FIRST_ROW = 3
 """Plots that a projector, or a frame of a course page, has room for."""
 
@@ -68,58 +69,46 @@ class Dashboard:
         on_phone: bool = False,
     ) -> None:
         self.session = session
-        self._asked_for = session.wanted
         self._loaded = False
-        self._notes = Notes(session)
-        self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
-        self._presence, self._log = Presence(session, self.pulse), RunLog(session)
+        self._sight = sight or Sight()
         session.watch(complaint=complaint)
-        self.transport = Transport(session)
-        self._looks = Looks(session)
-        self._listen()
-        chosen = {**self.transport.chooses(), **self._looks.chooses(), "drag": self._drag}
+        session.keeper.wake = partial(session.turns.soon, self.hear)
+        self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
+        self._notes, self._log = Notes(session), RunLog(session)
+        self._presence = Presence(session, self.pulse)
+        self._transport, self._looks = Transport(session), Looks(session)
+        chosen = {**self._transport.chooses(), **self._looks.chooses(), "drag": self._drag}
         self._gallery = gallery(chosen)
-        self._banner = Banner(session, self._follow)
-        self._sidebar = Sidebar(
-            session,
-            self._arrange,
-            self._notes.complain,
-            self._notes.tell,
-            lambda: self._link.copy(),
-            self._teach,
-        )
-        self._teaching = Teaching(session, self._sidebar, self._on_lesson)
+        self._banner = Banner(session)
+        self._sidebar = Sidebar(session, lambda: self._link.copy(), self._teach)
+        self._teaching = Teaching(session, self._sidebar)
         self._saver = Saver(session)
         self._live = self._make_live()
-        self._what_if = WhatIf(session, self._open_run, question)
-        self._tabs = Tabs(session, self._live, self._what_if, self._on_tab)
+        self._tabs = Tabs(session, self._live, WhatIf(session, self._open_run, question))
         self._delivery = Delivery(
             session, self.pulse, self._gallery, lambda: self._tabs.shows_the_run
         )
-        self._sight = sight or Sight()
         self._furnish(on_phone=on_phone)
+        self._listen()
         if self._sight.plots:
-            self._sidebar.draw(self._sight.plots.split(","))
-        self._sidebar.show(session.wanted)
+            session.draw(self._sight.plots.split(","))
         if self._sight.lesson:
             self._teaching.take(self._sight.lesson)
         else:
             self._arrange()
-        self._link.follow()
+        self._link = PageLink(session, self.pulse)
 
     def _furnish(self, *, on_phone: bool) -> None:
         """Make the page of its parts, in the theme and the view that are looked at first."""
         self.page = page([self._sidebar.view, self._saver.view], self._tabs.bar, self._tabs.main)
-        controls = [self.transport.view, self._sidebar.view, self._saver.view]
+        controls = [self._transport.view, self._sidebar.view, self._saver.view]
         self._phone = Phone(self.page, self._tabs, self._live, self._figures, controls)
         if on_phone:
             self._phone.fit()
         self.page.dark_theme = self._sight.theme == "dark"
-        self._stage = Stage(self.page, self._live, self._gallery)
-        self._stage.show(self._sight.view)
+        self._stage = Stage(self.session, self.page, self._live, self._gallery)
+        self.session.view = self._sight.view
         self._dress()
-        parts = self._tabs.bar, self._sidebar, self._teaching, self._stage, self._what_if
-        self._link = PageLink(self.session, self.pulse, *parts)
 
     def loaded(self) -> None:
         """Begin to run and to draw, now that a browser has built the page.
@@ -131,11 +120,11 @@ class Dashboard:
         self._begin(self._sight.iteration)
         self._on_narrow()
         self._keys.hears = self._teaching.view.recalls = self.pulse.recalls = True
-        if self._stage.view == EMBED and self.session.look.complaint:
+        if self.session.view == EMBED and self.session.look.complaint:
             # There is no status line to say it.
-            self._notes.complain(self.session.look.complaint)
-        self._tabs.bar.value = self._sight.tab
-        self._link.follow(replaces=True)
+            self.session.refusal = self.session.look.complaint
+        with self._link.going_back():
+            self.session.tab = self._sight.tab
 
     def _begin(self, iteration: int) -> None:
         """Start the run, to go on or to wait at an iteration; in a class, as that is."""
@@ -148,77 +137,54 @@ class Dashboard:
         if iteration > 1:
             session.step(iteration - 1)
 
-    def tick(self) -> None:
-        """Keep the page alive: run while a browser shows it, and pass on what came."""
-        self._presence.check()
-        self._tabs.catch_up(is_news=self.session.attend())
-        self._sidebar.obey()
-        self._notes.follow()
-        self._banner.catch_up()
-        self._teaching.catch_up()
-        self.pulse.leads = self.session.attendance.ticket
-        self.transport.tick()
-        self._pass_on(self.session.collect())
-        self._log.follow()
-        self._delivery.seek_the_lost()
-        self._link.follow()
+    def hear(self) -> None:
+        """Take what the worker has said, and give the browser the pictures among it."""
+        with pn.io.hold():
+            for block in self.session.collect():
+                self._delivery.send(block)
 
     def _listen(self) -> None:
         self.pulse.on("leads", self._lead_again)
         self.pulse.on("went", self._go_to)
         self.pulse.param.watch(lambda event: self._on_narrow(), "narrow")
-        does = {**self.transport.keys(), "p": self._present}
+        does = {**self._transport.keys(), "p": self._stage.toggle}
         self._keys.on_msg(lambda message: does[message.data]())
+        watch = self.session.param.watch
+        watch(lambda event: self._on_tab(), "tab")
+        watch(lambda *events: self._on_lesson(), ["lesson", "asks"])
+        watch(lambda event: self._dress(), "view")
+        watch(lambda event: self._on_class(), "in_class")
+        watch(lambda *events: self._place(), ["facts", "settings"])
+        arranged = ["wanted", "undrawn", "lesson", "asks", "view", "tab", "room"]
+        watch(lambda *events: self._arrange(), arranged)
 
     def _make_live(self) -> pn.Column:
         words, self._figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
-        heads = self._banner.view, self._teaching.view, self.transport.view
+        heads = self._banner.view, self._teaching.view, self._transport.view
         parts = *heads, words, self._figures, self._gallery, self.pulse, self._keys
         return column(*parts, role="live", margin=(4, 10))
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
-        session = self.session
-        self._teaching.follow(session.wanted)
+        session, room = self.session, self.session.room
         fit = fitting(session.wanted)
-        room = session.attendance.follows
-        own = self._sidebar.offer([view.name for view in fit])
-        wanted = (room.views if room else ()) or own
-        seen = [] if self._teaching.asks else fit
-        self._shown = [view for view in seen if view.name in wanted]
-        few = self._stage.is_bare and not self._sidebar.named
+        wanted = (room.views if room else ()) or session.drawn
+        self._shown = [view for view in fit if view.name in wanted and not session.asks]
+        few = self._stage.is_bare and not session.is_named
         there = self._shown[: FIRST_ROW if few else None]
-        self.transport.view.visible = room is None
+        self._transport.view.visible = room is None
         self._saver.view.visible = room is None and self._tabs.shows_the_run
-        self.transport.arrange(session.wanted)
         self._gallery.offer(there)
         self._gallery.let_drag(session.wanted, self._teaching.controls)
         self._saver.offer(there)
-        holds = session.wanted is self._asked_for
-        complaint = session.look.complaint if holds else ""
         # The worker sends what a view had already only when the choice of views changes.
-        session.watch(views=tuple(view.name for view in there), complaint=complaint)
-        self._show()
-        self._tabs.refresh()
+        session.watch(views=tuple(view.name for view in there))
+        self._place()
 
-    def _follow(self) -> None:
-        self._sidebar.show(self.session.wanted)
-        self._arrange()
-
-    def _show(self) -> None:
-        """Show where the run is."""
-        self._delivery.dim()
+    def _place(self) -> None:
+        """Have the widgets stand there that choose anything at present."""
         bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
-        self.transport.place(self._looks.parts(shows_bodies=bodies))
-        self.transport.show()
-        self._saver.follow()
-
-    def _pass_on(self, blocks: list[bytes]) -> None:
-        """Give the browser the pictures that came, and show what they say."""
-        for block in blocks:
-            with pn.io.hold():
-                self._delivery.send(block)
-                self._show()
+        self._transport.place(self._looks.parts(shows_bodies=bodies))
 
     def _lead_again(self, ticket: str) -> None:
         attendance = self.session.attendance
@@ -227,13 +193,12 @@ class Dashboard:
 
     def _go_to(self, query: str) -> None:
         """Show what the browser has gone back to, or on to; what was asked for is kept."""
-        if self.session.attendance.follows is None:
-            lesson = self._link.restore(query)
-            if lesson != self._teaching.name:
-                self._teaching.take(lesson)
-        self._tabs.bar.value = sight_from_query(query)[0].tab
-        self._follow()
-        self._link.follow(replaces=True)
+        with self._link.going_back():
+            if self.session.room is None:
+                lesson = self._link.restore(query)
+                if lesson != name_of(self.session.lesson):
+                    self._teaching.take(lesson)
+            self.session.tab = sight_from_query(query)[0].tab
 
     def _drag(self, told: dict[str, Any]) -> None:
         self._sidebar.hear(**told)
@@ -243,23 +208,28 @@ class Dashboard:
 
     def _dress(self) -> None:
         """Have the style sheet know the view, and whether there is a lesson or its question."""
-        classes = ["taught", "asks"] if self._teaching.asks else ["taught"]
-        lesson = classes if self._teaching.lesson else []
+        classes = ["taught", "asks"] if self.session.asks else ["taught"]
+        lesson = classes if self.session.lesson else []
         # What has a layout of its own does not go away when it is not to be visible.
         laid_out = lesson if self._tabs.shows_the_run else []
-        view = [self._stage.view] if self._stage.is_bare else []
+        view = [self.session.view] if self._stage.is_bare else []
         self._live.css_classes = ["live", *view, *laid_out]
         self._stage.magnify(has_lesson=bool(lesson))
-        self._teaching.view.is_strip = self._keys.presents = self._stage.view == PRESENT
+        self._teaching.view.is_strip = self._keys.presents = self.session.view == PRESENT
         self._phone.dress(is_bare=self._stage.is_bare)
 
     def _on_lesson(self) -> None:
         """Make room for a lesson, for its question alone, or for all else."""
         self._dress()
-        is_aside = self._teaching.lesson or self.pulse.narrow or self._stage.is_bare
+        is_aside = self.session.lesson or self.pulse.narrow or self._stage.is_bare
         self.page.sidebar_open = not is_aside
-        self._tabs.bar.value = TABS[0]
-        self._arrange()
+        self.session.tab = TABS[0]
+
+    def _on_class(self) -> None:
+        """Have the browser keep what leads the class again; show what it shows."""
+        self.pulse.leads = self.session.attendance.ticket
+        if self.session.room is not None:
+            self._arrange()
 
     def _on_narrow(self) -> None:
         if self._loaded and self.pulse.narrow:
@@ -269,21 +239,14 @@ class Dashboard:
 
     def _on_tab(self) -> None:
         self._keys.hears = self._tabs.shows_the_run
-        self._sidebar.report = self._tabs.report
+        self._sidebar.show_for(self._tabs.report)
         self._dress()
-        self._follow()
         if self._tabs.shows_the_run:
             self.session.ask(afresh=True)
 
     def _open_run(self, settings: Settings) -> None:
         """Show the run of a point of a chart."""
-        self.session.adopt(settings)
-        self.session.go()
-        self._tabs.bar.value = TABS[0]
-        self._follow()
-
-    def _present(self) -> None:
-        """Show the page as a projector needs it, or as usual again."""
-        self._stage.toggle()
-        self._dress()
-        self._arrange()
+        with self.session.together():
+            self.session.tab = TABS[0]
+            self.session.adopt(settings)
+            self.session.go()

@@ -39,27 +39,30 @@ class Delivery:
         self._pulse = pulse
         self._plots = plots
         self._is_seen = is_seen
-        self._sent = self._painted = 0
+        self._sent = 0
         self._sent_at = 0.0
+        self._lost = session.turns.timer(self._ask_again)
         self._scene = session.settings.scene
         self._is_dimmed = False
         pulse.on("painted", self._on_painted)
+        session.param.watch(lambda *events: self._dim(), ["facts", "settings"])
 
     def send(self, block: bytes) -> None:
         """Send a picture; it is of the run at work, once there is something to say of that."""
         self._sent_at = time.monotonic()
+        self._lost.set(LOST_AFTER)
         self._sent += 1
         self._pulse.paint(self._sent, block)
         if self._session.facts is not None:
             self._scene = self._session.settings.scene
+        self._dim()
 
-    def seek_the_lost(self) -> None:
+    def _ask_again(self) -> None:
         """Ask for all of the page again where the last picture does not arrive."""
-        if self._painted < self._sent and time.monotonic() - self._sent_at > LOST_AFTER:
-            self._sent_at = time.monotonic()
-            self._session.ask(afresh=True)
+        self._lost.set(LOST_AFTER)
+        self._session.ask(afresh=True)
 
-    def dim(self) -> None:
+    def _dim(self) -> None:
         """Tell plots that do not show the run's scene from those that do."""
         is_dimmed = self._session.facts is None and not self._sent
         is_dimmed = is_dimmed or self._session.settings.scene != self._scene
@@ -68,6 +71,8 @@ class Delivery:
             self._plots.styles = DIMMED if is_dimmed else CLEAR
 
     def _on_painted(self, number: int) -> None:
-        self._painted = number
-        if number == self._sent and self._is_seen():
+        if number < self._sent:
+            return
+        self._lost.stop()
+        if self._is_seen():
             self._session.ask(rest=REST * (time.monotonic() - self._sent_at))

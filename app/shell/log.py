@@ -21,8 +21,9 @@ class RunLog:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._told = (0, "")
+        session.param.watch(lambda event: self._follow(), "facts")
 
-    def follow(self) -> None:
+    def _follow(self) -> None:
         """Say it, if it is news."""
         session = self._session
         if session.facts is None or session.follows_hand:

@@ -16,24 +16,19 @@ class Notes:
     """What the user is told beside what stands on the page."""
 
     def __init__(self, session: Session) -> None:
-        self._session = session
         self._refusal: Any = None
-        self._stood = session.wanted
+        # What is told again may have been taken away in the browser.
+        watch = session.param.watch
+        watch(lambda event: self._complain(event.new), "refusal", onlychanged=False)
+        watch(lambda event: self._tell(event.new), "told", onlychanged=False)
 
-    def complain(self, text: str) -> None:
-        """Tell what was refused and why; without words, that nothing is any more."""
+    def _complain(self, text: str) -> None:
         if self._refusal is not None:
             self._refusal.destroy()
-        self._refusal, self._stood = None, self._session.wanted
+            self._refusal = None
         if text and pn.state.notifications is not None:
             self._refusal = pn.state.notifications.error(text, duration=STAYS)
 
-    def follow(self) -> None:
-        """Take back what was refused, once other settings are wanted, wherever they come from."""
-        if self._refusal is not None and self._session.wanted is not self._stood:
-            self.complain("")
-
-    def tell(self, text: str) -> None:
-        """Tell what was done."""
+    def _tell(self, text: str) -> None:
         if pn.state.notifications is not None:
             pn.state.notifications.success(text, duration=TOLD_FOR)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import panel as pn
 
 from app.components.pulse import Pulse
-from app.controls.sidebar import Sidebar
 from app.session.classroom import Room
 from app.session.session import Session
+from app.session.state import PACES
 from app.shell.address import (
-    PACES,
     Sight,
     left_out,
     query_of,
@@ -19,14 +19,15 @@ from app.shell.address import (
     sight_from_query,
     twin_from_query,
 )
-from app.shell.stage import Stage
-from app.teaching.teaching import Teaching
 from app.whatif.question import Question
-from app.whatif.whatif import WhatIf
 from app.wire.reports import Facts
 from solver.definitions import about
 from solver.settings import Settings
 
+WATCHED = (
+    *("wanted", "twin", "look", "pace", "facts", "running", "room"),
+    *("tab", "view", "undrawn", "lesson", "question"),
+)
 Standing = tuple[Settings, Sight, Room | None, Settings | None, Question | None]
 COPIED = "Copied: the link to what stands here."
 WITHOUT = "It leaves out what is too long for a link: {}. Save gives a file that has all."
@@ -42,42 +43,32 @@ class PageLink:
         Of the page.
     pulse
         Is told the address, and whether it is to be copied.
-    tab
-        The choice of tabs.
-    sidebar
-        Knows the views that are wanted.
-    teaching
-        Knows its lesson.
-    stage
-        Knows how much stands around the plots.
-    what_if
-        Knows what is asked over ranges.
     """
 
-    def __init__(
-        self,
-        session: Session,
-        pulse: Pulse,
-        tab: Any,
-        sidebar: Sidebar,
-        teaching: Teaching,
-        stage: Stage,
-        what_if: WhatIf,
-    ) -> None:
-        self._session, self._pulse, self._stage = session, pulse, stage
-        self._tab, self._sidebar, self._teaching, self._what_if = tab, sidebar, teaching, what_if
+    def __init__(self, session: Session, pulse: Pulse) -> None:
+        self._session, self._pulse = session, pulse
         self._stood: Standing | None = None
+        self._is_back = False
         pulse.param.watch(lambda event: self._tell(is_done=event.new > 0), "copied")
+        session.param.watch(lambda *events: self.follow(), list(WATCHED))
+        self.follow()
 
-    def follow(self, *, replaces: bool = False) -> None:
-        """Have the address say where the page stands; another tab is one to come back from.
+    @contextmanager
+    def going_back(self) -> Iterator[None]:
+        """Have no tab be one to come back from that is not chosen: the first, or one of before."""
+        self._is_back = True
+        try:
+            with self._session.together():
+                yield
+        finally:
+            self._is_back = False
 
-        One that was not chosen, but is where the page begins or has come back to, `replaces`.
-        """
+    def follow(self) -> None:
+        """Have the address say where the page stands; another tab is one to come back from."""
         stands, stood = self._stands(), self._stood
         if stands == stood:
             return
-        is_new = stood is not None and stands[1].tab != stood[1].tab and not replaces
+        is_new = stood is not None and stands[1].tab != stood[1].tab and not self._is_back
         entries = self._pulse.entries + is_new
         self._stood = stands
         self._pulse.param.update(query=query_of(*stands), entries=entries)
@@ -98,11 +89,11 @@ class PageLink:
         else:
             session.adopt(settings)
         session.watch(phase=sight.instant)
+        session.tab = sight.tab
         return sight.lesson
 
     def copy(self) -> None:
         """Copy the link; the page says so once it is done."""
-        self.follow()
         self._pulse.copy += 1
 
     def _tell(self, *, is_done: bool) -> None:
@@ -119,18 +110,17 @@ class PageLink:
             notes.success(COPIED, duration=3000)
 
     def _stands(self) -> Standing:
-        session = self._session
+        session, lesson = self._session, self._session.lesson
         sight = Sight(
-            tab=self._tab.value,
+            tab=session.tab,
             instant=round(session.look.phase, 4),
             pace=next(name for name, pace in PACES.items() if pace == session.pace),
-            lesson=self._teaching.name,
+            lesson=lesson.name if lesson else "",
             iteration=waits_at(session.facts, goes_on=session.goes_on),
-            view=self._stage.view,
-            plots="" if self._teaching.name else self._sidebar.plots,
+            view=session.view,
+            plots="" if lesson else session.plots,
         )
-        room, question = session.attendance.follows, self._what_if.question
-        return session.wanted, sight, room, session.twin, question
+        return session.wanted, sight, session.room, session.twin, session.question
 
 
 def waits_at(facts: Facts | None, *, goes_on: bool) -> int:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-import time
 from typing import Any
 
-from app.components.innards import connections, send_without_delay
+from app.components.innards import connections, on_sockets, send_without_delay
 from app.components.pulse import Pulse
 from app.session.session import Session
 
@@ -28,34 +26,40 @@ class Presence:
     def __init__(self, session: Session, pulse: Pulse) -> None:
         self._session = session
         self._pulse = pulse
-        self._is_loaded = False
-        self._is_alone = True
-        self._heard_at = math.inf
+        self._is_alone = self._is_silent = False
         self._sockets: set[Any] = set()
+        self._silence = session.turns.timer(self._on_silence)
         pulse.on("beat", self._on_beat)
 
     def begin(self) -> None:
         """Take it that a browser has built the page."""
-        self._is_loaded, self._is_alone = True, False
+        on_sockets(lambda: self._session.turns.soon(self._look))
+        self._pulse.param.watch(lambda event: self._look(), "hidden")
 
-    def check(self) -> None:
-        """See who is there; to be called at every tick."""
-        is_silent = time.monotonic() - self._heard_at > SILENT
+    def _look(self) -> None:
+        """See who is there."""
         sockets = connections()
         if sockets != self._sockets:
             # What was on its way in a socket that broke is lost, and nobody says so.
             self._sockets = sockets
             send_without_delay(sockets)
             self._session.ask(afresh=True)
-        is_alone = not sockets or self._pulse.hidden or not self._is_loaded or is_silent
+        is_alone = not sockets or self._pulse.hidden or self._is_silent
         if is_alone != self._is_alone:
             self._is_alone = is_alone
             self._session.rest(is_alone)
             self._session.ask(afresh=True)
 
+    def _on_silence(self) -> None:
+        self._is_silent = True
+        self._look()
+
     def _on_beat(self, beat: int) -> None:
         """Answer a sign of life; a page that missed some is given all that it has to show."""
-        self._heard_at = time.monotonic()
+        self._silence.set(SILENT)
         self._pulse.heard = beat
+        if self._is_silent:
+            self._is_silent = False
+            self._look()
         if beat < 0:
             self._session.ask(afresh=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import panel as pn
@@ -12,7 +11,7 @@ from app.components.panes import looks
 from app.reports.report import Report
 from app.reports.reports import PaperFigures, StabilityReport, StudyReport
 from app.session.session import Session
-from app.shell.address import TABS
+from app.session.state import TABS
 from app.whatif.whatif import WhatIf
 
 IN_HEADER = {
@@ -39,13 +38,11 @@ class Tabs:
     Parameters
     ----------
     session
-        Has all of it made.
+        Has all of it made, and the choice.
     live
         The live run.
     what_if
         The tab that asks over ranges.
-    changed
-        Called when another one was chosen.
 
     Attributes
     ----------
@@ -55,46 +52,39 @@ class Tabs:
         What is chosen, of which nothing else is seen.
     """
 
-    def __init__(
-        self, session: Session, live: Any, what_if: WhatIf, changed: Callable[[], None]
-    ) -> None:
+    def __init__(self, session: Session, live: Any, what_if: WhatIf) -> None:
+        self._session = session
         self._live = live
-        self._changed = changed
         beside: list[WhatIf | Report] = [
             what_if,
-            PaperFigures(session.figures),
+            PaperFigures(session.figures, session.turns.soon),
             StudyReport(session),
-            StabilityReport(session.stability),
+            StabilityReport(session.stability, session.turns.soon),
         ]
         self._beside = dict(zip(TABS[1:], beside, strict=True))
         self.bar = pmui.RadioButtonGroup(
             options=list(TABS), value=TABS[0], size="small", margin=(0, 12), sx=IN_HEADER
         )
-        self.bar.param.watch(self._on_choice, "value")
+        self.bar.param.watch(lambda event: session.param.update(tab=event.new), "value")
+        session.param.watch(lambda event: self._show(event.new), "tab")
+        session.param.watch(lambda *events: self._refresh(), ["wanted", "reported", "tab"])
         self.main = pn.Column(live, *(tab.view for tab in self._beside.values()), **looks("main"))
 
     @property
     def shows_the_run(self) -> bool:
         """Whether the live run is looked at."""
-        return bool(self._live.visible)
+        return bool(self._session.tab == TABS[0])
 
     @property
     def report(self) -> Report | None:
         """The report that is looked at, or None where all settings do something."""
-        found = self._beside.get(self.bar.value)
+        found = self._beside.get(self._session.tab)
         return found if isinstance(found, Report) else None
 
-    def refresh(self) -> None:
+    def _refresh(self) -> None:
         """Show what the sweep and the reports have come to."""
         for tab in self._beside.values():
             tab.refresh()
-
-    def catch_up(self, *, is_news: bool) -> None:
-        """Follow the sweep and the reports, and what is drawn of the one that is looked at."""
-        if is_news:
-            self.refresh()
-        if seen := self._beside.get(self.bar.value):
-            seen.put_drawn()
 
     def leave_the_header(self) -> None:
         """Stand above what is chosen: a phone's header has no room."""
@@ -102,10 +92,10 @@ class Tabs:
             self.bar.param.update(sx=BELOW, sizing_mode="stretch_width", margin=(6, 10))
             self.main.insert(0, self.bar)
 
-    def _on_choice(self, event: Any) -> None:
-        self._live.visible = event.new == TABS[0]
+    def _show(self, chosen: str) -> None:
+        self.bar.value = chosen
+        self._live.visible = chosen == TABS[0]
         for name, tab in self._beside.items():
-            tab.view.visible = event.new == name
-            if event.new == name:
+            tab.view.visible = chosen == name
+            if chosen == name:
                 tab.open()
-        self._changed()

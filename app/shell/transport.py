@@ -12,7 +12,7 @@ import panel as pn
 from app.components.panes import button, select
 from app.components.scrubber import scrubber
 from app.session.session import Session
-from app.shell.address import PACES
+from app.session.state import PACES
 from app.worker.easel import INSTANT, ITERATION
 from solver.settings import Settings
 
@@ -26,8 +26,8 @@ LABELS = {
 RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
 FIXED = 5
 """Buttons, pace and sliders, which always stand there."""
-PLAYED_IN = 8.0
-"""Seconds in which one plays through time."""
+PLAYED_IN, SOONEST = 8.0, 0.025
+"""Seconds in which one plays through time, and least between two instants that are shown."""
 
 
 class Transport:
@@ -42,6 +42,7 @@ class Transport:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._played: tuple[float, float] | None = None
+        self._next = session.turns.timer(self.play_on)
         self._make_buttons()
         self._make_sliders()
         self._sliders = pn.FlexBox(
@@ -63,6 +64,11 @@ class Transport:
             sizing_mode="stretch_width",
             css_classes=["transport"],
         )
+        watch = session.param.watch
+        watch(lambda *events: self._show(), ["facts", "running", "look"])
+        watch(lambda event: self._arrange(), "wanted")
+        self._show()
+        self._arrange()
 
     def keys(self) -> dict[str, Callable[[], None]]:
         """Give what keys do, by their names."""
@@ -91,7 +97,6 @@ class Transport:
             self._session.pause()
         else:
             self._session.go()
-        self.show()
 
     def step(self) -> None:
         """Do one iteration, or show the next of a run that has ended."""
@@ -100,12 +105,10 @@ class Transport:
             session.seek(facts.iteration + 1)
         else:
             session.step()
-        self.show()
 
     def reset(self) -> None:
         """Start again from the settings' own start."""
         self._session.start()
-        self.show()
 
     def choose_time(self, time: float) -> None:
         """Look at the instant nearest to a time, s."""
@@ -128,27 +131,31 @@ class Transport:
         is_stopped = self._played is None
         self._played = (time.monotonic(), phase if phase < 1.0 else 0.0) if is_stopped else None
         self._instant.playing = is_stopped
+        self._next.set(0.0)
 
-    def tick(self) -> None:
-        """Look at the instant that one has come to, where one plays through time."""
+    def play_on(self) -> None:
+        """Look at the instant that one has come to, and at the next when that has come."""
         facts = self._session.facts
-        if self._played is None or facts is None:
+        if self._played is None:
             return
         began, phase = self._played
-        last = max(facts.instants - 1, 1)
+        last = max(facts.instants - 1, 1) if facts is not None else 1
         phase += (time.monotonic() - began) / PLAYED_IN
-        self._session.watch(phase=min(int(phase * last) / last, 1.0))
+        if facts is not None:
+            self._session.watch(phase=min(int(phase * last) / last, 1.0))
         if phase >= 1.0:
             self.play()
+        else:
+            self._next.set(max(((int(phase * last) + 1) / last - phase) * PLAYED_IN, SOONEST))
 
     def choose_substructure(self, number: float) -> None:
         """Look at the modes of another substructure, counted from 1."""
         last, place = self._session.settings.n_substructures - 1, round(number) - 1
         self._session.watch(substructure=None if place >= last else max(place, 0))
-        self.show()
 
-    def arrange(self, settings: Settings) -> None:
+    def _arrange(self) -> None:
         """Show the sliders that apply."""
+        settings = self._session.wanted
         sliders = [self._iteration, self._instant]
         if settings.applies("pgd_modes") and settings.n_substructures > 1:
             sliders.append(self._substructure)
@@ -162,7 +169,7 @@ class Transport:
         if list(self.view) != parts:
             self.view[:] = parts
 
-    def show(self) -> None:
+    def _show(self) -> None:
         """Bring buttons and sliders to where the session is."""
         label, icon, does, facts = "Run", "play_arrow", RUNS, self._session.facts
         if self._session.goes_on:

@@ -99,6 +99,7 @@ class Saver:
         self._film: Film | None = None
         self.view = TakeAway(name=TAKE_AWAY, sizing_mode="stretch_width", margin=(4, 10))
         self.view.on_msg(lambda message: self.hear(**message.data))
+        session.param.watch(lambda *events: self._follow(), ["facts", "ticket"])
 
     def offer(self, views: Iterable[View]) -> None:
         """Offer pictures of these views."""
@@ -119,7 +120,7 @@ class Saver:
             self._film.taken += 1
             self._go_on(self._film)
 
-    def follow(self) -> None:
+    def _follow(self) -> None:
         """Have a picture taken where the page shows what an animation waits for."""
         film, facts = self._film, self._session.facts
         if film is None:
@@ -157,7 +158,7 @@ class Saver:
             self._session.watch(phase=goal / max(facts.instants - 1, 1))
         else:
             self._session.seek(goal + 1)
-        self.follow()
+        self._follow()
 
     def _end(self, film: Film) -> None:
         """Look where one looked before."""

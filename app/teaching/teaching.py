@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from typing import Any, ClassVar
 
 import param
@@ -16,7 +16,6 @@ from app.session.classroom import Poll, Room
 from app.session.session import Session
 from app.views.catalogue import VIEWS
 from solver.lessons.lesson import Lesson
-from solver.settings import Settings
 
 CHOICE, COUNT = "the-choice", "the-count"
 """Messages that tell what was predicted, and that all may see how often; they name no setting."""
@@ -119,25 +118,16 @@ class Teaching:
         Is given the settings of a lesson.
     sidebar
         Is told what the controls of a lesson say, and shows what holds.
-    changed
-        Called when a lesson is opened, answered or left.
 
     Attributes
     ----------
     view
         What stands on the page.
-    lesson
-        The one that is open.
     """
 
-    def __init__(self, session: Session, sidebar: Sidebar, changed: Callable[[], None]) -> None:
+    def __init__(self, session: Session, sidebar: Sidebar) -> None:
         self._session = session
         self._sidebar = sidebar
-        self._changed = changed
-        self._choice: int | None = None
-        self._room: Room | None = None
-        self._is_left = False
-        self.lesson: Lesson | None = None
         self.view = LessonPane(
             name="lesson",
             offered=OFFERED,
@@ -147,21 +137,14 @@ class Teaching:
         )
         self.view.on_msg(lambda message: self._hear(**message.data))
         sidebar.view.param.watch(lambda event: self._show(), "shown")
-
-    @property
-    def name(self) -> str:
-        """Name of the lesson that is open, or nothing."""
-        return self.lesson.name if self.lesson else ""
+        watch = session.param.watch
+        watch(lambda *events: self._tell(), ["lesson", "choice", "room", "is_left"])
+        watch(lambda *events: self._follow(), ["wanted", "in_class"])
 
     @property
     def controls(self) -> Collection[str]:
         """Names of the settings that one may change beside the plots: a lesson has but its own."""
-        return (self.view if self.lesson else self._sidebar.view).shown
-
-    @property
-    def asks(self) -> bool:
-        """Whether a question waits for an answer, which nothing on the page may give away."""
-        return self.lesson is not None and (self._choice is None or self._waits)
+        return (self.view if self._session.lesson else self._sidebar.view).shown
 
     @property
     def _waits(self) -> bool:
@@ -171,98 +154,106 @@ class Teaching:
 
     def open(self, name: str) -> None:
         """Begin a lesson, with its scene and settings; without a name, leave all as it is."""
-        if name in LESSONS:
-            self._session.start(LESSONS[name].settings, is_alone=True)
-            self._session.watch(phase=LESSONS[name].instant)
-            self._session.go()
-        self.take(name)
+        with self._session.together():
+            if name in LESSONS:
+                self._session.start(LESSONS[name].settings, is_alone=True)
+                self._session.watch(phase=LESSONS[name].instant)
+                self._session.go()
+            self.take(name)
 
     def take(self, name: str) -> None:
         """Be in a lesson whose settings are there already, or in none."""
-        self.lesson, self._choice = LESSONS.get(name), None
-        if self.lesson is not None:
-            self._session.watch(interface=self.lesson.interface)
-        self._tell()
+        lesson = LESSONS.get(name)
+        with self._session.together():
+            self._session.param.update(lesson=lesson, choice=None)
+            self._session.draw(lesson.views if lesson else [view.name for view in VIEWS])
+            if lesson is not None:
+                self._session.watch(interface=lesson.interface)
 
-    def follow(self, settings: Settings) -> None:
-        """Leave a lesson as soon as another scene is looked at."""
-        if self.lesson is not None and settings.scene != self.lesson.settings.scene:
+    def _follow(self) -> None:
+        """Leave a lesson for another scene; show it to the class, or that of the class."""
+        session, attendance = self._session, self._session.attendance
+        if session.lesson is not None and session.wanted.scene != session.lesson.settings.scene:
             self.open("")
-
-    def catch_up(self) -> None:
-        """Show the lesson to the class that is led here, or that of the class that is followed."""
-        attendance = self._session.attendance
-        if attendance.leads is not None:
-            attendance.leads.ask(self.name, is_answered=not self.asks)
-        elif attendance.follows is not None:
+        if attendance.follows is not None:
             self._attend(attendance.follows)
-        room = attendance.follows
-        is_left = room is not None and room.is_alone
-        if (self._room, self._is_left) != (room, is_left):
-            self._room, self._is_left = room, is_left
-            self._tell()
+        self._show_class()
+
+    def _show_class(self) -> None:
+        """Have the class asked what the lesson asks, and say how many have predicted."""
+        if (led := self._session.attendance.leads) is not None:
+            led.ask(name_of(self._session.lesson), is_answered=not self._session.asks)
         self.view.poll = self._polled()
 
     def _attend(self, room: Room) -> None:
         poll = room.poll
-        name = poll.lesson if poll is not None else ""
-        if name != self.name:
+        session, name = self._session, poll.lesson if poll is not None else ""
+        if name != name_of(session.lesson):
             # The settings of another scene come with a picture.
             if not name or LESSONS[name].settings.scene == room.settings.scene:
                 self.take(name)
         elif poll is not None and poll.is_answered and "choice" not in self.view.lesson:
-            self._choice = NO_CHOICE if self._choice is None else self._choice
+            session.choice = NO_CHOICE if session.choice is None else session.choice
             self._tell()
 
     def _polled(self) -> dict[str, Any]:
         attendance = self._session.attendance
         room, poll = attendance.room, attendance.poll
-        if room is None or poll is None or self.lesson is None:
+        lesson = self._session.lesson
+        if room is None or poll is None or lesson is None:
             return {}
-        counts = poll.counts(len(self.lesson.choices)) if poll.is_open else []
+        counts = poll.counts(len(lesson.choices)) if poll.is_open else []
         leads = attendance.leads is not None
         return {"leads": leads, "predicted": poll.predicted, "of": room.present, "counts": counts}
 
     def _tell(self) -> None:
-        """Show what there is of the lesson, and have no more drawn and told than it needs."""
-        lesson, choice = self.lesson, None if self.asks else self._choice
-        self._sidebar.lesson = self.name
-        self._sidebar.draw(lesson.views if lesson else [view.name for view in VIEWS])
-        self._session.watch(readings=readings(lesson, choice) if lesson else ())
+        """Show what there is of the lesson, and have no more told than it needs."""
+        session, lesson = self._session, self._session.lesson
+        session.asks = lesson is not None and (session.choice is None or self._waits)
+        choice = None if session.asks else session.choice
+        session.watch(readings=readings(lesson, choice) if lesson else ())
         self.view.lesson = {**content(lesson, choice), **self._in_class()} if lesson else {}
-        self._changed()
+        self._show_class()
 
     def _in_class(self) -> dict[str, Any]:
         """Say what else there is of a lesson that is followed: its ends are the leader's.
 
         Whoever was left alone with a question may see the answer.
         """
-        if self._session.attendance.follows is None:
+        session = self._session
+        if session.room is None:
             return {}
-        return {"follows": True, "chosen": self._choice, "alone": self._is_left}
+        return {"follows": True, "chosen": session.choice, "alone": session.is_left}
 
     def _hear(self, name: str, value: Any, hand: bool, count: float) -> None:
         poll = self._session.attendance.poll
         if name == COUNT and poll is not None:
-            poll.is_open = True
-        elif name == CHOICE and self.asks:
+            poll.open()
+        elif name == CHOICE and self._session.asks:
             self._predict(value, poll)
         elif name not in (CHOICE, COUNT):
             self._sidebar.hear(name, value, hand, count)
 
     def _predict(self, choice: int, poll: Poll | None) -> None:
         """Take what was predicted; whoever was left alone by a class goes on without it."""
-        if self._waits and self._is_left:
-            self._session.start(self._session.settings.replace())
-            self._choice = choice if self._choice is None or choice != NO_CHOICE else self._choice
-        else:
-            if poll is not None and self._waits:
+        session = self._session
+        with session.together():
+            if self._waits and session.is_left:
+                session.start(session.settings.replace())
+                if session.choice is not None and choice == NO_CHOICE:
+                    return
+            elif poll is not None and self._waits:
                 poll.vote(self, choice)
-            self._choice = choice
-        self._tell()
+            session.choice = choice
 
     def _show(self) -> None:
         """Show on the lesson's controls what those of the sidebar show."""
         holds = self._sidebar.view.shown
-        names = ("", ENDS, *self.lesson.controls) if self.lesson else ()
+        lesson = self._session.lesson
+        names = ("", ENDS, *lesson.controls) if lesson else ()
         self.view.shown = {name: holds[name] for name in names if name in holds}
+
+
+def name_of(lesson: Lesson | None) -> str:
+    """Give the name of a lesson, or nothing for none."""
+    return lesson.name if lesson else ""

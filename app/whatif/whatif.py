@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import param
@@ -90,7 +91,8 @@ class WhatIf:
         self._asked, self._question = question, question
         self._asker: Asker | None = None
         self._drawn: Plan | None = None
-        self._filling = Filling()
+        self._filling = Filling(partial(session.turns.soon, self.put_drawn))
+        session.question = question
         self._scene = session.wanted.scene
         self.view = column(role="paper what-if", margin=(4, 10), visible=False)
 
@@ -193,6 +195,7 @@ class WhatIf:
             self._filling.show(chart, self._ghost(plan), stands(plan, chart, settings))
         form, progress = form_of(self._question, settings), self._progress()
         self._asker.param.update(form=form, progress=progress)
+        self._session.question = self._question
 
     def _keep_to(self, settings: Settings) -> None:
         """Propose something else where another scene knows nothing of what is asked."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from app.picture.shown import Look
+from solver.settings import Settings
 
 
 @dataclass(frozen=True)
@@ -14,8 +14,8 @@ class Run:
 
     Attributes
     ----------
-    scene, values
-        The catalogue's name and the settings' plain values.
+    settings
+        Checked where they came from.
     label, notice
         What is new in it, for the legend of runs, and what the status line has to say of it.
     pace, is_held
@@ -30,12 +30,11 @@ class Run:
     is_alone
         Whether it is nothing to compare with those before.
     twin
-        Values of a run A, which goes in step with this one, B; None has none.
+        Settings of a run A, which goes in step with this one, B; None has none.
     """
 
     ticket: int
-    scene: str
-    values: dict[str, Any]
+    settings: Settings
     label: str = ""
     notice: str = ""
     pace: float | None = None
@@ -44,7 +43,7 @@ class Run:
     warm: bool = False
     follows_hand: bool = False
     is_alone: bool = False
-    twin: dict[str, Any] | None = None
+    twin: Settings | None = None
 
 
 @dataclass(frozen=True)

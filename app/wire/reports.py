@@ -20,7 +20,7 @@ class Facts:
     is_over
         Whether the run has ended: only another one can go on.
     is_broken
-        Whether it was refused, or broke; then nothing else holds.
+        Whether it broke, or was refused; then nothing else holds.
     was_warm
         Whether it started from the run before.
     """

@@ -16,7 +16,6 @@ from app.worker.beside import Beside
 from app.worker.rivals import KeptReferences
 from app.worker.seeking import Found, Seeking
 from app.worker.tempo import Tempo
-from solver.files import scene_settings
 from solver.latin import PGD, Checkpoint, Decision, Ending, Iterate, StopRules, record
 from solver.latin.indicators import latin_indicator
 from solver.latin.run_cost import run_cost
@@ -54,11 +53,6 @@ class WorkerRun:
         What is kept of it.
     has_news, cost
         Whether something has changed since this was last set to False; what it is to take.
-
-    Raises
-    ------
-    SettingError
-        For a value that is refused.
     """
 
     def __init__(
@@ -72,7 +66,7 @@ class WorkerRun:
         self.ticket, self.follows_hand = order.ticket, order.follows_hand
         self._urgent = urgent
         self._references = references
-        self._settings = scene_settings(order.scene).checked(order.values)
+        self._settings = order.settings
         self._problem = discretise(self._settings)
         self._latin, most = method_of(self._settings), self._settings.max_iterations
         compared = has_reference(self._settings)

@@ -120,14 +120,14 @@ class Studio:
 
     def _pair(self, order: Run) -> None:
         """Have run A go in step with a new one, afresh only where its settings are others."""
-        values, twin = order.twin, self._twin
-        if values is None:
+        settings, twin = order.twin, self._twin
+        if settings is None:
             self._twin = None
-        elif twin is not None and twin.is_of(order):
+        elif twin is not None and twin.is_of(settings):
             twin.begin(order.pace)
         else:
             # Colours are given by tickets, so it has one of its own.
-            own = Run(-order.ticket, order.scene, values, pace=0.0)
+            own = Run(-order.ticket, settings, pace=0.0)
             run = WorkerRun(own, self._look, self._urgent, self._references)
             self._twin = Twin(run, order.pace)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look
-from app.wire.orders import Pace, Run, Seek, Step
+from app.wire.orders import Pace, Seek, Step
 from app.worker.run import WorkerRun
+from solver.settings import Settings
 
 
 class Twin:
@@ -38,10 +39,10 @@ class Twin:
         """Whether it has ended."""
         return self.recording.status is not None
 
-    def is_of(self, order: Run) -> bool:
-        """Tell whether an order wants this very run to go in step with another."""
-        settings = self.recording.settings
-        return (settings.scene, settings.values()) == (order.scene, order.twin)
+    def is_of(self, settings: Settings) -> bool:
+        """Tell whether it has these settings."""
+        own = self.recording.settings
+        return (own.scene, own.values()) == (settings.scene, settings.values())
 
     def begin(self, pace: float | None) -> None:
         """Go in step with another run B, from its first iteration on."""

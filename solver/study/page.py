@@ -48,7 +48,7 @@ th, td {{ padding: 0.2rem 0.5rem; border-bottom: 1px solid #8884; text-align: le
   vertical-align: top; }}
 td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
 td.verdict {{ border-left: 0.6rem solid; font-weight: 600; }}
-td.settings {{ overflow-wrap: anywhere; min-width: 24rem; }}
+td.more {{ overflow-wrap: anywhere; padding-bottom: 0.6rem; }}
 </style>
 {head}
 <h1>{title}</h1>

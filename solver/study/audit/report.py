@@ -23,6 +23,8 @@ COLOURS: dict[str, str] = {
     Verdict.WRONG: "#D55E00",
 }
 """Of Okabe and Ito's palette, told apart by the colour-blind."""
+LONG = {"expected": "Expected: ", "doubt": "", "advice": "", "settings": ""}
+"""Columns of words, and how these begin: beside numbers there is no room for them on a screen."""
 HEAD = (
     f"{'':<5} {'':<8} {'scene':<7} {'run':<44} {'method':<12} {'status':<10} {'':<9} {'iter.':>5} "
     f"{'estimate':>8} {'error W':>8} {'error F':>8}"
@@ -147,8 +149,8 @@ class AuditReport:
 
     def sections(self) -> list[str]:
         """Write it (HTML)."""
-        heads = [column.replace("_", " ") for column in self.columns]
-        rows = [_cells(one) for one in self._entries()]
+        heads = [column.replace("_", " ") for column in self.columns if column not in LONG]
+        rows = [row for one in self._entries() for row in _rows(one)]
         return [
             f"<p><b>{escape(self.summary)}</b></p>\n{plain_table(self.counts())}\n"
             f"{bullets(self.notes)}",
@@ -178,6 +180,15 @@ class AuditReport:
         return [table_file, page_file]
 
 
+def _rows(entries: Mapping[str, object]) -> list[str]:
+    """Give the cells of a run (HTML), and in a row below, as wide as all, what is said of it."""
+    short = {column: value for column, value in entries.items() if column not in LONG}
+    said = (f"{begin}{entries[one]}" for one, begin in LONG.items() if entries.get(one))
+    words = escape(" · ".join(said))
+    more = [f'<td class="more" colspan="{len(short)}">{words}</td>'] if words else []
+    return [_cells(short), *more]
+
+
 def _cells(row: Mapping[str, object]) -> str:
     cells = []
     for column, value in row.items():
@@ -194,8 +205,7 @@ def _cells(row: Mapping[str, object]) -> str:
         elif isinstance(value, int):
             cells.append(f'<td class="number">{value}</td>')
         else:
-            kind = ' class="settings"' if column in ("settings", "advice") else ""
-            cells.append(f"<td{kind}>{escape(str(value))}</td>")
+            cells.append(f"<td>{escape(str(value))}</td>")
     return "".join(cells)
 
 

@@ -1,0 +1,92 @@
+"""What a page shows and what is chosen on it, as one object that its parts watch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from contextlib import AbstractContextManager
+from typing import Any
+
+import param
+from param.parameterized import batch_call_watchers
+
+from app.picture.shown import Look
+from app.session.classroom import Room
+from app.views.catalogue import VIEWS as ALL_VIEWS
+from app.wire.reports import Facts
+from solver.lessons.lesson import Lesson
+from solver.settings import Settings
+
+TABS = ("Live", "What if", "Figures", "Study", "Stability")
+VIEWS = ("page", "present", "embed")
+DEFAULT_PACE = 20.0
+PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
+"""Iterations per second."""
+
+
+class State(param.Parameterized):
+    """The state of one page; all of it changes on the event loop of the server."""
+
+    settings = param.Parameter[Settings](doc="Of the run at work.")
+    wanted = param.Parameter[Settings](doc="Those that the user sees: of this run, or of the next.")
+    twin = param.Parameter[Settings | None](
+        doc="Of run A, which goes in step with this one as run B, from the next start on."
+    )
+    ticket = param.Integer(default=0, doc="Number of the run; 0 before the first.")
+    facts = param.Parameter[Facts | None](doc="What its newest picture says, once there is one.")
+    look = param.Parameter[Look](default=Look(), doc="Where one looks.")
+    running = param.Boolean(default=True, doc="Whether iterations go on by themselves.")
+    pace = param.Number(
+        default=DEFAULT_PACE, allow_None=True, doc="How many a second; None: all it can."
+    )
+    warm_start = param.Boolean(
+        default=False, doc="Whether a changed setting starts from the run before, if that is better"
+    )
+    tab = param.String(default=TABS[0], doc="Which of `TABS` is looked at.")
+    view = param.String(default=VIEWS[0], doc="Which of `VIEWS`: how much stands around plots.")
+    undrawn = param.Parameter[frozenset[str]](
+        default=frozenset(), doc="Names of the views that are not to be drawn."
+    )
+    is_named = param.Boolean(
+        default=False, doc="Whether the others are those that a lesson or an address names."
+    )
+    lesson = param.Parameter[Lesson | None](doc="The one that is open.")
+    choice = param.Parameter[int | None](doc="What was predicted in it.")
+    asks = param.Boolean(
+        default=False, doc="Whether its question waits, which nothing on the page may give away."
+    )
+    question = param.Parameter[Any](doc="What is asked over ranges of settings.")
+    refusal = param.String(doc="What was refused and why; empty as soon as that is past.")
+    told = param.String(doc="What was done.")
+    room = param.Parameter[Room | None](doc="The class that is followed.")
+    is_left = param.Boolean(default=False, doc="Whether nobody leads that at present.")
+    in_class = param.Integer(default=0, doc="Counts the news of the class.")
+    reported = param.Integer(default=0, doc="Counts the news of reports and the sweep.")
+
+    def together(self) -> AbstractContextManager[None]:
+        """Have what changes in here told at its end, all of it together."""
+        return batch_call_watchers(self)
+
+    def draw(self, names: Iterable[str]) -> None:
+        """Draw the views of these names and no others."""
+        undrawn = frozenset(view.name for view in ALL_VIEWS) - frozenset(names)
+        self.param.update(undrawn=undrawn, is_named=bool(undrawn))
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the run ended or broke: only another run can go on."""
+        return self.facts is not None and (self.facts.is_over or self.facts.is_broken)
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the run is one that goes on until the user pauses it."""
+        return self.running and not self.is_over
+
+    @property
+    def plots(self) -> str:
+        """Names of the views that are drawn, separated by commas, or nothing if all are."""
+        return ",".join(self.drawn) if self.undrawn else ""
+
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """Names of the views that are to be drawn, where they fit."""
+        return tuple(view.name for view in ALL_VIEWS if view.name not in self.undrawn)
