@@ -141,6 +141,18 @@ def test_of_a_map_that_fills_only_new_runs_are_sent(monkeypatch: pytest.MonkeyPa
     assert sent == [5, 18]
 
 
+def test_the_chart_before_is_between_the_ends_of_the_axis_too() -> None:
+    low = [Row(n, "converged", "", (2.0 + n,)) for n in range(6)]
+    high = [Row(n, "converged", "", (30.0 + n,)) for n in range(6)]
+    before, chart = chart_of(LINES, high), chart_of(LINES, low)
+    figure = draw(chart)
+    assert figure.y_range.end < 30.0
+    fill(figure, chart, before, None)
+    assert figure.y_range.start < 2.0
+    assert figure.y_range.end > 35.0
+    assert len(columns(figure, "ghost")["xs"]) == 2
+
+
 def test_what_is_zoomed_stays_while_a_chart_fills() -> None:
     figure = draw(chart_of(AREA, rows_of_map(40)))
     figure.x_range.update(start=0.2, end=0.3)

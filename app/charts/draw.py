@@ -49,7 +49,7 @@ def draw(
     """
     made = hv.Overlay([_drawn(layer) for layer in layers(chart, before, here)])
     size = {"responsive": True, **({"height": height} if height else {})}
-    drawn: figure = hv.renderer("bokeh").get_plot(made.opts(**size, **_axes(chart))).state
+    drawn: figure = hv.renderer("bokeh").get_plot(made.opts(**size, **_axes(chart, before))).state
     return drawn
 
 
@@ -71,8 +71,8 @@ def _drawn(layer: Layer) -> Any:
     )
 
 
-def _axes(chart: Chart) -> dict[str, Any]:
-    across, up = limits(chart)
+def _axes(chart: Chart, before: Chart | None) -> dict[str, Any]:
+    across, up = limits(chart, before)
     return {
         "title": chart.title,
         "logx": chart.x.logarithmic,

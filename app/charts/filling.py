@@ -120,7 +120,7 @@ def fill(figure: Any, chart: Chart, before: Chart | None, here: Here | None) -> 
         # HoloViews has what decides of colours in a column of its own.
         origins = {name: layer.looks["color"] if name == "color" else name for name in source.data}
         _feed(source, {name: layer.columns[origin] for name, origin in origins.items()})
-    for axis, ends in zip((figure.x_range, figure.y_range), limits(chart), strict=True):
+    for axis, ends in zip((figure.x_range, figure.y_range), limits(chart, before), strict=True):
         _move(axis, ends)
     if isinstance(chart, Map):
         low, high = span(chart)

@@ -14,7 +14,7 @@ from contourpy import contour_generator
 
 from app.views.colors import FORCE, GREY, shaded
 from solver.arrays import Array, Flags, Indices
-from solver.study.chart import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, Runs
+from solver.study.chart import HUES, Chart, Map, Panel, PanelCurve, Runs
 
 COLORS = (GREY, *HUES)
 """Of curves by their hue; grey is of references."""
@@ -79,10 +79,13 @@ def edges(values: Array, *, logarithmic: bool) -> Array:
     return np.exp(found) if logarithmic else found
 
 
-def limits(chart: Chart) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
-    """Give the ends of both axes; None for whatever fits."""
+def limits(chart: Chart, before: Chart | None) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """Give the ends of both axes, between which the chart before is too; None for whatever fits."""
     if isinstance(chart, Panel):
-        return chart.x.limits or (None, None), chart.y.limits or (None, None)
+        up, old = chart.y.limits, before.y.limits if before else None
+        if up and old and (old[0] > 0.0 or not chart.y.logarithmic):
+            up = min(up[0], old[0]), max(up[1], old[1])
+        return chart.x.limits or (None, None), up or (None, None)
     x = edges(chart.x_values, logarithmic=chart.x.logarithmic)
     y = edges(chart.y_values, logarithmic=chart.y.logarithmic)
     return (float(x[0]), float(x[-1])), (float(y[0]), float(y[-1]))
@@ -94,7 +97,8 @@ def span(chart: Map) -> tuple[float, float]:
     if not known.size:
         return (1.0, 10.0)
     low, high = float(known.min()), float(known.max())
-    return (low, high) if low < high else (low - 0.1 * abs(low) - 1e-300, high + 0.1 * abs(high))
+    by = 0.1 * abs(low) or 1.0
+    return (low, high) if low < high else (low - by, high + by)
 
 
 def levels(low: float, high: float, *, logarithmic: bool) -> Array:
@@ -118,7 +122,7 @@ def _of_panel(panel: Panel, before: Panel | None, here: Here) -> Iterator[Layer]
     for place, curve in enumerate(panel.curves):
         yield from _of_curve(panel, curve, place)
     if panel.runs is not None:
-        yield from _of_runs(panel.y, panel.runs, here)
+        yield from _of_runs(panel, before, panel.runs, here)
 
 
 def _of_curve(panel: Panel, curve: PanelCurve, place: int) -> Iterator[Layer]:
@@ -140,8 +144,8 @@ def _of_curve(panel: Panel, curve: PanelCurve, place: int) -> Iterator[Layer]:
         yield Layer(f"{name}-points", "Points", columns, {"color": color, "size": 6})
 
 
-def _of_runs(axis: PanelAxis, runs: Runs, here: Here) -> Iterator[Layer]:
-    (low, high), (x, y) = axis.limits or (0.0, 1.0), here
+def _of_runs(panel: Panel, before: Panel | None, runs: Runs, here: Here) -> Iterator[Layer]:
+    (_, (low, high)), (x, y), axis = limits(panel, before), here, panel.y
     known = np.isfinite(runs.y)
     # What has no value stands at the upper edge.
     top = high * (low / high) ** 0.03 if axis.logarithmic else high - 0.03 * (high - low)
@@ -208,14 +212,11 @@ def _told(runs: Runs, which: Flags) -> dict[str, Any]:
 def _cells(chart: Map, which: Flags) -> dict[str, Any]:
     """Give a cell for each run."""
     told, runs = _told(chart.runs, which), chart.runs
-    sides = _sides(
-        chart,
-        *(
-            np.searchsorted(values, told[name])
-            for name, values in (("x", chart.x_values), ("y", chart.y_values))
-        ),
+    columns, rows = (
+        np.searchsorted(values, told[name])
+        for name, values in (("x", chart.x_values), ("y", chart.y_values))
     )
-    return {**sides, "value": runs.values[which], **told}
+    return {**_sides(chart, columns, rows), "value": runs.values[which], **told}
 
 
 def _between(chart: Map) -> dict[str, Any]:
