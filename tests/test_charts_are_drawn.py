@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bokeh.models import ColorBar, ColumnDataSource, HoverTool
+from bokeh.models import ColorBar, ColumnDataSource, ContinuousColorMapper, HoverTool
 from browser import Chrome
 from sweeps import tiny
 
@@ -122,6 +122,10 @@ def test_a_chart_that_fills_comes_to_what_is_drawn_at_once(plan: Plan, rows: lis
         for column, values in own.items():
             assert found[name][column].tolist() == values.tolist(), (name, column)
     assert all(figure.select_one({"name": name}) is one for name, one in kept.items())
+    colours = [one.select({"type": ContinuousColorMapper}) for one in (figure, at_once)]
+    assert {(one.low, one.high) for one in colours[0]} == {
+        (one.low, one.high) for one in colours[1]
+    }
     for axis in ("x_range", "y_range"):
         ends = [(getattr(one, axis).start, getattr(one, axis).end) for one in (figure, at_once)]
         assert ends[0] == ends[1]

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import panel as pn
-from bokeh.models import ColumnDataSource, ContinuousColorMapper, Range1d
+from bokeh.models import ColumnDataSource, Range1d
 
 from app.charts.layers import Here, layers, limits, span
 from app.components.panes import column
@@ -115,17 +115,18 @@ def form(chart: Chart) -> tuple[Any, ...]:
 
 def fill(figure: Any, chart: Chart, before: Chart | None, here: Here | None) -> None:
     """Bring a figure up to a chart of the same form; of runs only what is new is sent."""
+    # Not `select`, which goes through all models: 20 ms a source.
+    sources = {one.data_source.name: one.data_source for one in figure.renderers}
     for layer in layers(chart, before, here):
-        source = figure.select_one({"name": layer.name})
+        source = sources[layer.name]
         # HoloViews has what decides of colours in a column of its own.
         origins = {name: layer.looks["color"] if name == "color" else name for name in source.data}
         _feed(source, {name: layer.columns[origin] for name, origin in origins.items()})
     for axis, ends in zip((figure.x_range, figure.y_range), limits(chart, before), strict=True):
         _move(axis, ends)
     if isinstance(chart, Map):
-        low, high = span(chart)
-        for mapper in figure.select({"type": ContinuousColorMapper}):
-            mapper.update(low=low, high=high)
+        (bar,), (low, high) = figure.right, span(chart)
+        bar.color_mapper.update(low=low, high=high)
 
 
 def _feed(source: ColumnDataSource, new: dict[str, Any]) -> None:
