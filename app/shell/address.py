@@ -131,11 +131,14 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
         if name == LEFT_OUT:
             refused.append(f"{shorten(text, LONGEST_NAME)} is too long for it: open its file")
             continue
-        if name not in definitions:
+        if name not in definitions and name not in base.RETIRED:
             refused.append(f"there is no setting {shorten(name, LONGEST_NAME)}")
             continue
         try:
-            values[name] = checked_value(definitions[name], name, parse(text))
+            if name in base.RETIRED:
+                base.RETIRED[name].check(name, parse(text))
+            else:
+                values[name] = checked_value(definitions[name], name, parse(text))
         except SettingError as refusal:
             refused.append(refused_by_name(refusal, base))
     settings, apart = _together(base, values)
