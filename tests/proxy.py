@@ -57,7 +57,11 @@ class Proxy:
                 if self._is_cut:
                     near.close()
                     continue
-                far = socket.create_connection(("127.0.0.1", self.target))
+                try:
+                    far = socket.create_connection(("127.0.0.1", self.target))
+                except ConnectionRefusedError:
+                    near.close()
+                    continue
                 self._sockets += [near, far]
                 for ends in ((near, far), (far, near)):
                     Thread(target=self._pass_on, args=ends, daemon=True).start()

@@ -1,8 +1,7 @@
-"""Plots, figures and lessons fit a projector's window; keys move the run only where it is seen."""
+"""Plots, figures and lessons fit a projector's window."""
 
 from contextlib import suppress
 
-import pytest
 from pages import press
 from playwright.sync_api import TimeoutError, expect
 
@@ -91,21 +90,6 @@ def test_two_rows_of_plots_fit_a_window_under_all_buttons_and_words(open_page):
     expect(page.locator(".card").first).to_be_in_viewport(ratio=1)
 
 
-def test_keys_move_the_run_only_where_it_is_seen(open_page):
-    page = open_page("?method=paper&max_iterations=5")
-    status = page.locator(".status").first
-    expect(status).to_contain_text("after 5 iterations")
-    page.get_by_role("button", name="Stability", exact=True).click()
-    expect(page.get_by_text("Stiff and extreme cases of every scene")).to_be_visible()
-    page.locator("body").press("r")
-    page.get_by_role("button", name="Live", exact=True).click()
-    expect(page.locator(".figures")).to_contain_text("this run")
-    page.wait_for_timeout(1000)
-    expect(page.locator(".figures")).not_to_contain_text("before")
-    page.locator("body").press("r")
-    expect(page.locator(".figures")).to_contain_text("before (first settings)")
-
-
 def test_key_figures_of_two_runs_fit_beside_the_sidebar(open_page):
     page = open_page('?method=paper&max_iterations=9&compare={"multiscale":false}', 1280, 720)
     figures = page.locator(".figures")
@@ -129,33 +113,51 @@ def size_of_type(region):
     return min(region.locator("p:visible").evaluate_all(sizes))
 
 
-@pytest.mark.parametrize("view", ["page", "present"])
-def test_all_that_a_lesson_names_is_seen_without_scrolling_and_it_leads_to_the_next(
-    open_page, view
-):
+def test_all_that_a_lesson_names_is_seen_without_scrolling_and_it_leads_to_the_next(open_page):
     first, *_, last = LESSONS.values()
-    page = open_page(f"?lesson={first.name}&view={view}", 1280, 720)
-    for lesson in LESSONS.values():
-        region = page.get_by_role("region", name="Lesson")
-        expect(region).to_contain_text(lesson.question)
-        page.wait_for_function(NOTHING_SCROLLS)
-        wrong = [choice for place, choice in enumerate(lesson.choices) if place != lesson.right]
-        press(page, max(wrong, key=len))
+    page = open_page(f"?lesson={first.name}", 1280, 720)
+    region = page.get_by_role("region", name="Lesson")
+    leave = page.get_by_role("button", name="Explore freely")
+    following = page.get_by_role("button", name="Next: ")
+    parts = page.get_by_role("navigation", name="Parts of the lesson")
+
+    def plots_are_seen(lesson):
         cards = page.locator(".card")
         expect(cards).to_have_count(len(lesson.views))
         for card in cards.all():
             expect(card).to_be_in_viewport(ratio=1)
-        if view == "page":
-            expect(region.locator(".control:visible")).to_have_count(len(lesson.controls))
-        leave = page.get_by_role("button", name="Explore freely")
-        while view == "present" and not leave.is_visible():
+
+    def all_is_on_the_page(lesson):
+        expect(parts).to_be_hidden()
+        plots_are_seen(lesson)
+        expect(region.locator(".control:visible")).to_have_count(len(lesson.controls))
+
+    def all_comes_in_front_of_a_class(lesson):
+        expect(parts).to_be_visible()
+        plots_are_seen(lesson)
+        while not leave.is_visible():
             page.wait_for_function(NOTHING_SCROLLS)
             assert size_of_type(region) >= 24
             page.keyboard.press("PageDown")
+
+    def all_fits():
         expect(leave).to_be_in_viewport(ratio=1)
         page.wait_for_function(NOTHING_SCROLLS)
         nothing_collides(page)
-        following = page.get_by_role("button", name="Next: ")
+
+    views = [all_is_on_the_page, all_comes_in_front_of_a_class]
+    for lesson in LESSONS.values():
+        expect(region).to_contain_text(lesson.question)
+        page.wait_for_function(NOTHING_SCROLLS)
+        wrong = [choice for place, choice in enumerate(lesson.choices) if place != lesson.right]
+        press(page, max(wrong, key=len))
+        views[0](lesson)
+        all_fits()
+        page.locator("body").press("p")
+        # The next lesson begins in the view that this one ends in.
+        views.reverse()
+        views[0](lesson)
+        all_fits()
         if lesson is not last:
             following.press("Enter")
     expect(following).to_have_count(0)

@@ -14,6 +14,7 @@ from app.session.bench import Bench
 from app.session.pages import Pages
 from app.session.session import HELD_STILL, Session
 from app.shell.dashboard import Dashboard
+from app.shell.transport import Transport
 from app.wire.reports import Facts, Picture
 from solver.scenes.bar import BarSettings
 
@@ -170,3 +171,15 @@ def test_a_page_at_rest_has_nothing_to_do(session: Session, link: LoneLink, cloc
     dashboard._sidebar._on_setting("peak", 910.0)
     clock.pass_(2 * MOMENT)
     assert clock.is_idle
+
+
+def test_an_instant_is_chosen_also_before_a_run_has_a_picture(session: Session) -> None:
+    transport = Transport(session)
+    session.start()
+    assert session.facts is None
+    transport.choose_time(0.25 * session.settings.duration)
+    assert session.look.phase == 0.25
+    transport._choose_instant(transport._instant.end)
+    assert session.look.phase == 1.0
+    transport.move_instant(-1)
+    assert 0.0 <= session.look.phase < 1.0

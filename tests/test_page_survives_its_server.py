@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 import signal
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing
 from pathlib import Path
 
+import pytest
 from browser import Chrome, Server
 from pages import choose, press, slider, status
 from playwright.sync_api import Page, expect
@@ -18,34 +19,38 @@ PAGES = """Bokeh.documents.filter((one) => one.roots().some(({type}) => type !==
 """Documents that are no figure's."""
 
 
-@contextmanager
-def behind_a_network(
-    log: Path, chrome: Chrome, *options: str
-) -> Iterator[tuple[Proxy, Server, Page]]:
-    """Give a page, its server, and the network between them."""
-    with closing(Proxy()) as proxy:
-        origin = f"localhost:{proxy.port}"
-        server = Server(log, 0, "--allow-websocket-origin", origin, *options)
-        proxy.target = server.port
-        try:
-            server.wait()
-            page = chrome.new_page()
-            page.goto(f"http://{origin}/app?substructures=5")
-            expect(status(page)).to_contain_text("after")
-            slider(page, "Substructures").press("ArrowRight")
-            expect(status(page)).to_contain_text(re.compile("after .* 6 substructures"))
-            page.evaluate("window.stayed = true")
-            yield proxy, server, page
-            expect(status(page)).to_contain_text(re.compile("after .* 6 substructures"))
-            slider(page, "Substructures").press("ArrowRight")
-            expect(status(page)).to_contain_text("7 substructures")
-            # What listens on the document goes with the page that is taken from it.
-            page.evaluate("Bokeh.documents[0].clear()")
-            assert keys_heard(page) == 0
-            chrome.leave(page)
-            assert "Traceback" not in server.log, server.log
-        finally:
-            server.stop()
+class Network:
+    """A page, and a server behind a network that can be cut.
+
+    Attributes
+    ----------
+    page, proxy, server
+        What there is of these; there may be another server by and by.
+    """
+
+    def __init__(self, folder: Path, chrome: Chrome, ends: ExitStack) -> None:
+        self._folder, self._ends = folder, ends
+        self.proxy = ends.enter_context(closing(Proxy()))
+        self.server = self.serve()
+        self.page = chrome.new_page()
+        ends.callback(chrome.leave, self.page)
+        self.page.goto(f"http://localhost:{self.proxy.port}/app?scene=strand&wires=5")
+        expect(status(self.page)).to_contain_text("iteration")
+
+    def serve(self, *options: str) -> Server:
+        """Start a server, to which the network leads from now on."""
+        origin = ("--allow-websocket-origin", f"localhost:{self.proxy.port}")
+        server = Server(self._folder / f"{len(options)}", 0, *origin, *options)
+        self._ends.callback(server.stop)
+        server.wait()
+        self.proxy.target, self.server = server.port, server
+        return server
+
+
+@pytest.fixture(scope="module")
+def network(tmp_path_factory: pytest.TempPathFactory, chrome: Chrome) -> Iterator[Network]:
+    with ExitStack() as ends:
+        yield Network(tmp_path_factory.mktemp("servers"), chrome, ends)
 
 
 def keys_heard(page: Page) -> int:
@@ -56,67 +61,59 @@ def keys_heard(page: Page) -> int:
     return sum(one["type"] == "keydown" for one in listeners)
 
 
-def test_a_page_comes_back_to_its_settings_tab_instant_and_pace(
-    tmp_path: Path, chrome: Chrome
+def test_a_page_whose_socket_broke_goes_on_where_it_was(network: Network) -> None:
+    page, proxy = network.page, network.proxy
+    slider(page, "Wires").press("ArrowRight")
+    expect(status(page)).to_contain_text("36 substructures")
+    page.evaluate("window.stayed = true")
+    heard = keys_heard(page)
+    for broken in (proxy.cut, proxy.hush):
+        broken()
+        expect(status(page)).to_contain_text("not connected")
+        proxy.mend()
+        expect(status(page)).to_contain_text("36 substructures")
+        # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
+        page.wait_for_function(f"window.stayed && {PAGES} === 1", timeout=1e3 * PATIENCE)
+        assert keys_heard(page) == heard > 0
+    slider(page, "Wires").press("ArrowLeft")
+    expect(status(page)).to_contain_text("30 substructures")
+    assert "Traceback" not in network.server.log, network.server.log
+
+
+def test_a_page_comes_back_to_its_settings_tab_instant_and_pace_on_another_server(
+    network: Network,
 ) -> None:
-    server = Server(tmp_path / "first")
-    page = chrome.new_page()
-    try:
-        server.wait()
-        page.goto(server.address + "?scene=strand&wires=5")
-        expect(status(page)).to_contain_text("iteration")
-        slider(page, "Instant").press("Home")
-        choose(page.get_by_role("combobox", name=re.compile("^Pace")), "5 iterations/s")
-        slider(page, "Wires").press("ArrowRight")
-        press(page, "Stability")
-        page.wait_for_url(re.compile("(?=.*wires=6)(?=.*tab=Stability)(?=.*instant=0)(?=.*pace=5)"))
-    finally:
-        server.stop(signal.SIGKILL)
+    page, proxy = network.page, network.proxy
+    slider(page, "Instant").press("Home")
+    choose(page.get_by_role("combobox", name=re.compile("^Pace")), "5 iterations/s")
+    slider(page, "Wires").press("ArrowRight")
+    press(page, "Stability")
+    page.wait_for_url(re.compile("(?=.*wires=6)(?=.*tab=Stability)(?=.*instant=0)(?=.*pace=5)"))
+    network.server.stop(signal.SIGKILL)
     expect(status(page)).to_contain_text("not connected")
-    again = Server(tmp_path / "second", server.port)
-    try:
-        again.wait()
-        expect(status(page)).to_contain_text("iteration")
-        expect(page.get_by_role("button", name="Stability")).to_have_attribute(
-            "aria-pressed", "true"
-        )
-        press(page, "Live")
-        expect(page.get_by_text("t = 0 s")).to_be_visible()
-        expect(page.get_by_role("combobox", name=re.compile("^Pace"))).to_have_text(
-            "5 iterations/s"
-        )
-        expect(slider(page, "Wires")).to_have_value("6")
-        assert "Traceback" not in again.log
-        chrome.leave(page)
-    finally:
-        again.stop()
+    server = network.serve("--unused-session-lifetime", "3000", "--check-unused-sessions", "100")
 
+    def is_as_it_was() -> None:
+        expect(status(page)).to_contain_text("36 substructures")
+        tab = page.get_by_role("button", name="Stability")
+        expect(tab).to_have_attribute("aria-pressed", "true")
 
-def test_a_page_whose_socket_broke_goes_on_where_it_was(tmp_path: Path, chrome: Chrome) -> None:
-    with behind_a_network(tmp_path / "log", chrome) as (proxy, _, page):
-        heard = keys_heard(page)
-        proxy.cut()
-        expect(status(page)).to_contain_text("not connected")
-        proxy.mend()
-        expect(status(page)).to_contain_text("6 substructures")
-        # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
-        page.wait_for_function(f"window.stayed && {PAGES} === 1", timeout=1e3 * PATIENCE)
-        assert keys_heard(page) == heard > 0
-        proxy.hush()
-        expect(status(page)).to_contain_text("not connected")
-        proxy.mend()
-        expect(status(page)).to_contain_text("6 substructures")
-        # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
-        page.wait_for_function(f"window.stayed && {PAGES} === 1", timeout=1e3 * PATIENCE)
-        assert keys_heard(page) == heard > 0
-
-
-def test_a_page_that_was_given_up_meanwhile_is_made_anew(tmp_path: Path, chrome: Chrome) -> None:
-    short = ("--unused-session-lifetime", "3000", "--check-unused-sessions", "100")
-    with behind_a_network(tmp_path / "log", chrome, *short) as (proxy, server, page):
-        with_page = len(server.processes())
-        proxy.cut()
-        expect(status(page)).to_contain_text("not connected")
-        wait_for(lambda: len(server.processes()) < with_page)
-        proxy.mend()
-        expect(status(page)).to_contain_text("6 substructures")
+    is_as_it_was()
+    # A page that the server gives up meanwhile is made anew.
+    with_page = len(server.processes())
+    page.evaluate("window.stayed = true")
+    proxy.cut()
+    expect(status(page)).to_contain_text("not connected")
+    wait_for(lambda: len(server.processes()) < with_page)
+    proxy.mend()
+    page.wait_for_function("!window.stayed")
+    is_as_it_was()
+    press(page, "Live")
+    expect(page.get_by_text("t = 0 s")).to_be_visible()
+    expect(page.get_by_role("combobox", name=re.compile("^Pace"))).to_have_text("5 iterations/s")
+    slider(page, "Wires").press("ArrowRight")
+    expect(status(page)).to_contain_text("42 substructures")
+    # What listens on the document goes with the page that is taken from it.
+    page.evaluate("Bokeh.documents[0].clear()")
+    assert keys_heard(page) == 0
+    assert "Traceback" not in server.log, server.log

@@ -112,13 +112,11 @@ class Transport:
 
     def choose_time(self, time: float) -> None:
         """Look at the instant nearest to a time, s."""
-        if self._session.facts is not None:
-            self._choose_phase(time / self._session.facts.duration)
+        self._choose_phase(time / self._session.settings.duration)
 
     def move_instant(self, by: int) -> None:
         """Look at an instant so many later."""
-        if (facts := self._session.facts) is not None:
-            self._choose_instant(facts.instant + by)
+        self._choose_instant(round(self._session.look.phase * self._instant.end) + by)
 
     def move_iteration(self, by: int) -> None:
         """Look at an iteration so many later."""
@@ -228,8 +226,8 @@ class Transport:
         )
 
     def _choose_instant(self, number: int) -> None:
-        if (facts := self._session.facts) is not None:
-            self._choose_phase(number / max(facts.instants - 1, 1))
+        # By what the slider says, which may be of a run that has no picture yet.
+        self._choose_phase(number / max(self._instant.end, 1))
 
     def _choose_phase(self, phase: float) -> None:
         """Look at a share of the interval; who chooses one plays no more."""
