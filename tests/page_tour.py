@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import param
-from pages import Visit, slider
+from pages import Visit, choose, slider
 from playwright.sync_api import Page, TimeoutError, expect
+from processes import wait_for
 from tour import SIZES, Move, back, described, has_choice, one_end, small
 
 from app.components.form import POINTS
 from solver.definitions import CurveParameter, Parameter, SettingError, about
+from solver.scenes.entry import Entry
 from solver.settings import Settings
 
 ITERATIONS = 10
@@ -111,12 +114,20 @@ class Tour:
                 raise AssertionError(f"{described(move)}: {words}") from late
         assert self._evaluate("window.broken") == []
 
-    def assert_there_is_a_control_for_all_that_applies(self) -> None:
-        seen = self.page.locator(".sidebar [class*=setting-]:visible").evaluate_all(
-            "(all) => all.flatMap((one) => [...one.classList])"
-        )
-        found = {one.removeprefix("setting-") for one in seen} & set(self.base.definitions())
-        assert found == applying(self.base), found ^ applying(self.base)
+    def assert_there_is_a_control_for_all_that_applies(self, scene: Entry[Any]) -> None:
+        """Choose a scene, and wait until its controls are there."""
+        choose(self.page.get_by_role("combobox", name="Scene"), scene.title)
+        base = scene.settings.checked({})
+        names, expected = list(base.definitions()), applying(base)
+        place = self.page.locator(".sidebar [class*=setting-]:visible")
+
+        def seen() -> set[str]:
+            classes = place.evaluate_all("(all) => all.flatMap((one) => [...one.classList])")
+            return {one.removeprefix("setting-") for one in classes} & set(names)
+
+        with suppress(AssertionError):
+            wait_for(lambda: seen() == expected)
+        assert seen() == expected
 
     def _move(self, move: Move) -> None:
         """Press the key that moves a slider to its end, or have the widget send a value."""

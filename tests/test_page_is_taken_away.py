@@ -41,9 +41,10 @@ def saved(page: Page, button: str) -> Path:
     return Path(download.value.path())
 
 
-def test_a_plot_is_saved_with_name_legend_and_units(open_page: Visit) -> None:
-    page = open_page(f"?{SMALL}&theme=dark")
-    expect(status(page)).to_contain_text("after 12 iterations")
+def test_a_plot_is_saved_with_name_legend_and_units(page: Page) -> None:
+    theme = page.get_by_role("button", name="Toggle theme")
+    theme.click()
+    expect(page.locator(".mui-dark").first).to_be_visible()
     expect(card(page, "Friction force").first).to_contain_text("reference")
     page.get_by_role("combobox", name="Plot").select_option("Friction force")
     drawing = ElementTree.fromstring(saved(page, "SVG").read_text())
@@ -55,6 +56,8 @@ def test_a_plot_is_saved_with_name_legend_and_units(open_page: Visit) -> None:
     # Dark paper, and light words on it.
     assert np.median(pixels) < 64
     assert pixels[:60].max() > 200
+    theme.click()
+    expect(page.locator(".mui-light").first).to_be_visible()
 
 
 def test_an_animation_has_a_picture_of_every_instant(page: Page) -> None:

@@ -32,7 +32,12 @@ def test_scenes_are_chosen_and_keep_their_settings(open_page: Visit) -> None:
 
 
 def test_bodies_are_drawn_in_the_browser_and_looked_at_otherwise(open_page: Visit) -> None:
-    page = open_page("?scene=layers&layers=3&elements=16&method=paper&max_iterations=30")
+    page = open_page("?scene=layers&layers=1&elements=16&method=paper&max_iterations=30")
+    # What is refused of an address is told; the rest of it holds.
+    expect(page.get_by_text("Layers cannot be 1: ").first).to_be_visible()
+    field = page.get_by_role("textbox", name=re.compile("^Layers"))
+    field.fill("3")
+    field.press("Enter")
     bodies_drawn(page, f"=== {3 * 16 * 2}")
     expect(page.get_by_text("displacement ×").first).to_be_visible()
     slider(page, "Magnification").fill("7")

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
-from pages import Visit, at_rest, card, status
+from collections.abc import Iterator
+
+import pytest
+from browser import Chrome, Server
+from pages import Visit, at_rest, card, status, visits
 from playwright.sync_api import Page, expect
 from processes import PATIENCE
 
 MODEL = """const model = (name) =>
   Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)"""
+
+
+@pytest.fixture(scope="module")
+def page(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give a page with a bar whose run has ended; the last test pulls it by another load."""
+    with visits(server, chrome) as visit:
+        opened = visit("?elements=20&substructures=4&instants=21")
+        expect(status(opened)).to_contain_text("✓ converged")
+        yield opened
 
 
 def place(page: Page, name: str, share: float) -> tuple[float, float]:
@@ -37,9 +50,51 @@ def load_arrow(page: Page) -> list[float]:
     return found
 
 
-def test_the_load_arrow_is_dragged_and_the_run_follows(open_page: Visit) -> None:
-    page = open_page("?elements=20&substructures=4")
-    expect(status(page)).to_contain_text("✓ converged")
+MIDDLE = (
+    f"() => {{{MODEL}"
+    """
+      const bodies = model("scene.bodies"), {xs, ys, value} = bodies.data
+      const [figure] = bodies.document.roots()
+      const view = Bokeh.index.find_one_by_id(figure.id)
+      const {x, y} = view.el.getBoundingClientRect()
+      const at = [...value].findIndex((part) => part === 1)
+      const middle = (ends) => ends.reduce((a, b) => a + b) / ends.length
+      const {x_scale, y_scale} = view.frame
+      return [
+        x + x_scale.compute(middle([...xs[at]])), y + y_scale.compute(middle([...ys[at]]))]
+    }"""
+)
+"""Of the first element of the second substructure, on the screen."""
+
+
+def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away(
+    page: Page,
+) -> None:
+    lines = f"{MODEL}; return model('friction-force.curves').data.xs.map((xs) => xs[0])"
+    shown = f"() => {{{lines}.some((x) => Math.abs(x - 0.275) < 1e-6)}}"
+    assert not page.evaluate(shown)
+    # Arrows of the pressure end there: who does not drag them taps on the bar.
+    page.mouse.click(*at_rest(page, MIDDLE))
+    page.wait_for_function(shown)
+    # Two taps that follow at once would be a double one.
+    page.wait_for_timeout(400)
+    page.mouse.click(*at_rest(page, MIDDLE))
+    page.wait_for_function(f"() => !({shown})()")
+
+
+def test_an_instant_is_chosen_on_the_load_path_and_the_picture_follows(page: Page) -> None:
+    expect(page.get_by_text("Load path").last).to_be_visible()
+    words = f"{MODEL}; return model('scene.words').data.text.join()"
+    page.wait_for_function(f"() => {{{words}.includes('F = −0.9 kN')}}")
+    page.mouse.click(*place(page, "Load path", 0.4))
+    page.wait_for_function(f"() => {{{words}.includes('F = 0.')}}")
+    expect(page.get_by_text("Instant").first).not_to_contain_text("0.75")
+
+
+def test_the_load_arrow_is_dragged_and_the_run_follows(page: Page) -> None:
+    page.get_by_role("slider", name="Instant", exact=True).fill("15")
+    words = f"{MODEL}; return model('scene.words').data.text.join()"
+    page.wait_for_function(f"() => {{{words}.includes('F = −0.9 kN')}}")
     tail, height, head, _ = load_arrow(page)
     assert head < tail
     middle = 0.5 * (tail + head)
@@ -64,36 +119,7 @@ def test_the_load_arrow_is_dragged_and_the_run_follows(open_page: Visit) -> None
     expect(status(page)).to_contain_text("✓ converged")
     value = float(peak.input_value())
     assert value > 950.0
-    words = f"{MODEL}; return model('scene.words').data.text.join()"
     page.wait_for_function(f"() => {{{words}.includes('F = −{value / 1e3:.3g} kN')}}")
-
-
-def test_an_instant_is_chosen_on_the_load_path_and_the_picture_follows(open_page: Visit) -> None:
-    page = open_page("?elements=20&substructures=4")
-    expect(status(page)).to_contain_text("✓ converged")
-    expect(page.get_by_text("Load path").last).to_be_visible()
-    words = f"{MODEL}; return model('scene.words').data.text.join()"
-    page.wait_for_function(f"() => {{{words}.includes('F = −0.9 kN')}}")
-    page.mouse.click(*place(page, "Load path", 0.4))
-    page.wait_for_function(f"() => {{{words}.includes('F = 0.')}}")
-    expect(page.get_by_text("Instant").first).not_to_contain_text("0.75")
-
-
-MIDDLE = (
-    f"() => {{{MODEL}"
-    """
-      const bodies = model("scene.bodies"), {xs, ys, value} = bodies.data
-      const [figure] = bodies.document.roots()
-      const view = Bokeh.index.find_one_by_id(figure.id)
-      const {x, y} = view.el.getBoundingClientRect()
-      const at = [...value].findIndex((part) => part === 1)
-      const middle = (ends) => ends.reduce((a, b) => a + b) / ends.length
-      const {x_scale, y_scale} = view.frame
-      return [
-        x + x_scale.compute(middle([...xs[at]])), y + y_scale.compute(middle([...ys[at]]))]
-    }"""
-)
-"""Of the first element of the second substructure, on the screen."""
 
 
 def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None:
@@ -102,23 +128,6 @@ def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None
     expect(card(page, "Scene").locator("canvas").first).to_be_visible()
     page.mouse.click(*at_rest(page, MIDDLE))
     expect(page.get_by_role("slider", name="Substructure", exact=True)).to_have_value("2")
-
-
-def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away(
-    open_page: Visit,
-) -> None:
-    page = open_page("?elements=20&substructures=4")
-    expect(status(page)).to_contain_text("✓ converged")
-    lines = f"{MODEL}; return model('friction-force.curves').data.xs.map((xs) => xs[0])"
-    shown = f"() => {{{lines}.some((x) => Math.abs(x - 0.275) < 1e-6)}}"
-    assert not page.evaluate(shown)
-    # Arrows of the pressure end there: who does not drag them taps on the bar.
-    page.mouse.click(*at_rest(page, MIDDLE))
-    page.wait_for_function(shown)
-    # Two taps that follow at once would be a double one.
-    page.wait_for_timeout(400)
-    page.mouse.click(*at_rest(page, MIDDLE))
-    page.wait_for_function(f"() => !({shown})()")
 
 
 def test_no_word_of_a_picture_is_cut_in_front_of_a_class(open_page: Visit) -> None:
