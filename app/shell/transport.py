@@ -116,7 +116,7 @@ class Transport:
 
     def move_instant(self, by: int) -> None:
         """Look at an instant so many later."""
-        self._choose_instant(round(self._session.look.phase * self._instant.end) + by)
+        self._choose_instant(round(self._session.look.phase * self._last) + by)
 
     def move_iteration(self, by: int) -> None:
         """Look at an iteration so many later."""
@@ -225,9 +225,14 @@ class Transport:
             start=1,
         )
 
+    @property
+    def _last(self) -> int:
+        """The last instant, also of a run that has no picture yet."""
+        last: int = self._session.settings.instants - 1
+        return last
+
     def _choose_instant(self, number: int) -> None:
-        # By what the slider says, which may be of a run that has no picture yet.
-        self._choose_phase(number / max(self._instant.end, 1))
+        self._choose_phase(number / max(self._last, 1))
 
     def _choose_phase(self, phase: float) -> None:
         """Look at a share of the interval; who chooses one plays no more."""
