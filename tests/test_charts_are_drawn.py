@@ -170,7 +170,8 @@ def test_contours_are_at_values_that_are_easily_read(low: float, high: float, lo
     assert 3 <= len(found) <= 9
     assert ((found > low) & (found < high)).all()
     assert all(float(f"{value:.2g}") == pytest.approx(value) for value in found)
-    assert levels(3e-5, 0.2, logarithmic=True).tolist() == pytest.approx([1e-4, 1e-3, 1e-2, 0.1])
+    decades = levels(3e-6, 0.2, logarithmic=True)
+    assert decades.tolist() == pytest.approx([1e-5, 1e-4, 1e-3, 1e-2, 0.1])
 
 
 def kinds() -> list[Chart]:

@@ -105,7 +105,7 @@ def levels(low: float, high: float, *, logarithmic: bool) -> Array:
     """Give values that are easily read between two others."""
     if logarithmic:
         powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
-        found = np.outer(powers, [1.0, 2.0, 5.0] if len(powers) <= 3 else [1.0]).ravel()
+        found = np.outer(powers, [1.0, 2.0, 5.0] if len(powers) <= 4 else [1.0]).ravel()
     else:
         rough = (high - low) / MOST_LEVELS
         power = 10.0 ** np.floor(np.log10(rough))
