@@ -21,7 +21,7 @@ from pathlib import Path
 import pytest
 import yaml
 from packaging.requirements import Requirement
-from processes import PATIENCE
+from processes import PATIENCE, wait_for
 
 from app.session.pages import VARIABLE
 
@@ -81,17 +81,17 @@ def image(tmp_path_factory):
             else:
                 shutil.copy(ROOT / source, folder / target)
     environment = folder.parent / "environment"
-    subprocess.run([sys.executable, "-m", "venv", environment], check=True)
-    for found in declared():
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", environment], check=True)
+    for found in (*declared(), distribution("pip"), distribution("setuptools")):
         lend(found, environment)
     variables = dict(os.environ, PATH=f"{environment / 'bin'}{os.pathsep}{os.environ['PATH']}")
     variables.pop("PYTHONPATH", None)
     for pair in re.findall(r"(\w+)=(\S+)", " ".join(instructions("ENV"))):
         variables[pair[0]] = pair[1]
     (install,) = [run for run in instructions("RUN") if run.startswith("pip install")]
-    subprocess.run(
-        install.replace("--no-cache-dir", "-q").split(), cwd=folder, env=variables, check=True
-    )
+    # what builds it is lent too, and what is served for seconds need not be compiled
+    quick = install.replace("--no-cache-dir", "-q --no-build-isolation --no-compile")
+    subprocess.run(quick.split(), cwd=folder, env=variables, check=True)
     return folder, variables
 
 
@@ -142,6 +142,11 @@ def handshake(port, origin):
         return asked.getresponse().status
 
 
+def listens(port):
+    with socket.socket() as asking:
+        return asking.connect_ex(("127.0.0.1", port)) == 0
+
+
 def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
     folder, variables = image
     (port,) = instructions("EXPOSE")
@@ -159,6 +164,7 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
             [program, *command[1:]], cwd=folder, env=variables, stdout=log, stderr=log
         )
     try:
+        wait_for(lambda: listens(int(other)) or server.poll() is not None)
         end = time.monotonic() + PATIENCE
         while subprocess.run([python, *check[1:]], capture_output=True, check=False).returncode:
             assert time.monotonic() < end, (tmp_path / "log").read_text()

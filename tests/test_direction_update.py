@@ -57,7 +57,9 @@ def test_it_makes_the_plain_iteration_shorter(substructures):
     assert within(chosen, 1e-3) < within(chosen.replace(k_update="none"), 1e-3)
 
 
-@pytest.mark.parametrize("change", [{"load": "random"}, {"multiscale": False}], ids=str)
+@pytest.mark.parametrize(
+    "change", [{"load": "random"}, {"multiscale": False, "substructures": 3}], ids=str
+)
 def test_the_limit_is_the_same(change):
     solution = run(options(**FAST, tolerance=1e-24, max_iterations=3000, **change))
     assert solution.iterate.course.phase == "updated"
@@ -114,7 +116,7 @@ def test_a_run_goes_on_from_any_checkpoint_to_the_bit(monkeypatch, acceleration,
     chosen = options(**{**FAST, "acceleration": acceleration})
     problem = discretise(chosen)
     straight = sample(chosen, CALM + TRIAL + 20)
-    for place in (2, CALM - 1, CALM, CALM + 1, CALM + 2, CALM + TRIAL, CALM + TRIAL + 3):
+    for place in (2, CALM, CALM + 1, CALM + TRIAL):
         rest = len(straight) - place - 1
         again = list(
             islice(iterations(problem, method_of(chosen), straight[place].checkpoint), rest)

@@ -22,8 +22,7 @@ KEPT_FOR = 30.0
 
 def alive() -> dict[str, int]:
     """Count what there is of pages after a full collection."""
-    for _ in range(3):
-        gc.collect()
+    gc.collect()
     kinds = (Dashboard, Session, Document)
     found = gc.get_objects()
     return {kind.__name__: sum(isinstance(one, kind) for one in found) for kind in kinds}

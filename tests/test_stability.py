@@ -65,7 +65,10 @@ KNOWN_UNSOLVED = {
 
 @pytest.fixture(scope="module")
 def rows():
-    return list(audit(trials_of(cases_of(quick=True))))
+    """Give each quick case by one of the methods, in turns; the whole report runs all by both."""
+    trials = trials_of(cases_of(quick=True))
+    pairs = zip(trials[::2], trials[1::2], strict=True)
+    return list(audit([pair[place % 2] for place, pair in enumerate(pairs)]))
 
 
 def changed(**changes):
@@ -74,7 +77,8 @@ def changed(**changes):
 
 def test_every_quick_case_comes_to_what_is_expected(rows):
     assert [row for row in rows if not row.passed] == []
-    assert len(rows) == 2 * len(cases_of(quick=True))
+    assert len(rows) == len(cases_of(quick=True))
+    assert {row.trial.method for row in rows} == set(METHODS)
     assert {row.trial.scene for row in rows} == set(CATALOGUE)
 
 

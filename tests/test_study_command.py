@@ -24,7 +24,7 @@ from solver.study.page import NO_CHARTS
 from solver.study.study_panels import error_panels
 from solver.study.study_report import growth_table, table, winners
 
-TINY = ["study", "bar", "--set", "elements=20", "--set", "instants=21", "--set", "substructures=4"]
+TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
 
 

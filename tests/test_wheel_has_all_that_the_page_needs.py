@@ -50,7 +50,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     venv.create(home, with_pip=False, symlinks=True)
     python = home / "bin" / "python"
     own = Path(sysconfig.get_path("purelib", vars={"base": str(home), "platbase": str(home)}))
-    install = ["install", "-q", "--no-deps", "--target", str(own), str(wheel)]
+    install = ["install", "-q", "--no-compile", "--no-deps", "--target", str(own), str(wheel)]
     subprocess.run([*pip, *install], check=True)
     # Behind what is installed here; no .pth of that folder is read, so the tree stays unknown.
     program = f"import sys; sys.path.append({sysconfig.get_path('purelib')!r})\n"
