@@ -115,9 +115,11 @@ def test_the_papers_figures_are_drawn_in_the_dark_theme_say_their_values_and_can
             (one) => one.type === "Figure" && one.title?.text === "What is true")
           const view = Bokeh.index.find_one_by_id(figure.id)
           const {x, y} = view.el.getBoundingClientRect()
-          const {Iteration, Relative_error} = figure.renderers[0].data_source.data
+          const {data_source} = figure.renderers.find(
+            (one) => one.data_source.name === "curve-0")
+          const {x: along, y: up} = data_source.data
           const {x_scale, y_scale} = view.frame
-          return [x + x_scale.compute(Iteration[100]), y + y_scale.compute(Relative_error[100])]
+          return [x + x_scale.compute(along[100]), y + y_scale.compute(up[100])]
         }""",
     )
     page.mouse.move(*place)
