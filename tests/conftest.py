@@ -19,7 +19,7 @@ from processes import PATIENCE
 from worker_line import Line
 
 from app.session.bench import Bench
-from app.session.errand import Errand
+from app.session.report_job import ReportJob
 from solver.study.paper_runs import PaperRuns
 
 LONGEST_FIRST = (
@@ -125,7 +125,7 @@ def bench() -> Iterator[Bench]:
 
 
 @pytest.fixture
-def errand(bench: Bench) -> Iterator[Errand]:
-    made = Errand(bench)
+def job(bench: Bench) -> Iterator[ReportJob]:
+    made = ReportJob(bench)
     yield made
     made.cancel()

@@ -8,19 +8,19 @@ import os
 import time
 from pathlib import Path
 
-from app.session.desk import Desk
+from app.session.report_folder import ReportFolder
 
 
 def count_to(number: int, folder: Path) -> None:
-    desk = Desk(folder)
+    growing = ReportFolder(folder)
     for done in range(number):
-        desk.tell(f"{done} done", done / number)
-        desk.show([f"<p>{done}</p>"])
-        desk.publish(lambda place, done=done: (place / "counted.csv").write_text(f"{done}\n"))
+        growing.tell(f"{done} done", done / number)
+        growing.show([f"<p>{done}</p>"])
+        growing.publish(lambda place, done=done: (place / "counted.csv").write_text(f"{done}\n"))
 
 
 def sleep(folder: Path) -> None:
-    Desk(folder).tell("asleep", 0.5)
+    ReportFolder(folder).tell("asleep", 0.5)
     time.sleep(600.0)
 
 

@@ -122,7 +122,7 @@ def test_a_follower_hires_no_process_and_shows_what_the_leader_shows(pages: Two)
     assert follower.collect() == [b"\4"]
     assert follower.facts == picture(4).facts
     assert idle.hired == 0
-    assert not follower.keeper.has_process
+    assert not follower.worker.has_process
 
 
 def test_a_follower_that_changes_a_setting_goes_on_alone_and_can_come_back(pages: Two) -> None:

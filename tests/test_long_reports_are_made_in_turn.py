@@ -13,17 +13,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from errands import until_idle
 from jobs import count_to, refuse, sleep, vanish
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
+from report_jobs import until_idle
 
 from app.reports.report import progress
 from app.session.bench import Bench
-from app.session.desk import PROGRESS, SECTIONS, Desk, files, said
-from app.session.errand import KEPT, STARTING, WAITING, Errand
 from app.session.inquiry import LENDER
 from app.session.pages import Pages
+from app.session.report_folder import PROGRESS, SECTIONS, ReportFolder, files, said
+from app.session.report_job import KEPT, STARTING, WAITING, ReportJob
 from app.session.session import Session
 from app.wire.orders import Pace
 from solver.running.executors import VARIABLE
@@ -32,22 +32,22 @@ from solver.scenes.bar import BarSettings
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
 
-def test_a_report_says_how_far_it_is_and_then_what_came_of_it(errand: Errand) -> None:
+def test_a_report_says_how_far_it_is_and_then_what_came_of_it(job: ReportJob) -> None:
     said = []
 
     def idle() -> bool:
-        errand.collect()
-        said.append((errand.doing, errand.share))
-        return not errand.is_busy
+        job.collect()
+        said.append((job.doing, job.share))
+        return not job.is_busy
 
-    errand.ask("any", partial(count_to, 2))
+    job.ask("any", partial(count_to, 2))
     wait_for(idle)
     every = [(STARTING, 0.0), ("0 done", 0.0), ("1 done", 0.5)]
     assert said[-1] == every[-1]
     assert list(dict.fromkeys(said)) == [one for one in every if one in said]
-    assert errand.last is not None
-    assert errand.last.files == {"counted.csv": b"1\n"}
-    assert errand.last.sections == ["<p>1</p>"]
+    assert job.last is not None
+    assert job.last.files == {"counted.csv": b"1\n"}
+    assert job.last.sections == ["<p>1</p>"]
 
 
 def test_what_grows_is_never_read_half_written(tmp_path: Path) -> None:
@@ -58,29 +58,29 @@ def test_what_grows_is_never_read_half_written(tmp_path: Path) -> None:
 
     assert said(tmp_path, PROGRESS) == b""
     assert said(tmp_path, SECTIONS) == b""
-    Desk(tmp_path).publish(write)
+    ReportFolder(tmp_path).publish(write)
     assert files(tmp_path) == {"one.html": b"whole"}
-    Desk(tmp_path).tell("writing", 0.5)
-    Desk(tmp_path).show(["so far"])
+    ReportFolder(tmp_path).tell("writing", 0.5)
+    ReportFolder(tmp_path).show(["so far"])
     assert pickle.loads(said(tmp_path, PROGRESS)) == ("writing", 0.5)
     assert pickle.loads(said(tmp_path, SECTIONS)) == ["so far"]
     assert len(files(tmp_path)) == 1
 
 
 def test_what_a_report_had_written_when_it_was_cancelled_stays_and_its_folder_goes(
-    errand: Errand,
+    job: ReportJob,
 ) -> None:
-    errand.ask("any", write_and_sleep)
-    assert errand._folder is not None
-    folder = Path(errand._folder.name)
-    wait_for(lambda: errand.collect() and errand.growing.sections)
-    errand.cancel()
-    assert errand.growing.sections == ["so far"]
+    job.ask("any", write_and_sleep)
+    assert job._folder is not None
+    folder = Path(job._folder.name)
+    wait_for(lambda: job.collect() and job.growing.sections)
+    job.cancel()
+    assert job.growing.sections == ["so far"]
     assert not folder.exists()
 
 
 def write_and_sleep(folder: Path) -> None:
-    Desk(folder).show(["so far"])
+    ReportFolder(folder).show(["so far"])
     sleep(folder)
 
 
@@ -96,22 +96,22 @@ def test_the_executor_is_one_as_the_library_has_them(bench: Bench) -> None:
     ("work", "words"), [(refuse, "ValueError: no such thing"), (vanish, "stopped unexpectedly")]
 )
 def test_a_job_that_breaks_says_so_and_the_next_one_is_done(
-    errand: Errand, work: Any, words: str
+    job: ReportJob, work: Any, words: str
 ) -> None:
-    errand.ask("first", work)
-    until_idle(errand)
-    assert words in errand.notice
-    assert words in progress(errand)
-    assert errand.last is None
-    errand.ask("second", partial(count_to, 1))
-    until_idle(errand)
-    assert errand.notice == ""
-    assert errand.last is not None
-    assert (errand.last.title, errand.last.sections) == ("second", ["<p>0</p>"])
+    job.ask("first", work)
+    until_idle(job)
+    assert words in job.notice
+    assert words in progress(job)
+    assert job.last is None
+    job.ask("second", partial(count_to, 1))
+    until_idle(job)
+    assert job.notice == ""
+    assert job.last is not None
+    assert (job.last.title, job.last.sections) == ("second", ["<p>0</p>"])
 
 
 def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
-    first, second = Errand(bench), Errand(bench)
+    first, second = ReportJob(bench), ReportJob(bench)
     first.ask("first", sleep)
     second.ask("second", partial(count_to, 3))
     wait_for(lambda: first.collect() and first.doing == "asleep")
@@ -124,30 +124,30 @@ def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
     assert second.growing.sections == ["<p>2</p>"]
 
 
-def test_a_job_that_nobody_is_before_does_not_say_that_it_waits(errand: Errand) -> None:
-    errand.ask("any", partial(count_to, 1))
-    assert STARTING in progress(errand)
-    assert WAITING not in progress(errand)
+def test_a_job_that_nobody_is_before_does_not_say_that_it_waits(job: ReportJob) -> None:
+    job.ask("any", partial(count_to, 1))
+    assert STARTING in progress(job)
+    assert WAITING not in progress(job)
 
 
 def test_a_cancelled_job_ends_its_process_and_says_nothing_more(
-    bench: Bench, errand: Errand
+    bench: Bench, job: ReportJob
 ) -> None:
-    errand.ask("any", sleep)
-    wait_for(lambda: errand.collect() and errand.doing == "asleep")
+    job.ask("any", sleep)
+    wait_for(lambda: job.collect() and job.doing == "asleep")
     pid = bench.pid
     assert pid is not None
-    errand.cancel()
-    assert not errand.is_busy
-    assert errand.notice == "Cancelled."
+    job.cancel()
+    assert not job.is_busy
+    assert job.notice == "Cancelled."
     wait_for(lambda: bench.pid is None)
     assert not is_alive(pid)
-    errand.collect()
-    assert errand.last is None
+    job.collect()
+    assert job.last is None
 
 
 def test_a_job_that_is_cancelled_while_it_waits_is_never_begun(bench: Bench) -> None:
-    first, second = Errand(bench), Errand(bench)
+    first, second = ReportJob(bench), ReportJob(bench)
     first.ask("first", sleep)
     second.ask("second", refuse)
     second.cancel()
@@ -158,17 +158,17 @@ def test_a_job_that_is_cancelled_while_it_waits_is_never_begun(bench: Bench) -> 
 
 
 def test_a_server_whose_setting_names_no_executor_says_so(
-    errand: Errand, monkeypatch: pytest.MonkeyPatch
+    job: ReportJob, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(VARIABLE, "cloud")
-    errand.ask("any", refuse)
-    assert errand.notice.startswith("--on")
-    assert not errand.is_busy
+    job.ask("any", refuse)
+    assert job.notice.startswith("--on")
+    assert not job.is_busy
 
 
-def test_closing_the_bench_ends_the_job(bench: Bench, errand: Errand) -> None:
-    errand.ask("any", sleep)
-    wait_for(lambda: errand.collect() and errand.doing == "asleep")
+def test_closing_the_bench_ends_the_job(bench: Bench, job: ReportJob) -> None:
+    job.ask("any", sleep)
+    wait_for(lambda: job.collect() and job.doing == "asleep")
     pid = bench.pid
     bench.shutdown()
     assert pid is not None
@@ -177,16 +177,16 @@ def test_closing_the_bench_ends_the_job(bench: Bench, errand: Errand) -> None:
 
 SERVER = """
 import sys
-from app.session.errand import Errand
+from app.session.report_job import ReportJob
 from app.session.bench import shared_bench
-from errands import until_idle
+from report_jobs import until_idle
 from jobs import sleep
 
-bench, errand = shared_bench(), Errand(shared_bench())
-errand.ask("any", sleep)
-while not (errand.collect() and errand.doing == "asleep"):
+bench, job = shared_bench(), ReportJob(shared_bench())
+job.ask("any", sleep)
+while not (job.collect() and job.doing == "asleep"):
     pass
-print(bench.pid, errand._folder.name, flush=True)
+print(bench.pid, job._folder.name, flush=True)
 sys.stdin.readline()
 """
 
@@ -227,11 +227,11 @@ def test_a_page_that_closes_ends_its_jobs(bench: Bench) -> None:
         wait_for(lambda: not is_alive(pid))
 
 
-def test_results_stay_and_the_oldest_go(errand: Errand) -> None:
+def test_results_stay_and_the_oldest_go(job: ReportJob) -> None:
     for number in range(KEPT + 1):
-        errand.ask(str(number), partial(count_to, number))
-        until_idle(errand)
-    assert [found.title for found in errand.found] == [str(n) for n in range(1, KEPT + 1)]
+        job.ask(str(number), partial(count_to, number))
+        until_idle(job)
+    assert [found.title for found in job.found] == [str(n) for n in range(1, KEPT + 1)]
 
 
 def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -> None:

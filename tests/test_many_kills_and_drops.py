@@ -55,12 +55,12 @@ def test_many_kills_in_a_row_leave_nothing_and_the_run_goes_on() -> None:
             wait_for(lambda done=done: gets_beyond(done))
             assert session.facts is not None
             done = session.facts.done
-            link = session.keeper.link
+            link = session.worker.link
             assert link is not None
             assert link.pid is not None
             killed.append(link.pid)
             os.kill(link.pid, signal.SIGKILL)
-            wait_for(lambda link=link: session.collect() and session.keeper.link is not link)
+            wait_for(lambda link=link: session.collect() and session.worker.link is not link)
         wait_for(lambda: gets_beyond(done))
         assert session.settings.changed() == {**settings.changed(), "friction": 0.204}
         assert session.goes_on

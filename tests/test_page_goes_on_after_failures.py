@@ -21,9 +21,9 @@ from studios import Shown
 from unpacking import unpack
 
 from app.session.bench import STOPPED, Bench
-from app.session.errand import Errand
-from app.session.keeper import GIVEN_UP, RESTARTS
+from app.session.page_worker import GIVEN_UP, RESTARTS
 from app.session.pages import Pages
+from app.session.report_job import ReportJob
 from app.session.session import LEFT_ALONE, Session
 from app.shell.transport import Transport
 from app.wire.orders import Run, Seek, Step
@@ -177,25 +177,25 @@ def no_fork_server(*arguments: Any, **options: Any) -> Any:
 
 def test_a_job_whose_process_does_not_start_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(calls, "start_process", no_fork_server)
-    errand = Errand(Bench())
-    errand.ask("any", print)
-    await_end(errand)
-    assert errand.notice == STOPPED
+    job = ReportJob(Bench())
+    job.ask("any", print)
+    await_end(job)
+    assert job.notice == STOPPED
 
 
-def await_end(errand: Errand) -> None:
+def await_end(job: ReportJob) -> None:
     end = time.monotonic() + PATIENCE
-    while errand.is_busy:
+    while job.is_busy:
         assert time.monotonic() < end
-        errand.collect()
+        job.collect()
         time.sleep(0.01)
 
 
 def test_a_job_that_breaks_says_so() -> None:
-    errand = Errand(Bench())
-    errand.ask("any", _refused)
-    await_end(errand)
-    assert errand.notice == "It broke (LookupError: made to break)."
+    job = ReportJob(Bench())
+    job.ask("any", _refused)
+    await_end(job)
+    assert job.notice == "It broke (LookupError: made to break)."
 
 
 def _refused(send: Any) -> Any:
@@ -203,10 +203,10 @@ def _refused(send: Any) -> Any:
 
 
 def test_a_job_that_cannot_be_sent_says_so() -> None:
-    errand = Errand(Bench())
-    errand.ask("any", lambda send: None)
-    await_end(errand)
-    assert "It broke" in errand.notice
+    job = ReportJob(Bench())
+    job.ask("any", lambda send: None)
+    await_end(job)
+    assert "It broke" in job.notice
 
 
 @pytest.fixture
@@ -232,11 +232,11 @@ def test_a_killed_process_is_replaced_and_the_run_goes_on(session_at_work: Sessi
     session = session_at_work
     for _ in range(RESTARTS):
         until(session, lambda facts: facts.done > 2)
-        before = session.keeper.link
+        before = session.worker.link
         assert before is not None
         assert before.pid is not None
         os.kill(before.pid, signal.SIGKILL)
-        wait_for(lambda link=before: session.collect() and session.keeper.link is not link)
+        wait_for(lambda link=before: session.collect() and session.worker.link is not link)
     until(session, lambda facts: facts.done > 2)
 
 

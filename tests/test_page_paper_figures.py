@@ -23,8 +23,8 @@ from app.picture.glossary import explained
 from app.reports import reports
 from app.reports.reports import PaperFigures
 from app.session.bench import Bench
-from app.session.desk import SECTIONS, Desk, said
-from app.session.errand import Errand, Found
+from app.session.report_folder import SECTIONS, ReportFolder, said
+from app.session.report_job import Found, ReportJob
 from app.session.studies import figures_of_the_paper
 from solver.study.chart import Panel
 from solver.study.page import PlotSection, Section
@@ -46,7 +46,7 @@ def seen() -> list[int]:
 def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: list[int]) -> Found:
     folder = tmp_path_factory.mktemp("figures")
 
-    class Spied(Desk):
+    class Spied(ReportFolder):
         def tell(self, doing: str, share: float) -> None:
             told.append(share)
 
@@ -55,7 +55,7 @@ def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: lis
             seen.append(len(sections))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.session.studies.Desk", Spied)
+        patch.setattr("app.session.studies.ReportFolder", Spied)
         figures_of_the_paper(folder)
     return Found("any", pickle.loads(said(folder, SECTIONS)))
 
@@ -76,16 +76,16 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[Found]:
 
 
 @pytest.fixture
-def errand() -> Iterator[Errand]:
+def job() -> Iterator[ReportJob]:
     with Bench() as bench:
-        made = Errand(bench)
+        made = ReportJob(bench)
         yield made
         made.cancel()
 
 
 @pytest.fixture
-def view(errand: Errand) -> PaperFigures:
-    made = PaperFigures(errand)
+def view(job: ReportJob) -> PaperFigures:
+    made = PaperFigures(job)
     made.view.visible = True
     return made
 
@@ -164,12 +164,12 @@ def test_no_thread_touches_the_page_and_its_own_turns_put_each_plot_on_it_in_its
 
 
 def test_the_report_of_the_command_is_shown_where_they_are_found_computed(
-    view: PaperFigures, errand: Errand, computed: list[Found], found: Found
+    view: PaperFigures, job: ReportJob, computed: list[Found], found: Found
 ) -> None:
     computed.append(found)
     with set_curdoc(Document()):
         view.open()
-    assert not errand.is_busy
+    assert not job.is_busy
     assert not view._start.visible
     assert view._card.visible
     for pane, section in zip(view._sheet, found.sections, strict=True):
@@ -196,32 +196,32 @@ def test_what_is_drawn_stays_while_a_report_grows(view: PaperFigures, found: Fou
 
 
 def test_a_failure_is_told_and_can_be_tried_again(
-    view: PaperFigures, errand: Errand, monkeypatch: pytest.MonkeyPatch
+    view: PaperFigures, job: ReportJob, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reports, "figures_of_the_paper", refuse)
     view.open()
     assert not view._start.visible
-    wait_for(lambda: errand.collect() and not errand.is_busy)
+    wait_for(lambda: job.collect() and not job.is_busy)
     view.refresh()
     assert "no such thing" in view._progress.object
     assert view._start.visible
     assert not view._start.disabled
     monkeypatch.setattr(reports, "figures_of_the_paper", sleep)
     view._on_start()
-    assert errand.is_busy
+    assert job.is_busy
     assert not view._start.visible
 
 
 def test_it_can_be_cancelled_and_another_page_has_them_later(
     view: PaperFigures,
-    errand: Errand,
+    job: ReportJob,
     computed: list[Found],
     found: Found,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(reports, "figures_of_the_paper", sleep)
     view.open()
-    wait_for(lambda: errand.collect() and errand.doing == "asleep")
+    wait_for(lambda: job.collect() and job.doing == "asleep")
     view.refresh()
     assert view._cancel.visible
     view._on_cancel()

@@ -10,13 +10,13 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
-from errands import until_idle
+from report_jobs import until_idle
 
 from app.picture.glossary import explained
 from app.reports.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
 from app.session.bench import Bench
-from app.session.desk import Desk, files
-from app.session.errand import Errand, Found
+from app.session.report_folder import ReportFolder, files
+from app.session.report_job import Found, ReportJob
 from app.session.session import Session
 from app.session.studies import stability_of, study_of
 from app.session.turns import Turns
@@ -31,17 +31,17 @@ TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
 
 def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
-    errand = Errand(bench)
-    errand.ask("tiny", partial(study_of, "bar", TINY, 1, False))
-    until_idle(errand)
-    assert errand.last is not None, errand.notice
-    found = errand.last.files
+    job = ReportJob(bench)
+    job.ask("tiny", partial(study_of, "bar", TINY, 1, False))
+    until_idle(job)
+    assert job.last is not None, job.notice
+    found = job.last.files
     assert set(found) == {"curves.csv", "levels.csv", "study.html"}
     rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
     assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
-    assert sum(isinstance(section, PlotSection) for section in errand.last.sections) == 1
+    assert sum(isinstance(section, PlotSection) for section in job.last.sections) == 1
     page = found["study.html"].decode()
-    for section in errand.last.sections:
+    for section in job.last.sections:
         assert isinstance(section, PlotSection) or section in page
     assert "Scene: bar (" in page
     assert all(f"{name} = {value}" in page for name, value in TINY.items())
@@ -56,12 +56,16 @@ def test_stability_is_shown_as_it_grows_and_then_whole(
     monkeypatch.setattr("app.session.studies.SHOWN_EVERY", 0.0)
     rows: list[int] = []
     shares: list[float] = []
-    tell = Desk.tell
+    tell = ReportFolder.tell
     monkeypatch.setattr(
-        Desk, "show", lambda desk, sections: rows.append("".join(sections).count('"verdict'))
+        ReportFolder,
+        "show",
+        lambda growing, sections: rows.append("".join(sections).count('"verdict')),
     )
     monkeypatch.setattr(
-        Desk, "tell", lambda desk, doing, share: shares.append(share) or tell(desk, doing, share)
+        ReportFolder,
+        "tell",
+        lambda growing, doing, share: shares.append(share) or tell(growing, doing, share),
     )
     stability_of(False, tmp_path)
     assert rows == [1, 2, 3, 4, 4]
@@ -77,7 +81,7 @@ def row(**changes: Any) -> Audited:
     return found
 
 
-def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand: Errand) -> None:
+def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(job: ReportJob) -> None:
     rows = [row(), row(k_scale=1e-6, max_iterations=20)]
     assert [one.verdict for one in rows] == [Verdict.RIGHT, Verdict.UNSOLVED]
     sections = stability_report(rows, {}).sections()
@@ -88,7 +92,7 @@ def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(errand:
     ]
     assert "1 of 2 runs pass" in page
     assert rows[1].outcome.advice.split(".")[0] in page
-    report = StabilityReport(errand)
+    report = StabilityReport(job)
     report.open()
     report._put(Found("any", sections))
     assert [pane.object for pane in report._sheet] == list(map(explained, sections))
@@ -109,10 +113,10 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
     assert "3 runs or charts were" in company(3)
 
 
-def test_a_study_is_not_offered_where_the_reference_would_take_too_long(errand: Errand) -> None:
+def test_a_study_is_not_offered_where_the_reference_would_take_too_long(job: ReportJob) -> None:
     for layers, refused in ((3, False), (20, True)):
         settings = LayersSettings.checked({"layers": layers, "instants": 11})
-        page = SimpleNamespace(study=errand, wanted=settings, crowd=0, turns=Turns())
+        page = SimpleNamespace(study=job, wanted=settings, crowd=0, turns=Turns())
         report = StudyReport(cast(Session, page))
         report.open()
         assert report._start.disabled == refused

@@ -112,7 +112,7 @@ def test_events_of_a_page_are_logged(
     dashboards: list[Dashboard] = []
 
     def make(session: Session, **options: Any) -> Dashboard:
-        session.keeper._hire = link.hire
+        session.worker._hire = link.hire
         dashboards.append(Dashboard(session, **options))
         return dashboards[-1]
 

@@ -14,7 +14,7 @@ from processes import wait_for
 from unpacking import unpack
 
 from app.session.bench import Bench
-from app.session.keeper import AGAIN
+from app.session.page_worker import AGAIN
 from app.session.pages import Pages
 from app.session.session import Session
 from app.worker import link

@@ -13,8 +13,8 @@ from app.controls.sidebar import Sidebar
 from app.reports.report import Report
 from app.reports.reports import PaperFigures, StabilityReport, StudyReport
 from app.session.bench import Bench
-from app.session.errand import Found
 from app.session.pages import Pages
+from app.session.report_job import Found
 from app.session.session import Session
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings

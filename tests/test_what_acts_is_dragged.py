@@ -15,7 +15,7 @@ from app.views import picture
 from app.views.catalogue import fitting
 from app.views.colors import FORCE, GIVEN
 from app.views.drawing import POSITION
-from app.worker.easel import marked
+from app.worker.painter import marked
 from solver.definitions import SettingError
 from solver.discrete.structure import Act
 from solver.scenes import CATALOGUE, behind, structure_of

@@ -22,7 +22,7 @@ from app.charts.filling import drawn
 from app.charts.keys import legend
 from app.components.panes import button, column, select, text
 from app.picture.glossary import explained
-from app.session.errand import Errand, Found
+from app.session.report_job import Found, ReportJob
 from solver.study.page import Section
 
 
@@ -34,7 +34,7 @@ class Report:
 
     Parameters
     ----------
-    errand
+    job
         The state that it shows.
     soon
         Has something done on a turn of the page.
@@ -50,9 +50,9 @@ class Report:
     """What stands in the sidebar, above the settings that do something here."""
 
     def __init__(
-        self, errand: Errand, soon: Callable[[Callable[[], object]], None] = lambda act: None
+        self, job: ReportJob, soon: Callable[[Callable[[], object]], None] = lambda act: None
     ) -> None:
-        self._errand, self._soon = errand, soon
+        self._job, self._soon = job, soon
         self._newest: Found | None = None
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
@@ -66,7 +66,7 @@ class Report:
         self._refresh()
 
     def refresh(self) -> None:
-        """Follow the errand, as soon as somebody looks."""
+        """Follow the job, as soon as somebody looks."""
         if self.view.visible:
             self._refresh()
 
@@ -97,7 +97,7 @@ class Report:
 
     def _found(self) -> list[Found]:
         """Give the reports that are whole, oldest first."""
-        return list(self._errand.found)
+        return list(self._job.found)
 
     def _title(self, found: Found) -> str:
         """Say what stands above a report that is whole (HTML)."""
@@ -125,20 +125,20 @@ class Report:
         self._refresh()
 
     def _on_cancel(self) -> None:
-        self._errand.cancel()
+        self._job.cancel()
         self._refresh()
 
     def _refresh(self) -> None:
-        errand, refusal = self._errand, self._refusal()
-        self._start.disabled = errand.is_busy or bool(refusal)
-        self._cancel.visible = errand.is_busy
-        waiting = f"<b>{escape(refusal)}</b>" if refusal and not errand.is_busy else ""
-        self._progress.object = waiting or progress(errand)
+        job, refusal = self._job, self._refusal()
+        self._start.disabled = job.is_busy or bool(refusal)
+        self._cancel.visible = job.is_busy
+        waiting = f"<b>{escape(refusal)}</b>" if refusal and not job.is_busy else ""
+        self._progress.object = waiting or progress(job)
         found = self._found()
         options = {f"{number}: {one.title}": one for number, one in enumerate(found, start=1)}
         if found and options != self._past.options:
             self._past.param.update(options=options, value=found[-1], visible=len(found) > 1)
-        newest = errand.growing if errand.is_busy or not found else found[-1]
+        newest = job.growing if job.is_busy or not found else found[-1]
         if newest.sections and (newest is self._shown[0] or newest is not self._newest):
             self._newest = newest
             self._put(newest)
@@ -147,7 +147,7 @@ class Report:
     def _mark(self) -> None:
         """Tell a report of other settings from one of those present."""
         shown, *_ = self._shown
-        differs = "" if shown is None or self._errand.is_busy else self._differs(shown)
+        differs = "" if shown is None or self._job.is_busy else self._differs(shown)
         self._older.object = f"<b>{escape(differs)}</b>"
         self._again.visible = bool(differs)
 
@@ -201,9 +201,9 @@ def downloads(files: Mapping[str, bytes]) -> list[Any]:
     ]
 
 
-def progress(errand: Errand) -> str:
+def progress(job: ReportJob) -> str:
     """Say how far a report is, or why it came to nothing (HTML)."""
-    if errand.is_busy:
-        bar = f'<progress value="{errand.share:.3f}"></progress>'
-        return f"{bar} {escape(errand.doing)} <small>({escape(errand.title)})</small>"
-    return f"<b>{escape(errand.notice)}</b>" if errand.notice else ""
+    if job.is_busy:
+        bar = f'<progress value="{job.share:.3f}"></progress>'
+        return f"{bar} {escape(job.doing)} <small>({escape(job.title)})</small>"
+    return f"<b>{escape(job.notice)}</b>" if job.notice else ""

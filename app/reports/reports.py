@@ -14,7 +14,7 @@ from app.components.panes import select
 from app.picture.labels import changes_of, label_of
 from app.picture.shown import has_reference
 from app.reports.report import Report
-from app.session.errand import Found
+from app.session.report_job import Found
 from app.session.session import Session
 from app.session.studies import figures_of_the_paper, stability_of, study_of
 from solver.scenes import entry_of
@@ -55,7 +55,7 @@ class PaperFigures(Report):
         return []
 
     def _ask(self) -> None:
-        self._errand.ask("once for all pages", figures_of_the_paper)
+        self._job.ask("once for all pages", figures_of_the_paper)
 
     def _found(self) -> list[Found]:
         return COMPUTED
@@ -63,11 +63,11 @@ class PaperFigures(Report):
     def _refresh(self) -> None:
         if COMPUTED:
             # What waits for its turn was asked for before another page had them.
-            self._errand.cancel()
-        elif self._errand.last is not None:
-            COMPUTED.append(self._errand.last)
+            self._job.cancel()
+        elif self._job.last is not None:
+            COMPUTED.append(self._job.last)
         super()._refresh()
-        self._start.visible = not (COMPUTED or self._errand.is_busy)
+        self._start.visible = not (COMPUTED or self._job.is_busy)
         self._progress.visible = not COMPUTED
 
 
@@ -115,8 +115,8 @@ class StudyReport(Report):
         settings, repeats = self._session.wanted, int(self._repeats.value)
         sizes = bool(self._growth.value)
         work = partial(study_of, settings.scene, settings.values(), repeats, sizes)
-        self._errand.ask(title_of(settings), work)
-        self._settings.setdefault(self._errand.growing, settings)
+        self._job.ask(title_of(settings), work)
+        self._settings.setdefault(self._job.growing, settings)
 
     def _differs(self, found: Found) -> str:
         now = self._session.wanted
@@ -161,7 +161,7 @@ class StabilityReport(Report):
 
     def _ask(self) -> None:
         quick = CASES[self._cases.value]
-        self._errand.ask(self._cases.value, partial(stability_of, quick))
+        self._job.ask(self._cases.value, partial(stability_of, quick))
 
     def _filter(self, wanted: str) -> None:
         """Leave the rows to the style sheet, which need not be sent again."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 
 from app.session.classroom import KEPT, ROOMS, Poll, Room
-from app.session.keeper import Hire, Keeper
+from app.session.page_worker import Hire, PageWorker
 from app.session.state import State
 from app.session.turns import Turns
 from app.wire.reports import Picture
@@ -21,7 +21,7 @@ class Attendance:
     ----------
     state
         Of the page, which is told what is new.
-    keeper
+    worker
         Has what does the page's work: a process, or a seat in a class.
     hire
         Gives a process.
@@ -41,7 +41,7 @@ class Attendance:
     def __init__(
         self,
         state: State,
-        keeper: Keeper,
+        worker: PageWorker,
         hire: Hire,
         turns: Turns,
         start: Callable[[Settings], None],
@@ -49,7 +49,7 @@ class Attendance:
         self._leads: Room | None = None
         self.follows: Room | None = None
         self.left: Room | None = None
-        self._keeper = keeper
+        self._worker = worker
         self._hire = hire
         self._state, self._start = state, start
         self._news = partial(turns.soon, self.note)
@@ -108,7 +108,7 @@ class Attendance:
     def follow(self, room: Room) -> None:
         """Take a seat; what the class shows is given as soon as a run with its settings starts."""
         self.follows = room
-        self._keeper.change(room.seat)
+        self._worker.change(room.seat)
         room.told.add(self._news)
         self.note()
 
@@ -116,7 +116,7 @@ class Attendance:
         """Leave the class that is followed for a run of one's own, unless it is the class's."""
         if self.follows is not None and settings is not self.follows.settings:
             self.left, self.follows = self.follows, None
-            self._keeper.change(self._hire)
+            self._worker.change(self._hire)
             self.note()
 
     def share(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 from app.session.inquiry import LENDER
-from app.session.keeper import Keeper
+from app.session.page_worker import PageWorker
 
 VARIABLE = "SLIPFRONT_PAGES"
 """Environment variable with the most pages that may be open."""
@@ -20,7 +20,7 @@ SHARE = 0.8
 class Working(Protocol):
     """A page that may have a run at work."""
 
-    keeper: Keeper
+    worker: PageWorker
 
     @property
     def is_at_work(self) -> bool:
@@ -46,7 +46,7 @@ class Pages:
     @property
     def workers(self) -> int:
         """Count the worker processes of the pages."""
-        return sum(page.keeper.has_process for page in self._open)
+        return sum(page.worker.has_process for page in self._open)
 
     @property
     def is_full(self) -> bool:

@@ -12,10 +12,10 @@ from typing import Any
 from app.picture.labels import changes_of, label_of
 from app.session.attendance import Attendance
 from app.session.bench import Bench
-from app.session.errand import Errand
 from app.session.inquiry import Inquiry
-from app.session.keeper import AGAIN, GIVEN_UP, Hire, Keeper
+from app.session.page_worker import AGAIN, GIVEN_UP, Hire, PageWorker
 from app.session.pages import Pages
+from app.session.report_job import ReportJob
 from app.session.state import State
 from app.session.turns import Turns
 from app.session.uploads import cut_off
@@ -61,7 +61,7 @@ class Session(State):
         The reports and the sweep that this page has asked for.
     crowd
         Most runs of other pages that were at work at a time during the last study.
-    keeper, attendance
+    worker, attendance
         Have the worker process, and the page's part in a class.
     """
 
@@ -75,15 +75,15 @@ class Session(State):
     ) -> None:
         super().__init__(settings=settings, wanted=settings)  # type: ignore[no-untyped-call]
         self.turns = turns or Turns()
-        self.keeper = Keeper(hire)
-        self.attendance = Attendance(self, self.keeper, hire, self.turns, self.start)
+        self.worker = PageWorker(hire)
+        self.attendance = Attendance(self, self.worker, hire, self.turns, self.start)
         self.crowd = 0
         self.follows_hand = self.is_held = False
         timer = self.turns.timer
         self._stands_still, self._is_left_alone = timer(self.let_go), timer(self._give_back)
         self._looks = timer(self.attend)
         began = partial(self._looks.set, LOOKS)
-        self.figures, self.study, self.stability = (Errand(bench, began) for _ in range(3))
+        self.figures, self.study, self.stability = (ReportJob(bench, began) for _ in range(3))
         self.inquiry = Inquiry(began=began)
         self._asked = self.figures, self.study, self.stability, self.inquiry
         self._left: dict[str, Settings] = {}
@@ -114,7 +114,7 @@ class Session(State):
             self.settings, self.facts, self._due = settings, None, None
             self._want(settings)
             self.ticket += 1
-            self.keeper.renew()
+            self.worker.renew()
             self.follows_hand = follows_hand and self._is_free
             self._work(**how)
 
@@ -159,19 +159,19 @@ class Session(State):
         """Take the waiting reports; give the pictures that the page has to be given."""
         blocks: list[bytes] = []
         with self.together():
-            for report in self.keeper.collect():
+            for report in self.worker.collect():
                 blocks.append(self._bury() if isinstance(report, Died) else report.block)
                 if isinstance(report, Picture):
                     self.attendance.share(self.settings, self.look.views, report)
                     if report.ticket == self.ticket:
                         self.facts = report.facts
-                        self.keeper.note(report.facts.done)
+                        self.worker.note(report.facts.done)
             self._start_due()
         return blocks
 
     def ask(self, *, rest: float = 0.0, afresh: bool = False) -> None:
         """Have the next picture made, after some seconds of rest."""
-        self.keeper.send(Ready(afresh, rest, whole=self.attendance.leads is not None))
+        self.worker.send(Ready(afresh, rest, whole=self.attendance.leads is not None))
 
     def go(self) -> None:
         """Let iterations go on by themselves; a run that ended, or broke, starts again."""
@@ -179,13 +179,13 @@ class Session(State):
         if self.is_over:
             self._replay()
         else:
-            self.keeper.send(Seek(self.ticket, None))
+            self.worker.send(Seek(self.ticket, None))
             self._keep_pace()
 
     def pause(self) -> None:
         """Wait after the present iteration."""
         self.running = False
-        self.keeper.send(Pace(self.ticket, 0.0))
+        self.worker.send(Pace(self.ticket, 0.0))
 
     def step(self, count: int = 1) -> None:
         """Do so many iterations and wait; a run that ended, or broke, starts again."""
@@ -193,7 +193,7 @@ class Session(State):
         if self.is_over:
             self._replay()
         else:
-            self.keeper.send(Step(self.ticket, count))
+            self.worker.send(Step(self.ticket, count))
 
     def set_pace(self, pace: float | None) -> None:
         """Set the iterations per second."""
@@ -203,19 +203,19 @@ class Session(State):
     def seek(self, iteration: int) -> None:
         """Look at an iteration that was done already; the last one follows the run."""
         is_past = self.facts is not None and iteration < self.facts.done
-        self.keeper.send(Seek(self.ticket, iteration if is_past else None))
+        self.worker.send(Seek(self.ticket, iteration if is_past else None))
 
     def watch(self, **changes: Any) -> None:
         """Look elsewhere."""
         look = replace(self.look, **changes)
         if look != self.look:
             self.look = look
-            self.keeper.send(Watch(look))
+            self.worker.send(Watch(look))
 
     def close(self) -> None:
         """Leave: the process of the run ends, and so do the reports."""
         self.turns.close()
-        self.keeper.close()
+        self.worker.close()
         self.attendance.close()
         self._pages.remove(self)
         for one in self._asked:
@@ -223,9 +223,9 @@ class Session(State):
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody sees the page, and let it go on afterwards."""
-        self.keeper.is_alone = alone
+        self.worker.is_alone = alone
         self._is_left_alone.set(LEFT_ALONE) if alone else self._is_left_alone.stop()
-        if not alone and self.keeper.link is None and self.ticket and not self.is_over:
+        if not alone and self.worker.link is None and self.ticket and not self.is_over:
             self._work()
         else:
             self._keep_pace()
@@ -247,12 +247,12 @@ class Session(State):
     @property
     def is_at_work(self) -> bool:
         """Whether iterations of the run go on at present."""
-        return self.keeper.link is not None and not self.is_over and self._is_free
+        return self.worker.link is not None and not self.is_over and self._is_free
 
     @property
     def _is_free(self) -> bool:
         """Whether iterations go on by themselves at present."""
-        return self.running and not self.keeper.is_alone and not self.is_held
+        return self.running and not self.worker.is_alone and not self.is_held
 
     def _want(self, settings: Settings) -> None:
         """Take it that these are wanted: what was refused before is past."""
@@ -267,7 +267,7 @@ class Session(State):
 
     def _give_back(self) -> None:
         """End the process of a page that nobody sees."""
-        self.keeper.part()
+        self.worker.part()
         self.facts = None
 
     def _replay(self) -> None:
@@ -276,13 +276,13 @@ class Session(State):
     def _keep_pace(self) -> None:
         if self.goes_on:
             pace = self.pace if self._is_free else 0.0
-            self.keeper.send(Pace(self.ticket, pace, self.is_held))
+            self.worker.send(Pace(self.ticket, pace, self.is_held))
 
     def _work(self, *, notice: str = "", **how: bool) -> None:
         """Have a process do the run from its beginning."""
-        again = AGAIN if self.keeper.deaths else notice
-        self.keeper.begin(Watch(self.look), Ready())
-        self.keeper.send(
+        again = AGAIN if self.worker.deaths else notice
+        self.worker.begin(Watch(self.look), Ready())
+        self.worker.send(
             Run(
                 self.ticket,
                 self.settings,
@@ -299,7 +299,7 @@ class Session(State):
 
     def _bury(self) -> bytes:
         """Follow the end of a process: start the run again, or give it up; say so."""
-        self.facts = None if (again := self.keeper.may_try_again) else Facts(is_broken=True)
+        self.facts = None if (again := self.worker.may_try_again) else Facts(is_broken=True)
         if again:
             self._work()
         return said(AGAIN if again else GIVEN_UP)

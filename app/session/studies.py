@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from app.session.desk import Desk
+from app.session.report_folder import ReportFolder
 from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, audit
 from solver.study.audit.stability import cases_of, stability_report, trials_of
@@ -30,42 +30,42 @@ Work = Callable[[Path], None]
 
 def study_of(scene: str, values: dict[str, Any], repeats: int, sizes: bool, folder: Path) -> None:
     """Measure error against run time, and with `sizes` growth with the size of the problem."""
-    desk, settings = Desk(folder), CATALOGUE[scene].settings.checked(values)
+    growing, settings = ReportFolder(folder), CATALOGUE[scene].settings.checked(values)
     first = 1.0 - SHARE_OF_GROWTH if sizes else 1.0
     study = error_against_time(
-        settings, repeats, lambda doing, share: desk.tell(doing, first * share)
+        settings, repeats, lambda doing, share: growing.tell(doing, first * share)
     )
     found = (
-        growth(settings, lambda doing, share: desk.tell(doing, first + (1.0 - first) * share))
+        growth(settings, lambda doing, share: growing.tell(doing, first + (1.0 - first) * share))
         if sizes
         else []
     )
-    desk.tell("Writing the report", 1.0)
-    desk.publish(lambda place: write_study(study, found, place))
-    desk.show(study_sections(study, found))
+    growing.tell("Writing the report", 1.0)
+    growing.publish(lambda place: write_study(study, found, place))
+    growing.show(study_sections(study, found))
 
 
 def stability_of(quick: bool, folder: Path) -> None:
     """Run the stability matrix, or a quarter of it, and show it again and again as it grows."""
-    desk, matrix, rows = Desk(folder), trials_of(cases_of(quick=quick)), list[Audited]()
+    growing, matrix, rows = ReportFolder(folder), trials_of(cases_of(quick=quick)), list[Audited]()
     total, shown = len(matrix), 0.0
-    desk.tell(f"0 of {total} runs", 0.0)
+    growing.tell(f"0 of {total} runs", 0.0)
     for row in audit(matrix):
         rows.append(row)
-        desk.tell(f"{len(rows)} of {total} runs", len(rows) / total)
+        growing.tell(f"{len(rows)} of {total} runs", len(rows) / total)
         if time.monotonic() - shown > SHOWN_EVERY:
-            desk.show(stability_report(rows, {}).sections())
+            growing.show(stability_report(rows, {}).sections())
             shown = time.monotonic()
-    desk.tell("The same bar in other units", 1.0)
+    growing.tell("The same bar in other units", 1.0)
     report = stability_report(rows, invariance())
-    desk.publish(report.write)
-    desk.show(report.sections())
+    growing.publish(report.write)
+    growing.show(report.sections())
 
 
 def figures_of_the_paper(folder: Path) -> None:
     """Compute the paper's figures, and show each as it comes."""
-    desk, runs, shown = Desk(folder), PaperRuns(), list[Section]()
+    growing, runs, shown = ReportFolder(folder), PaperRuns(), list[Section]()
     for number, make in enumerate(MAKERS):
-        desk.tell(f"{number} of {len(MAKERS)} figures", number / len(MAKERS))
+        growing.tell(f"{number} of {len(MAKERS)} figures", number / len(MAKERS))
         shown += figure_sections(make(runs))
-        desk.show(shown)
+        growing.show(shown)

@@ -72,7 +72,7 @@ class Dashboard:
         self._loaded = False
         self._sight = sight or Sight()
         session.watch(complaint=complaint)
-        session.keeper.wake = partial(session.turns.soon, self.hear)
+        session.worker.wake = partial(session.turns.soon, self.hear)
         self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
         self._notes, self._log = Notes(session), RunLog(session)
         self._presence = Presence(session, self.pulse)

@@ -20,7 +20,7 @@ from app.components.panes import looks, script
 from app.shell.figures import make_figure
 from app.views.catalogue import VIEWS
 from app.views.drawing import View
-from app.worker.easel import PLOTS
+from app.worker.painter import PLOTS
 from solver.scenes import behind
 from solver.settings import Settings
 

@@ -13,7 +13,7 @@ from app.components.panes import button, select
 from app.components.scrubber import scrubber
 from app.session.session import Session
 from app.session.state import PACES
-from app.worker.easel import INSTANT, ITERATION
+from app.worker.painter import INSTANT, ITERATION
 from solver.settings import Settings
 
 LABELS = {

@@ -17,7 +17,7 @@ from app.takeaway.snippet import snippet
 from app.views.drawing import View
 from app.wire.orders import Tabulate
 from app.wire.reports import Facts
-from app.worker.easel import TAKE_AWAY
+from app.worker.painter import TAKE_AWAY
 from app.worker.tables import TABLES
 
 MOST_PICTURES = 60
@@ -110,7 +110,7 @@ class Saver:
         session, facts = self._session, self._session.facts
         self._count += 1
         if kind == "table":
-            session.keeper.send(Tabulate(value, self._count))
+            session.worker.send(Tabulate(value, self._count))
         elif kind == "program":
             text = snippet(session.settings, was_warm=facts is not None and facts.was_warm)
             self.view.file = [f"slipfront-{session.settings.scene}.py", text, self._count]

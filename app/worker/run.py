@@ -12,7 +12,7 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame, Sampler
 from app.picture.shown import Look, has_reference
 from app.wire.orders import Pace, Run, Seek, Step
-from app.worker.beside import Beside
+from app.worker.full_stage_run import FullStageRun
 from app.worker.rivals import KeptReferences
 from app.worker.seeking import Found, Seeking
 from app.worker.tempo import Tempo
@@ -202,7 +202,7 @@ class WorkerRun:
             self._previous = None
         self.recording.choice = self._start.choice if self._start else None
         on_modes = isinstance(self._latin.linear, PGD)
-        self._full_stage = Beside(problem, self._settings, self._start) if on_modes else None
+        self._full_stage = FullStageRun(problem, self._settings, self._start) if on_modes else None
         newest = next(self._generator)
         if not math.isfinite(latin_indicator(newest)):
             raise FloatingPointError(

@@ -15,7 +15,7 @@ from app.picture.shown import Look, instant_of
 from app.views.drawing import Scene
 from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.wire.reports import Facts, File, Picture
-from app.worker.easel import TAKE_AWAY, Easel
+from app.worker.painter import TAKE_AWAY, Painter
 from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
 from app.worker.tables import table
@@ -44,7 +44,7 @@ class Studio:
         self._send = send
         self._urgent = urgent
         self._references = KeptReferences()
-        self._easel = Easel()
+        self._painter = Painter()
         self._look = Look()
         self._run: WorkerRun | None = None
         self._twin: Twin | None = None
@@ -91,7 +91,7 @@ class Studio:
                 self._attempt(order.ticket, lambda: self._begin(order))
             case Ready():
                 if order.afresh or order.whole:
-                    self._easel.packer.forget()
+                    self._painter.packer.forget()
                 if order.afresh and run is not None:
                     run.has_news = True
                 self._paint_at = time.monotonic() + order.rest
@@ -110,7 +110,7 @@ class Studio:
         previous = self._last if order.warm else None
         self._run = WorkerRun(order, self._look, self._urgent, self._references, previous)
         if self._run.cost.is_large and not order.follows_hand:
-            self._send(File(self._easel.say({"status": before_a_run(self._run.cost)})))
+            self._send(File(self._painter.say({"status": before_a_run(self._run.cost)})))
         self._pair(order)
         settings, before = self._run.recording.settings, self._before
         # Runs of another scene are nothing to compare with.
@@ -145,7 +145,7 @@ class Studio:
     def _watch(self, look: Look) -> None:
         if look.views != self._look.views:
             # Figures that come, or come back, have nothing.
-            self._easel.packer.forget()
+            self._painter.packer.forget()
         self._look = look
         run = self._run
         if run is not None:
@@ -179,13 +179,13 @@ class Studio:
             is_over=recording.status is not None and (twin is None or twin.status is not None),
             was_warm=recording.choice is not None and recording.choice.is_previous,
         )
-        block = self._easel.paint(scene, self._words(run, scene), facts)
+        block = self._painter.paint(scene, self._words(run, scene), facts)
         self._send(Picture(run.ticket, facts, block))
         if (asked := self._table) is not None:
             self._table = None
             name = f"slipfront-{recording.settings.scene}-{asked.what}.csv"
             file = [name, table(asked.what, scene), asked.number]
-            block = self._easel.say({}, {TAKE_AWAY: {"file": file}})
+            block = self._painter.say({}, {TAKE_AWAY: {"file": file}})
             self._send(File(block))
 
     def _scene(self, run: WorkerRun, frame: Frame, instant: int) -> Scene:
@@ -213,7 +213,7 @@ class Studio:
             self._run = None
             if not isinstance(problem, RefusedError | FloatingPointError):
                 _log.exception("A run broke.")
-            block = self._easel.say({"status": f"<b>{escape(_sentence(problem))}</b>"})
+            block = self._painter.say({"status": f"<b>{escape(_sentence(problem))}</b>"})
             self._send(Picture(ticket, Facts(is_broken=True), block))
 
 

@@ -27,7 +27,7 @@ ITERATION, INSTANT = "iteration", "instant"
 """Names of the sliders over these."""
 
 
-class Easel:
+class Painter:
     """All views of a page, with what they want to be kept."""
 
     def __init__(self) -> None:

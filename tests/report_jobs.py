@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from processes import wait_for
 
-from app.session.errand import Errand
+from app.session.report_job import ReportJob
 
 
-def until_idle(errand: Errand) -> None:
+def until_idle(job: ReportJob) -> None:
     def idle() -> bool:
-        errand.collect()
-        return not errand.is_busy
+        job.collect()
+        return not job.is_busy
 
     wait_for(idle)

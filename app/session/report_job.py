@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from app.session.bench import report, said_of
-from app.session.desk import PROGRESS, SECTIONS, files, said
+from app.session.report_folder import PROGRESS, SECTIONS, files, said
 from app.session.studies import Work
 from solver.definitions import SettingError
 from solver.study.page import Section
@@ -33,7 +33,7 @@ class Found:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
-class Errand:
+class ReportJob:
     """One kind of report of one page, at most one at a time; results stay until the page closes.
 
     Parameters

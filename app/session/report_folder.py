@@ -16,7 +16,7 @@ from solver.study.page import Section
 PROGRESS, SECTIONS = ".progress", ".sections"
 
 
-class Desk:
+class ReportFolder:
     """What the process that makes a report writes on; nothing is ever seen half written."""
 
     def __init__(self, folder: Path) -> None:

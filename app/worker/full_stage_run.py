@@ -10,7 +10,7 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 
 
-class Beside:
+class FullStageRun:
     """The same run with the full linear stage, iteration by iteration, on a clock of its own.
 
     Parameters

@@ -25,7 +25,7 @@ Hire = Callable[[Callable[[Report], None]], Link | Seat]
 """Gives a worker process, or a seat in a class; its reports go to what it is called with."""
 
 
-class Keeper:
+class PageWorker:
     """At most one process at a time; reports arrive on another thread and wait for `collect`.
 
     Attributes
