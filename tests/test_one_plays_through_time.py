@@ -13,7 +13,6 @@ from app.session.pages import Pages
 from app.session.session import Session
 from app.shell import transport as module
 from app.shell.transport import PLAYED_IN, Transport
-from app.wire.reports import Facts
 from solver.scenes.bar import BarSettings
 
 
@@ -26,8 +25,9 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 @pytest.fixture
 def transport(clock: Clock) -> Transport:
-    session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire, clock)
-    session.facts = Facts(instants=11, instant=4)
+    session = Session(
+        Pages(1), Bench(), BarSettings.checked({"instants": 11}), LoneLink().hire, clock
+    )
     session.watch(phase=0.4)
     return Transport(session)
 

@@ -133,14 +133,12 @@ class Transport:
 
     def play_on(self) -> None:
         """Look at the instant that one has come to, and at the next when that has come."""
-        facts = self._session.facts
         if self._played is None:
             return
         began, phase = self._played
-        last = max(facts.instants - 1, 1) if facts is not None else 1
+        last = max(self._last, 1)
         phase += (time.monotonic() - began) / PLAYED_IN
-        if facts is not None:
-            self._session.watch(phase=min(int(phase * last) / last, 1.0))
+        self._session.watch(phase=min(int(phase * last) / last, 1.0))
         if phase >= 1.0:
             self.play()
         else:
