@@ -118,7 +118,8 @@ def _of_panel(panel: Panel, before: Panel | None, here: Here) -> Iterator[Layer]
     old = before.curves if before else ()
     lines = [curve for curve in old if curve.line != "faint" and len(curve.x)]
     looks = {**BY_HUE, "line_dash": "dashed", "line_width": 2.0, "alpha": 0.4}
-    yield Layer("ghost", "Contours", _paths(lines), looks)
+    if panel.runs is not None:
+        yield Layer("ghost", "Contours", _paths(lines), looks)
     for place, curve in enumerate(panel.curves):
         yield from _of_curve(panel, curve, place)
     if panel.runs is not None:
