@@ -219,8 +219,8 @@ def test_a_page_that_closes_ends_its_jobs(bench: Bench) -> None:
     with closing(
         Session(Pages(1), bench, BarSettings.checked({"method": "paper", **TINY}))
     ) as session:
-        session.stability.ask("any", sleep)
-        wait_for(lambda: session.attend() and session.stability.doing == "asleep")
+        session.asked.stability.ask("any", sleep)
+        wait_for(lambda: session.attend() and session.asked.stability.doing == "asleep")
         pid = bench.pid
         session.close()
         assert pid is not None
@@ -241,7 +241,7 @@ def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -
     other = Session(pages, bench, settings, LoneLink().hire)
     session.start()
     assert pages.at_work_beside(other) == 1
-    session.study.ask("any", sleep)
+    session.asked.study.ask("any", sleep)
     wait_for(lambda: session.attend() and session.is_held)
     assert pages.at_work_beside(other) == 0
     with LENDER.lent():
@@ -249,7 +249,7 @@ def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -
     assert link.orders[-1] == Pace(1, 0.0, is_held=True)
     session.start(session.settings.with_change("friction", 0.31))
     assert (link.orders[-1].pause_after, link.orders[-1].is_held) == (1, True)
-    session.study.cancel()
+    session.asked.study.cancel()
     session.attend()
     assert not session.is_held
     assert link.orders[-1] == Pace(2, session.pace)

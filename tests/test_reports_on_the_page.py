@@ -116,7 +116,8 @@ def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> 
 def test_a_study_is_not_offered_where_the_reference_would_take_too_long(job: ReportJob) -> None:
     for layers, refused in ((3, False), (20, True)):
         settings = LayersSettings.checked({"layers": layers, "instants": 11})
-        page = SimpleNamespace(study=job, wanted=settings, crowd=0, turns=Turns())
+        asked = SimpleNamespace(study=job)
+        page = SimpleNamespace(asked=asked, wanted=settings, crowd=0, turns=Turns())
         report = StudyReport(cast(Session, page))
         report.open()
         assert report._start.disabled == refused

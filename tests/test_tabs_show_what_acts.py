@@ -44,7 +44,7 @@ def test_a_report_that_no_setting_changes_shows_none_and_the_live_run_has_all_ag
     session: Session, sidebar: Sidebar
 ) -> None:
     live = shown_for(sidebar, None)
-    for report in (PaperFigures(session.figures), StabilityReport(session.stability)):
+    for report in (PaperFigures(session.asked.figures), StabilityReport(session.asked.stability)):
         assert set(shown_for(sidebar, report)) == {NOTE, SHARE, ""}
     assert shown_for(sidebar, None) == live
 
@@ -73,7 +73,7 @@ def _values(forms: dict[str, Settings]) -> dict[str, dict[str, Any]]:
 
 def test_results_of_other_settings_are_marked_until_these_are_back(session: Session) -> None:
     report, found = StudyReport(session), Found("a study", ["<p>results</p>"])
-    session.study.found.append(found)
+    session.asked.study.found.append(found)
     report._settings[found] = BAR
     report.open()
 

@@ -52,7 +52,7 @@ def settled(inquiry: Inquiry) -> list[Row]:
 @pytest.fixture
 def session() -> Iterator[Session]:
     with closing(Session(Pages(1), Bench(), BarSettings.checked(TINY), LoneLink().hire)) as opened:
-        opened.inquiry._lent = here
+        opened.asked.inquiry._lent = here
         yield opened
 
 
@@ -134,8 +134,8 @@ def test_a_processor_is_left_to_the_pages_where_there_are_more_than_two(
 
 def test_a_closed_page_ends_its_sweep(session: Session) -> None:
     lender = Lender()
-    session.inquiry._lent = lender.lent
-    session.inquiry.ask(tiny(["friction=0.1:0.5:5"], ["iterations"], **SLOW))
+    session.asked.inquiry._lent = lender.lent
+    session.asked.inquiry.ask(tiny(["friction=0.1:0.5:5"], ["iterations"], **SLOW))
     wait_for(lambda: lender.users == 1)
     session.close()
     wait_for(lambda: lender.users == 0)
@@ -162,7 +162,7 @@ class Tab:
 
     def settle(self) -> dict[str, Any]:
         """Wait until nothing more comes; what the browser was given."""
-        settled(self.session.inquiry)
+        settled(self.session.asked.inquiry)
         self.tab.refresh()
         return dict(self.asker.progress)
 
@@ -177,7 +177,7 @@ def test_a_ready_question_is_asked_by_one_click_and_a_point_opens_its_run(
     page = Tab(session)
     assert page.tab.question is None
     page.open()
-    assert session.inquiry.plan is None
+    assert session.asked.inquiry.plan is None
     page.tab.hear("span", {"place": 0, "span": {"count": "3"}})
     page.tab.hear("start", None)
     assert page.settle()["words"] == "6 of 6 runs: 6 converged."
@@ -195,19 +195,19 @@ def test_a_ready_question_is_asked_by_one_click_and_a_point_opens_its_run(
 def test_a_question_of_the_address_is_asked_when_somebody_looks(session: Session) -> None:
     question = Question((Span("peak", "300", "900", "3"),), "peak_displacement")
     page = Tab(session, question)
-    assert session.inquiry.plan is None
+    assert session.asked.inquiry.plan is None
     page.open()
-    assert session.inquiry.plan is not None
+    assert session.asked.inquiry.plan is not None
     assert page.tab.question == question
     page.settle()
     page.open()
-    assert not session.inquiry.is_busy
+    assert not session.asked.inquiry.is_busy
 
 
 def test_a_refused_question_is_not_asked(session: Session) -> None:
     page = Tab(session, Question((Span("peak", "300", "300", "3"),), "seconds"))
     page.open()
-    assert session.inquiry.plan is None
+    assert session.asked.inquiry.plan is None
     assert "The two ends differ" in page.asker.form["refusals"]["0"]
 
 

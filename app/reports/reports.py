@@ -89,7 +89,7 @@ class StudyReport(Report):
     note = "Settings that change a study; the methods set all others themselves."
 
     def __init__(self, session: Session) -> None:
-        super().__init__(session.study, session.turns.soon)
+        super().__init__(session.asked.study, session.turns.soon)
         self._session = session
         self._crowds: WeakKeyDictionary[Found, int] = WeakKeyDictionary()
         self._settings: WeakKeyDictionary[Found, Settings] = WeakKeyDictionary()

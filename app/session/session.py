@@ -10,12 +10,11 @@ from functools import partial
 from typing import Any
 
 from app.picture.labels import changes_of, label_of
+from app.session.asked import Asked
 from app.session.attendance import Attendance
 from app.session.bench import Bench
-from app.session.inquiry import Inquiry
 from app.session.page_worker import AGAIN, GIVEN_UP, Hire, PageWorker
 from app.session.pages import Pages
-from app.session.report_job import ReportJob
 from app.session.state import State
 from app.session.turns import Turns
 from app.session.uploads import cut_off
@@ -57,8 +56,8 @@ class Session(State):
     follows_hand, is_held
         Whether the run is one of many while a slider is dragged, and whether it stands still for a
         study that is timed.
-    figures, study, stability, inquiry
-        The reports and the sweep that this page has asked for.
+    asked
+        The reports and the sweep of this page.
     crowd
         Most runs of other pages that were at work at a time during the last study.
     worker, attendance
@@ -82,10 +81,7 @@ class Session(State):
         timer = self.turns.timer
         self._stands_still, self._is_left_alone = timer(self.let_go), timer(self._give_back)
         self._looks = timer(self.attend)
-        began = partial(self._looks.set, LOOKS)
-        self.figures, self.study, self.stability = (ReportJob(bench, began) for _ in range(3))
-        self.inquiry = Inquiry(began=began)
-        self._asked = self.figures, self.study, self.stability, self.inquiry
+        self.asked = Asked(bench, partial(self._looks.set, LOOKS))
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._due: Settings | None = None
@@ -218,8 +214,7 @@ class Session(State):
         self.worker.close()
         self.attendance.close()
         self._pages.remove(self)
-        for one in self._asked:
-            one.cancel()
+        self.asked.cancel()
 
     def rest(self, alone: bool) -> None:
         """Hold the run while nobody sees the page, and let it go on afterwards."""
@@ -232,17 +227,17 @@ class Session(State):
 
     def attend(self) -> bool:
         """See what reports and the sweep have come to, and soon again; tell if that is new."""
-        heard = [one.collect() for one in self._asked]
-        if self.study.is_begun != self.is_held:
+        is_new = self.asked.collect()
+        if self.asked.study.is_begun != self.is_held:
             self.is_held = not self.is_held
             self.crowd = 0 if self.is_held else self.crowd
             self._keep_pace()
         if self.is_held:
             self.crowd = max(self.crowd, self._pages.at_work_beside(self))
-        if any(one.is_busy for one in self._asked):
+        if self.asked.is_busy:
             self._looks.set(LOOKS)
-        self.reported += any(heard)
-        return any(heard)
+        self.reported += is_new
+        return is_new
 
     @property
     def is_at_work(self) -> bool:

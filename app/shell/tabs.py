@@ -57,9 +57,9 @@ class Tabs:
         self._live = live
         beside: list[WhatIf | Report] = [
             what_if,
-            PaperFigures(session.figures, session.turns.soon),
+            PaperFigures(session.asked.figures, session.turns.soon),
             StudyReport(session),
-            StabilityReport(session.stability, session.turns.soon),
+            StabilityReport(session.asked.stability, session.turns.soon),
         ]
         self._beside = dict(zip(TABS[1:], beside, strict=True))
         self.bar = pmui.RadioButtonGroup(

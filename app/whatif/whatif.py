@@ -133,7 +133,7 @@ class WhatIf:
             "quantity": lambda: self._on_quantity(**value),
             "ready": lambda: self._on_ready(value),
             "start": self.start,
-            "cancel": self._session.inquiry.cancel,
+            "cancel": self._session.asked.inquiry.cancel,
             "there": lambda: self._filling.go_on(value),
             "run": lambda: self._on_run(value),
             "table": self._on_table,
@@ -144,7 +144,7 @@ class WhatIf:
         """Ask what the fields say; what is refused stands beside them."""
         settings, question = self._session.wanted, self._question
         if question is not None and not question.refusals(settings):
-            self._session.inquiry.ask(question.plan(settings))
+            self._session.asked.inquiry.ask(question.plan(settings))
 
     def _on_span(self, place: int, span: dict[str, str]) -> None:
         """Follow the fields of a setting; a second one without a name is none."""
@@ -165,7 +165,7 @@ class WhatIf:
 
     def _on_run(self, number: int) -> None:
         """Open the run of a point, unless its settings were refused."""
-        plan = self._session.inquiry.plan
+        plan = self._session.asked.inquiry.plan
         if plan is not None and 0 <= number < plan.size:
             try:
                 settings = plan.settings_at(number)
@@ -174,7 +174,7 @@ class WhatIf:
             self._show(settings)
 
     def _on_table(self) -> None:
-        inquiry = self._session.inquiry
+        inquiry = self._session.asked.inquiry
         if self._asker is not None and inquiry.plan is not None:
             rows = sorted(inquiry.rows, key=lambda row: row.number)
             count = self._asker.file[2] + 1 if self._asker.file else 1
@@ -183,7 +183,7 @@ class WhatIf:
     def _refresh(self) -> None:
         if self._asker is None or self._question is None:
             return
-        inquiry, settings = self._session.inquiry, self._session.wanted
+        inquiry, settings = self._session.asked.inquiry, self._session.wanted
         plan = inquiry.plan
         self._keep_to(settings)
         if plan is not None:
@@ -206,7 +206,7 @@ class WhatIf:
                 self._question = bathtub(settings)
 
     def _ghost(self, plan: Plan) -> Chart | None:
-        before = self._session.inquiry.before
+        before = self._session.asked.inquiry.before
         return chart_of(*before) if before and is_comparable(plan, before[0]) else None
 
     def _label(self) -> None:
@@ -223,7 +223,7 @@ class WhatIf:
         self._asker.chart = found
 
     def _progress(self) -> dict[str, Any]:
-        inquiry = self._session.inquiry
+        inquiry = self._session.asked.inquiry
         plan, done = inquiry.plan, len(inquiry.rows)
         if plan is None:
             return {"busy": False, "share": 0.0, "words": "", "moved": False}
