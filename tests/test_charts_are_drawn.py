@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
@@ -14,7 +15,7 @@ from browser import Chrome
 from sweeps import tiny
 
 from app.charts.draw import draw
-from app.charts.filling import fill, form
+from app.charts.filling import Filling, fill, form
 from app.charts.keys import legend
 from app.charts.layers import levels
 from app.charts.page import render
@@ -143,6 +144,23 @@ def test_of_a_map_that_fills_only_new_runs_are_sent(monkeypatch: pytest.MonkeyPa
     fill(figure, chart_of(AREA, rows[:45]), None, None)
     fill(figure, chart_of(AREA, rows), None, None)
     assert sent == [5, 18]
+
+
+def test_a_figure_on_a_page_is_touched_in_turns_of_the_page_alone() -> None:
+    rows, acts = rows_of_map(), list[Callable[[], object]]()
+    filling = Filling(acts.append, lambda: None)
+    filling.show(chart_of(AREA, rows[:30]), None, None)
+    assert filling._drawing is not None
+    filling._drawing.result()
+    filling.catch_up()
+    filling.go_on(filling.figure.id)
+    before = everything(filling.figure)
+    filling.show(chart_of(AREA, rows), None, None)
+    # What a browser does may be heard while Bokeh has the document for itself.
+    np.testing.assert_equal(everything(filling.figure), before)
+    for act in acts:
+        act()
+    assert len(columns(filling.figure, "answer")["x"]) == len(rows) - 1
 
 
 def test_the_chart_before_is_between_the_ends_of_the_axis_too() -> None:

@@ -14,6 +14,7 @@ from app.charts.layers import Here, layers, limits, span
 from app.components.panes import column
 from solver.study.chart import Chart, Map
 
+Act = Callable[[], object]
 HAND = ThreadPoolExecutor(1, "drawing")
 """Draws, and first imports what draws: at half a second each, all pages would stand still."""
 GROWS = ("number", "x", "y", "left", "value")
@@ -44,8 +45,11 @@ class Filling:
 
     Parameters
     ----------
+    soon
+        Has something done in a turn of the page, which alone may touch a figure there; also for a
+        thread.
     on_drawn
-        Called on a thread once there is something for `catch_up`.
+        Called in such a turn once there is something for `catch_up`.
 
     Attributes
     ----------
@@ -57,11 +61,11 @@ class Filling:
         What that is of.
     """
 
-    def __init__(self, on_drawn: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, soon: Callable[[Act], None], on_drawn: Act) -> None:
         self.view = column(role="filling", sizing_mode="stretch_both")
         self.figure: Any = None
         self.shown: ChartShown | None = None
-        self._on_drawn = on_drawn
+        self._soon, self._on_drawn = soon, on_drawn
         self._form: tuple[Any, ...] = ()
         self._drawing: Future[Any] | None = None
         self._wanted: ChartShown | None = None
@@ -79,9 +83,9 @@ class Filling:
         if form(chart) != self._form:
             self._form = form(chart)
             self._drawing = drawn(*self._wanted, height=None)
-            self._drawing.add_done_callback(lambda drawing: self._on_drawn())
-        elif self._is_there:
-            self._fill()
+            self._drawing.add_done_callback(lambda drawing: self._soon(self._on_drawn))
+        else:
+            self._soon(self._fill)
 
     def catch_up(self) -> bool:
         """Put the figure in its place once it is drawn; tell if that was done."""
@@ -98,10 +102,10 @@ class Filling:
         """Fill a figure that a browser has; of one on its way it would know nothing."""
         if self.figure is not None and self.figure.id == figure:
             self._is_there = True
-            self._fill()
+            self._soon(self._fill)
 
     def _fill(self) -> None:
-        if self._drawing is None and self._wanted is not None:
+        if self._is_there and self._drawing is None and self._wanted is not None:
             self.shown = self._wanted
             fill(self.figure, *self.shown)
 

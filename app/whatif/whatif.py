@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any, ClassVar
 
 import param
@@ -91,7 +90,7 @@ class WhatIf:
         self._asked, self._question = question, question
         self._asker: Asker | None = None
         self._drawn: Plan | None = None
-        self._filling = Filling(partial(session.turns.soon, self.put_drawn))
+        self._filling = Filling(session.turns.soon, self.put_drawn)
         session.question = question
         self._scene = session.wanted.scene
         self.view = column(role="paper what-if", margin=(4, 10), visible=False)
