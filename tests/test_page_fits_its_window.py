@@ -1,9 +1,10 @@
 """Plots, figures and lessons fit a projector's window."""
 
-from contextlib import suppress
+import time
 
-from pages import press
-from playwright.sync_api import TimeoutError, expect
+from pages import at_rest, press
+from playwright.sync_api import expect
+from processes import PATIENCE
 
 from app.lessons.lesson import LESSONS
 
@@ -61,10 +62,10 @@ SIZES = (1440, 900), (1280, 720), (1000, 700), (720, 450)
 
 
 def nothing_collides(page):
-    """Wait until all words and controls have their places."""
-    with suppress(TimeoutError):
-        page.wait_for_function(f"({COLLIDES})().length === 0")
-    assert page.evaluate(COLLIDES) == []
+    """Wait until all words and controls have come to rest in places of their own."""
+    end = time.monotonic() + PATIENCE
+    while found := at_rest(page, f"({COLLIDES})()"):
+        assert time.monotonic() < end, found
 
 
 def nothing_collides_at_any_size(page):
@@ -103,8 +104,10 @@ def test_key_figures_of_two_runs_fit_beside_the_sidebar(open_page):
     nothing_collides_at_any_size(page)
     page.set_viewport_size({"width": 1280, "height": 720})
     page.keyboard.press("p")
+    leave = "Leave the presenter's view (p)."
+    expect(page.get_by_role("button", name=leave)).to_be_visible()
     nothing_collides(page)
-    press(page, "Leave the presenter's view (p).")
+    press(page, leave)
     expect(figures).to_be_visible()
 
 
