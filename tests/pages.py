@@ -17,7 +17,7 @@ IGNORED = ("Failed to load resource", "favicon")
 OURS = re.compile(r'File ".*/(app|solver)/')
 """In a traceback; a page that is closed leaves those of the web server."""
 REPORTS = {
-    "Study": "Every form of LATIN, the incremental solver and the public QP solvers",
+    "Study": "Every form of LATIN and the incremental solver",
     "Stability": "Stiff and extreme cases of every scene",
 }
 """What stands on the tabs that have a button to start."""

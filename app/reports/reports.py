@@ -82,7 +82,7 @@ class StudyReport(Report):
 
     title = "Error against run time"
     words = (
-        "Every form of LATIN, the incremental solver and the public QP solvers that are installed "
+        "Every form of LATIN and the incremental solver "
         "solve the present settings in turn: how near to the solution is each, after what time? "
         "The run of this page stands still meanwhile, to leave the clock alone."
     )
