@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import holoviews as hv
+from bokeh.models import CustomJSTickFormatter
 from bokeh.plotting import figure
 
 from app.charts.layers import Here, Layer, layers, limits
@@ -22,6 +23,9 @@ PLACES: dict[str, list[str]] = {
     "Rectangles": SIDES,
 }
 """Columns that say where a mark is."""
+
+SHORT = "return String(Number(tick.toPrecision(6))).replaceAll('-', '−')"
+"""A number as one writes it, and not 1.000e−3."""
 
 hv.extension("bokeh")
 # Where there is no graphics card, canvas is faster, and its lines are clean.
@@ -73,7 +77,12 @@ def _drawn(layer: Layer) -> Any:
 
 def _axes(chart: Chart, before: Chart | None) -> dict[str, Any]:
     across, up = limits(chart, before)
+    linear = {"x": not chart.x.logarithmic, "y": not chart.y.logarithmic}
+    formatters = {
+        f"{name}formatter": CustomJSTickFormatter(code=SHORT) for name, one in linear.items() if one
+    }
     return {
+        **formatters,
         "title": chart.title,
         "logx": chart.x.logarithmic,
         "logy": chart.y.logarithmic,
