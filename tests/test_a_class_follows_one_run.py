@@ -241,6 +241,8 @@ def test_a_class_at_rest_has_nothing_to_do_and_says_who_comes_and_goes() -> None
     follower.attendance.follow(room)
     pages.append(Dashboard(follower))
     pages[1].loaded()
+    # Before any news of the class has come to it.
+    assert "You follow" in pages[1]._banner._words.object
 
     def said() -> list[str]:
         for clock in clocks * 3:

@@ -131,6 +131,8 @@ class Dashboard:
         session = self.session
         if room := session.attendance.follows:
             session.start(room.settings)
+            # What the class shows stands there as the page is seen, and not from the next news on.
+            session.attendance.note()
             return
         session.running = iteration == 0
         session.start()
