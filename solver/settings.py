@@ -23,8 +23,8 @@ def _on_fields(settings: Settings) -> bool:
 
 
 NO_SAMPLES = (
-    "laws evaluated at a part of the points and instants took longer to every error, and stalled "
-    "at a larger one"
+    "laws evaluated at a part of the points and instants hardly ever came sooner to an error, and "
+    "stalled at a larger one"
 )
 
 
