@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextvars import Context
 from functools import partial
 from typing import Any
 
@@ -15,6 +16,9 @@ class Turns:
     """Has something done as soon as the loop is free, or after some time.
 
     What a thread adds to a document itself may be lost: Bokeh may be letting it go from a hold.
+    What another page asks for would be done in that one's context, as Panel has it: with its
+    document for the page's own. And what is changed while the browser builds the page is lost:
+    Panel takes it for part of the page, which was sent before. So nothing has a turn until then.
 
     Parameters
     ----------
@@ -27,11 +31,18 @@ class Turns:
         self._take = take
         self._loop = IOLoop.current() if take is not None else None
         self._timers: list[Timer] = []
+        self._waits: list[Act] | None = []
+
+    def begin(self) -> None:
+        """Have done what waits for the page to be built; nothing waits for that from now on."""
+        waited, self._waits = self._waits or [], None
+        for act in waited:
+            self._give(act)
 
     def soon(self, act: Act) -> None:
         """Have something done; any thread may ask for it."""
         if self._loop is not None:
-            self._loop.add_callback(self._give, act)
+            Context().run(self._loop.add_callback, self._give, act)
 
     def timer(self, act: Act) -> Timer:
         """Give what does something once its time has come."""
@@ -42,8 +53,8 @@ class Turns:
         """Have something done after some seconds; give what prevents it."""
         if self._loop is None:
             return lambda: None
-        loop, due = self._loop, self._loop.call_later(seconds, self._give, act)
-        return partial(loop.remove_timeout, due)
+        due = Context().run(self._loop.call_later, seconds, self._give, act)
+        return partial(self._loop.remove_timeout, due)
 
     def close(self) -> None:
         """Do nothing more."""
@@ -52,7 +63,11 @@ class Turns:
             timer.stop()
 
     def _give(self, act: Act) -> None:
-        if self._take is not None:
+        if self._take is None:
+            return
+        if self._waits is not None:
+            self._waits.append(act)
+        else:
             self._take(act)
 
 

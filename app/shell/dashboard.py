@@ -125,6 +125,7 @@ class Dashboard:
             self.session.refusal = self.session.look.complaint
         with self._link.going_back():
             self.session.tab = self._sight.tab
+        self.session.turns.begin()
 
     def _begin(self, iteration: int) -> None:
         """Start the run, to go on or to wait at an iteration; in a class, as that is."""
