@@ -58,13 +58,30 @@ COLLIDES = """() => {
   return found
 }"""
 """What of words and controls lies over another, is cut, or lies beyond the window."""
+CUT = """() => {
+  const found = [], pen = document.createElement("canvas").getContext("2d")
+  const plots = Bokeh.index.roots.filter(({model}) => model.type === "Plot")
+  for (const {model, axis_views, el, canvas_view: {bbox: room}} of plots) {
+    if (!el.checkVisibility()) { continue }
+    for (const {model: axis, visuals, bbox} of axis_views) {
+      pen.font = visuals.axis_label_text.font_value()
+      const lines = axis.axis_label.split("\\n").map((line) => pen.measureText(line).width)
+      const [middle, end] = model.left.includes(axis)
+        ? [bbox.vcenter, room.height] : [bbox.hcenter, room.width]
+      const half = Math.max(...lines) / 2
+      if (middle < half + 1 || middle + half + 1 > end) { found.push(`${axis.axis_label} is cut`) }
+    }
+  }
+  return found
+}"""
+"""Titles of axes that are longer than their plot has room for."""
 SIZES = (1440, 900), (1280, 720), (1000, 700), (720, 450)
 
 
 def nothing_collides(page):
     """Wait until all words and controls have come to rest in places of their own."""
     end = time.monotonic() + PATIENCE
-    while found := at_rest(page, f"({COLLIDES})()"):
+    while found := at_rest(page, f"[...({COLLIDES})(), ...({CUT})()]"):
         assert time.monotonic() < end, found
 
 

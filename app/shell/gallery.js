@@ -95,6 +95,27 @@ export function render({model}) {
     // Pictures find its models from now on; they are drawn one after the other.
     cards.set(slug, {element, place, made, plot, drawn: false})
   }
+  // The title of an axis for which there is no room has a second line: its unit, or its last word.
+  const pen = document.createElement("canvas").getContext("2d")
+  const wrap = (plot) => {
+    const {axis_views = [], canvas_view} = index.find_one_by_id(plot.id) ?? {}
+    for (const {model: axis, visuals} of axis_views.filter((one) => plot.left.includes(one.model))) {
+      const line = axis.axis_label.replace("\n", " ")
+      pen.font = visuals.axis_label_text.font_value()
+      const fits = pen.measureText(line).width <= plot.inner_height + plot.min_border_top
+      const title = fits ? line : line.replace(/ (\([^()]*\)|\S+)$/, "\n$1")
+      if (title === axis.axis_label) { continue }
+      axis.setv({axis_label: title}, {sync: false})
+      // Bokeh clears all but half a pixel, where the longer title has left a trace.
+      canvas_view.primary.ctx.clearRect(0, 0, canvas_view.bbox.width, 1)
+    }
+  }
+  const keep_wrapped = (plot) => {
+    const again = () => requestAnimationFrame(() => wrap(plot))
+    plot.properties.inner_height.change.connect(again)
+    for (const axis of plot.left) { axis.properties.axis_label.change.connect(again) }
+    again()
+  }
   const frame = () => new Promise((done) => requestAnimationFrame(done))
   // Empty axes would be laid out and painted for nothing.
   let pictured
@@ -107,6 +128,7 @@ export function render({model}) {
     one.drawn = true
     dress(one)
     await embed.add_document_standalone(one.made, one.place)
+    keep_wrapped(one.plot)
     await frame()
   }
   const show = () => {
