@@ -14,6 +14,8 @@ import pytest
 
 from solver.cli import main
 from solver.latin import Ending, StopRules, iterations, judged, solve, stop
+from solver.latin.criteria.changes import ForceChanges
+from solver.latin.criteria.estimate import SETTLED, ErrorEstimate
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -114,6 +116,19 @@ def test_the_default_run_ends_with_a_certificate_whatever_accuracy_is_asked(scen
         assert solution.is_certified
         assert solution.records[-1].error_force < ROUNDING
         assert solution.records[-1].estimated_error == solution.iterate.residual
+
+
+def test_a_status_step_is_tried_once_the_whole_force_settles_though_friction_has_not() -> None:
+    settings = small("layers", friction=0.1)
+    estimate, changes = ErrorEstimate(0.01), ForceChanges()
+    for iterate in islice(iterations(discretise(settings), method_of(settings)), 60):
+        assert estimate.certificate is None
+        estimate(iterate, math.nan)
+        changes.left(iterate)
+        if changes.last.whole <= SETTLED:
+            break
+    assert changes.last.worst > SETTLED
+    assert estimate.certificate is not None
 
 
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])

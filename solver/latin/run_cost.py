@@ -19,7 +19,7 @@ from solver.reference.contact import MOST_JUMPS, jumps_in
 
 ITERATIONS, MORE = 30, 2.5
 """That a run takes, and how many more with every interface but the first: the scenes' defaults take
-4 to 55, strands of 10, 20 and 40 wires 31, 65 and 147, 50 layers 81 (measured)."""
+4 to 45, strands of 10, 20 and 40 wires 31, 65 and 147, 50 layers 81 (measured)."""
 PLAIN = 5.0
 """Times as many without acceleration (measured on the bar)."""
 WATCHED = 2.0

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import ROUNDING, Array
 from solver.latin.iterate import Iterate
@@ -35,12 +36,30 @@ of magnitude, and dear beside a small iteration."""
 _NOTHING: Array = np.zeros(0)
 
 
+class Change(NamedTuple):
+    """A relative change of the contact force, or what is left to change.
+
+    Attributes
+    ----------
+    worst
+        Of friction or of pressure, whichever is larger.
+    whole
+        Of both as one field.
+    """
+
+    worst: float
+    whole: float
+
+
+UNKNOWN = Change(math.nan, math.nan)
+
+
 class _Past(NamedTuple):
     """The forces on the rows that rub at an iteration, and how they had changed by then."""
 
     number: int
     force: Array
-    change: float
+    change: Change
 
 
 class ForceChanges:
@@ -49,22 +68,22 @@ class ForceChanges:
     Attributes
     ----------
     last
-        Relative change since the iterate looked back at; NaN while there is none.
+        Change since the iterate looked back at; NaN while there is none.
     """
 
     def __init__(self) -> None:
         self._past: list[_Past] = []
         self._least = 0.0
         self._least_next = 0.0
-        self.last = math.nan
+        self.last = UNKNOWN
 
-    def left(self, iterate: Iterate) -> float:
+    def left(self, iterate: Iterate) -> Change:
         """Give the relative error that is left, if changes go on to fall as they did, or NaN."""
         force, number = _force_on_rows(iterate), iterate.number
         before = _at(self._past, LOOK_BACK * number)
-        self.last = math.nan
+        self.last = UNKNOWN
         if before is not None:
-            self.last = _share(iterate, force - before.force, force, self._least)
+            self.last = _change(iterate, force - before.force, force, self._least)
         if not self._past or number >= SPACING * self._past[-1].number:
             now = _Past(number, force, self.last)
             self._past = [*_still_needed(self._past, number), now]
@@ -72,10 +91,15 @@ class ForceChanges:
                 self._least, self._least_next = _least(iterate), RARELY * number
         earlier = before and _at(self._past, LOOK_BACK * before.number)
         if before is None or earlier is None or number <= FEW:
-            return 0.0 if self.last == 0.0 else math.nan
-        fall = max(_ratio(self.last, before.change), _ratio(before.change, earlier.change))
-        fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
-        return SAFETY * self.last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
+            return Change(*(0.0 if last == 0.0 else math.nan for last in self.last))
+        return Change(*map(_left, self.last, before.change, earlier.change))
+
+
+def _left(last: float, before: float, earlier: float) -> float:
+    """Give what is left of a force, of which these are the last three changes."""
+    fall = max(_ratio(last, before), _ratio(before, earlier))
+    fall = SLOWEST if math.isnan(fall) else min(fall, SLOWEST)
+    return SAFETY * last * max(fall / (1.0 - fall), 1.0 - LOOK_BACK)
 
 
 def _still_needed(past: list[_Past], number: int) -> list[_Past]:
@@ -108,22 +132,20 @@ def _ratio(part: float, whole: float) -> float:
     return part / whole if whole != 0.0 else math.inf
 
 
-def _share(iterate: Iterate, change: Array, force: Array, least: float) -> float:
-    """Give the relative change of the friction, or of the pressure if that is larger.
-
-    Relative to what `solver.reference.distance` divides an error by.
-    """
+def _change(iterate: Iterate, change: Array, force: Array, least: float) -> Change:
+    """Give a change relative to what `solver.reference.distance` divides an error by."""
     n_instants, normal = iterate.problem.n_instants, iterate.problem.rubbing_is_normal
     changes, squares = (
         np.einsum("ij,ij->j", one, one)
         for one in (part.reshape(n_instants, -1) for part in (change, force))
     )
-    least = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
-    found = 0.0
-    for kind in (normal, ~normal):
+
+    def share(kind: NDArray[np.bool_] | slice, least: float) -> float:
         size = max(math.sqrt(float(squares[kind].sum())), least)
-        found = max(found, math.sqrt(float(changes[kind].sum())) / size if size > 0.0 else 0.0)
-    return found
+        return math.sqrt(float(changes[kind].sum())) / size if size > 0.0 else 0.0
+
+    hidden = max(least, LEAST_SHARE * math.sqrt(float(squares.sum())))
+    return Change(max(share(normal, hidden), share(~normal, hidden)), share(slice(None), least))
 
 
 def _least(iterate: Iterate) -> float:
