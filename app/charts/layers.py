@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from contourpy import contour_generator
 
 from app.views.colors import FORCE, GREY, shaded
 from solver.arrays import Array, Flags, Indices
@@ -242,23 +241,32 @@ def _paths(curves: list[PanelCurve]) -> dict[str, Any]:
 
 def _contours(chart: Map) -> tuple[dict[str, Any], dict[str, Any]]:
     """Give the lines of equal value, straight between runs on the page, and what stands on them."""
-    xs, ys = list[Array](), list[Array]()
-    labels = list[tuple[float, float, str]]()
-    low, high = span(chart)
-    scales = [np.log if axis.logarithmic else np.asarray for axis in (chart.x, chart.y)]
-    back = [np.exp if axis.logarithmic else np.asarray for axis in (chart.x, chart.y)]
-    if min(chart.z.shape) > 1 and np.isfinite(chart.z).any():
-        x, y = (to(v) for to, v in zip(scales, (chart.x_values, chart.y_values), strict=True))
-        lines = contour_generator(x, y, np.ma.masked_invalid(chart.z))
-        for level in levels(low, high, logarithmic=chart.scale.logarithmic):
-            paths: Any = lines.lines(float(level))
-            found = [(back[0](path[:, 0]), back[1](path[:, 1])) for path in paths]
-            xs += [path[0] for path in found]
-            ys += [path[1] for path in found]
-            along, up = max(found, key=lambda path: len(path[0]), default=(NOWHERE, NOWHERE))
+    # Slow to import, as is all that draws: by then HoloViews has done it.
+    from bokeh.plotting.contour import contour_data
+
+    paths, labels = list[tuple[Array, Array]](), list[tuple[float, float, str]]()
+    at = levels(*span(chart), logarithmic=chart.scale.logarithmic)
+    if min(chart.z.shape) > 1 and at.size:
+        axes = (chart.x, chart.y)
+        there = [np.log if axis.logarithmic else np.asarray for axis in axes]
+        back = [np.exp if axis.logarithmic else np.asarray for axis in axes]
+        x, y = (to(v) for to, v in zip(there, (chart.x_values, chart.y_values), strict=True))
+        lines: Any = contour_data(x, y, chart.z, at, want_fill=False).line_data
+        for level, across, up in zip(at, lines.xs, lines.ys, strict=True):
+            found = _parts(back[0](across), back[1](up))
+            paths += found
+            along, high = max(found, key=lambda path: len(path[0]), default=(NOWHERE, NOWHERE))
             if len(along) >= FEWEST:
                 middle = len(along) // 2
-                labels.append((along[middle], up[middle], f"{level:.4g}"))
-    at = [list(column) for column in zip(*labels, strict=True)] or [[], [], []]
-    hues = [0.0] * len(xs)
-    return {"xs": xs, "ys": ys, "hue": hues}, dict(zip(("x", "y", "text"), at, strict=True))
+                labels.append((along[middle], high[middle], f"{level:.4g}"))
+    xs, ys = [x for x, _ in paths], [y for _, y in paths]
+    words = {name: [label[i] for label in labels] for i, name in enumerate(("x", "y", "text"))}
+    return {"xs": xs, "ys": ys, "hue": [0.0] * len(paths)}, words
+
+
+def _parts(x: Array, y: Array) -> list[tuple[Array, Array]]:
+    """Give the parts of a line that is interrupted by NaNs."""
+    known = np.isfinite(x)
+    ends = np.flatnonzero(~known)
+    parts = zip(*(np.split(v[known], ends - np.arange(len(ends))) for v in (x, y)), strict=True)
+    return [part for part in parts if len(part[0])]
