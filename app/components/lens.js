@@ -41,25 +41,29 @@ export function render({model}) {
     const at = place(), [across] = figure?.model.below ?? [], [up] = figure?.model.left ?? []
     said.textContent = at && across ? `${written(at[0], across)}, ${written(at[1], up)}` : ""
   }
-  let due = 0
-  const follow = (event) => {
-    pointer = event
-    if (due || event.composedPath().includes(root)) { return }
-    const path = event.composedPath()
-    heed(path)
-    due = requestAnimationFrame(() => {
-      due = 0;
-      [card, figure] = met(path)
-      watch()
-      put()
-      say()
-    })
-  }
-  // Another tab takes it away without a move of the pointer.
+  // Another tab takes the card away without a move of the pointer.
   const sizes = new ResizeObserver(put)
-  const watch = () => {
+  const see = (path) => {
+    [card, figure] = met(path)
     sizes.disconnect()
     if (card) { sizes.observe(card) }
+    put()
+    say()
+  }
+  let due = 0
+  const see_soon = (pathed) => {
+    if (due) { return }
+    due = requestAnimationFrame(() => {
+      due = 0
+      const path = pathed()
+      if (!path.includes(root)) { see(path) }
+    })
+  }
+  const follow = (event) => {
+    pointer = event
+    const path = event.composedPath()
+    heed(path)
+    see_soon(() => path)
   }
   // What lies under a pointer that rests changes as the page moves; nothing else tells of that.
   const roots = new WeakSet()
@@ -80,25 +84,12 @@ export function render({model}) {
     for (; one; one = one.parentNode ?? one.host) { path.push(one) }
     return path
   }
-  const moved = () => {
-    if (due || !pointer) { return }
-    due = requestAnimationFrame(() => {
-      due = 0
-      const path = under()
-      if (path.includes(root)) { return }
-      [card, figure] = met(path)
-      watch()
-      put()
-      say()
-    })
-  }
+  const moved = () => { if (pointer) { see_soon(under) } }
   const focus = (event) => {
-    if (event.composedPath().includes(root)) { return }
-    pointer = null;
-    [card, figure] = met(event.composedPath())
-    watch()
-    put()
-    say()
+    const path = event.composedPath()
+    if (path.includes(root)) { return }
+    pointer = null
+    see(path)
   }
   // While one has zoomed in, what pictures want of an axis is kept for afterwards (`pulse.js`).
   const release = (one) => {
