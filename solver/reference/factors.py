@@ -73,5 +73,5 @@ class Factors:
 
 def _sizes(matrix: Array, axis: int) -> Array:
     """Give powers of two that bring the largest entries along an axis near 1."""
-    largest = np.abs(matrix).max(axis=axis, initial=0.0)
-    return np.asarray(np.exp2(-np.round(np.log2(np.where(largest > 0.0, largest, 1.0)))))
+    _, exponent = np.frexp(np.abs(matrix).max(axis=axis, initial=0.0))
+    return np.asarray(np.ldexp(1.0, -exponent))

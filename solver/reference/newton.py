@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import ROUNDING, Array
+from solver.arrays import ROUNDING, Array, Indices
 from solver.laws import OPEN
 from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
@@ -32,6 +32,7 @@ PASSES = 30
 """Times at most that an instant is solved to keep dependent jumps together."""
 TOGETHER = 1e-10
 """Force that still ties dependent jumps, as a share of the largest load."""
+_HELD, _OPEN = np.int8(HELD), np.int8(OPEN)
 
 
 class Marched(NamedTuple):
@@ -59,12 +60,18 @@ class Newton:
         self._load, self._shift = np.zeros(len(condensed.base)), np.zeros_like(rules.gap)
         self._states: States = np.where(rules.smooth, OPEN, HELD).astype(np.int8)
         self._guesses, self._starts = guesses, Starts()
+        self._smooth: Indices = np.flatnonzero(rules.smooth)
+        self._rubs: Indices = np.flatnonzero(rules.friction > 0.0)
+        self._carry: Indices = rules.partner[self._rubs]
         if guesses is not None:
-            guesses[rules.smooth] = OPEN
+            guesses[self._smooth] = OPEN
         self._at_rest: States | None = None
         if rest is not None:
             self._at_rest = states_at(condensed.jump(rest)[condensed.moving], rules)
         self._largest = float(np.abs(condensed.load).max(initial=0.0))
+        has_acted = np.logical_or.accumulate(condensed.load.any(axis=0))
+        # Nothing has acted yet: then nothing moves, though a free body might.
+        self._is_at_rest = ~has_acted & bool(np.all(rules.gap[rules.normal] >= 0.0))
 
     def __call__(self, instant: int) -> Marched:
         """Give what an instant adds.
@@ -73,7 +80,7 @@ class Newton:
         (method of multipliers: Bertsekas, Constrained Optimization, 1982, ch. 2).
         """
         condensed, rules = self._condensed, self._rules
-        if self._is_at_rest(instant):
+        if self._is_at_rest[instant]:
             still = self._force, self._force, self._strained, self._motion
             return Marched(*map(np.zeros_like, still))
         load = condensed.load[:, instant] - self._load - self.response.on_base(self._force)
@@ -113,11 +120,6 @@ class Newton:
         normal = self._rules.normal[:, None]
         return replace(sides, held=sides.held + np.where(normal, self._opening[:, None], 0.0))
 
-    def _is_at_rest(self, instant: int) -> bool:
-        """Tell whether nothing has acted yet: then nothing moves, though a free body might."""
-        gap = self._rules.gap[self._rules.normal]
-        return not self._condensed.load[:, : instant + 1].any() and bool(np.all(gap >= 0.0))
-
     def _solved(self, sides: Sides, instant: int) -> tuple[States, Increment] | None:
         """Find the states of the jumps and the step, or None."""
         guesses = [self._states]
@@ -156,15 +158,15 @@ class Newton:
         slack = ROUNDING * (inside + self._largest)
         moved = (response.unit * (step.jump - sides.held))[:, 0]
         blur = slack + response.blur(step.motion)
-        bound = rules.bounds(force)
-        found = np.where(states == HELD, -np.sign(force) * (np.abs(force) > bound + slack), states)
-        slips = np.abs(states) == 1
-        found = np.where(slips, states * (states * moved >= -blur), found)
+        held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
-        carried = rules.bound - rules.friction * np.minimum(moved[rules.partner], 0.0)
-        found = np.where(states == OPEN, np.sign(moved) * (np.abs(moved) > carried), found)
-        found[rules.smooth] = OPEN
-        closed = np.where(states == HELD, force >= -slack, moved < -blur)
-        found = np.where(rules.normal, np.where(closed, HELD, OPEN), found)
-        found[(rules.friction > 0.0) & (found[rules.partner] == OPEN)] = OPEN
-        return found.astype(np.int8)
+        carries = np.where(held, force[rules.partner], -moved[rules.partner])
+        most = rules.bound + np.maximum(rules.friction * carries, 0.0) + slack * held
+        pulled = np.where(held, -force, moved)
+        found = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
+        found = np.where(np.abs(states) == 1, states * (states * moved >= -blur), found)
+        found[self._smooth] = OPEN
+        closed = np.where(held, force >= -slack, moved < -blur)
+        found = np.where(rules.normal, np.where(closed, _HELD, _OPEN), found)
+        found[self._rubs[found[self._carry] == OPEN]] = OPEN
+        return found

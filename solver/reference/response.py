@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.arrays import ROUNDING, Array, Indices
+from solver.arrays import ROUNDING, Array, Indices, as_slice
 from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
 from solver.reference.factors import Factors
@@ -41,10 +41,10 @@ class Response:
         self._stiffness, self._gauge = condensed.stiffness, condensed.gauge
         self._partner, self._friction = rules.partner, rules.friction
         self._base, self._soft = condensed.base, rules.compliance[:, None]
+        self._base_rows = as_slice(condensed.base)
         self._others: Indices = np.setdiff1d(np.arange(len(rules.gap)), self._base)
-        self._ties = condensed.ties[self._others].toarray()
-        self._place = np.full(len(rules.gap), -1)
-        self._place[self._base] = np.arange(len(self._base))
+        self._ties = condensed.ties.toarray() if len(self._others) else None
+        self._of_unknowns = self._forces_of_unknowns()
         alone = abs(condensed.ties) @ np.diagonal(self._stiffness)
         self.unit: Array = (alone / (1.0 + alone * rules.compliance))[:, None]
         self._alone = np.diagonal(self._stiffness)
@@ -54,64 +54,73 @@ class Response:
         self.solutions = 0
         self.unbalanced, self.turned, self.singular = 0.0, False, False
 
+    def _forces_of_unknowns(self) -> Array:
+        """Give what forces of all jumps are of y and of forces of jumps that follow from others.
+
+        Shape (n, n).
+        """
+        if self._ties is None:
+            return self._stiffness
+        n_base, size = len(self._base), len(self._ties)
+        found = np.zeros((size, size))
+        found[self._base, :n_base] = self._stiffness
+        found[self._base, n_base:] = -self._ties[self._others].T
+        found[self._others, np.arange(n_base, size)] = 1.0
+        return found
+
     def __call__(self, states: States, sides: Sides) -> Increment:
         """Solve for the step from the instant before."""
         if self._states is None or not np.array_equal(states, self._states):
             self._factor(states)
         self.solutions += 1
-        rows, kept = self._rows, self._kept
-        none = np.zeros((len(self._others), sides.load.shape[1]))
-        strained = np.zeros_like(sides.load)
-        strained[kept] = sides.held[self._base[kept]]
-        force = self._forces(strained, sides.load, none)
-        right = -self._way * sides.bound[rows] - force[rows] - self._slope * force[self._under]
+        rows, kept, sprung = self._rows, self._kept, self._sprung
+        n_base, n_free, n_rows = len(self._base), len(self._free), len(rows)
+        unknown = np.zeros((len(self._of_unknowns), sides.load.shape[1]))
+        unknown[kept] = sides.held[self._base[kept]]
+        force = self._forces(unknown, sides.load)
+        given = -self._way * sides.bound[rows]
+        right = given - force[rows] - self._slope * force[self._under]
         if not self._is_plain:
-            right = np.concatenate([right, self._gauge[kept].T @ strained[kept]])
-            own = rows[self._sprung]
-            come = self._jump(strained, none[:0]) + self._soft * force
-            right[self._sprung] = self._share * (sides.held[own] - come[own])
+            right = np.concatenate([right, self._gauge_kept.T @ unknown[kept]])
+            if len(sprung):
+                own = rows[sprung]
+                come = self._come @ unknown[:n_base] + self._soft[own] * force[own]
+                right[sprung] = self._share * (sides.held[own] - come)
         found = self._factors.solve(right)
-        n_free, n_rows = len(self._free), len(rows)
-        strained[self._free], others, motion = np.split(found, [n_free, n_rows])
-        if not self._is_plain:
-            strained[kept] -= self._gauge[kept] @ motion
-        force = self._forces(strained, sides.load, others)
-        carried = -self._way * sides.bound[rows] - self._slope * force[self._under]
-        carried[self._sprung] = force[rows[self._sprung]]
+        motion = found[n_rows:]
+        unknown[self._free], unknown[n_base:] = found[:n_free], found[n_free:n_rows]
+        if len(motion):
+            unknown[kept] -= self._gauge_kept @ motion
+        force = self._forces(unknown, sides.load)
+        carried = given - self._slope * force[self._under]
+        carried[sprung] = force[rows[sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))
         force[rows] = carried
+        strained = unknown[:n_base]
         return Increment(self._ends(strained, motion, force, sides.held), force, strained, motion)
 
-    def _forces(self, strained: Array, load: Array, others: Array) -> Array:
-        """Give the forces of all jumps, those that follow from others given."""
-        found = self._stiffness @ strained - load
-        if self._is_plain:
-            return np.asarray(found)
-        whole = np.empty((len(self._place), load.shape[1]))
-        whole[self._base], whole[self._others] = found - self._ties.T @ others, others
-        return whole
+    def _forces(self, unknown: Array, load: Array) -> Array:
+        """Give the forces of all jumps."""
+        found = np.asarray(self._of_unknowns @ unknown)
+        found[self._base_rows] -= load
+        return found
 
     def _jump(self, strained: Array, motion: Array) -> Array:
         if len(motion):
             strained = strained + self._gauge @ motion
-        whole = np.empty((len(self._place), strained.shape[1]))
-        whole[self._base], whole[self._others] = strained, self._ties @ strained
-        return whole
+        return strained if self._ties is None else np.asarray(self._ties @ strained)
 
     def _ends(self, strained: Array, motion: Array, force: Array, held: Array) -> Array:
         """Give what all jumps come to, the held ones to the last bit."""
         if self._is_plain:
             return strained.copy()
         found = self._jump(strained, motion) + self._soft * force
-        for own in (self._base[self._kept], self._rows[self._sprung]):
-            found[own] = held[own]
+        found[self._held] = held[self._held]
         return found
 
     def on_base(self, force: Array) -> Array:
         """Give what forces of all jumps are to the base."""
-        if not len(self._others):
-            return force
-        return np.asarray(force[self._base] + self._ties.T @ force[self._others])
+        return force if self._ties is None else np.asarray(self._ties.T @ force)
 
     def inside(self, strained: Array) -> float:
         """Give the largest force that y of a single jump of the base takes."""
@@ -136,44 +145,49 @@ class Response:
         slope = way * self._friction[rows]
         self._under: Indices = self._partner[rows]
         self._way, self._slope = way[:, None], slope[:, None]
-        matrix = self._of_forces(rows)
+        forces = self._of_unknowns[rows]
         tied = np.flatnonzero(slope)
         if len(tied):
-            matrix[tied] += slope[tied, None] * self._of_forces(self._under[tied])
+            forces[tied] += slope[tied, None] * self._of_unknowns[self._under[tied]]
+        n_base = len(self._base)
+        unknowns = np.concatenate([self._free, np.arange(n_base, len(self._of_unknowns))])
+        matrix = forces.take(unknowns, axis=1)
         if not self._is_plain:
-            matrix = self._with_motions(matrix)
+            matrix = self._with_motions(matrix, forces[:, :n_base])
         self._factors = Factors(matrix, scaled=not self._is_plain)
         self.turned = self._factors.turned
         least = 0.0 if self._factors.scaled else LOOSE * float(self.unit.max(initial=0.0))
         self.singular = self._factors.make_sure(least)
 
-    def _of_forces(self, rows: Indices) -> Array:
-        """Give what forces of jumps are of all unknowns, shape (n_rows, n_unknowns)."""
-        place, free, gauge = self._place[rows], self._free, self._gauge
-        own = self._stiffness[np.ix_(place, free)]
-        if self._is_plain:
-            return np.asarray(own)
-        moved = -self._stiffness[np.ix_(place, self._kept)] @ gauge[self._kept]
-        if not len(self._others):
-            return np.hstack([own, moved])
-        found = np.hstack([own, -self._ties.T[place], moved])
-        follows = place < 0
-        found[follows] = 0.0
-        found[follows, len(free) + np.searchsorted(self._others, rows[follows])] = 1.0
-        return found
+    def _with_motions(self, forces: Array, strained: Array) -> Array:
+        """Let what is in series come to its end, and choose y: all equations.
 
-    def _with_motions(self, matrix: Array) -> Array:
-        """Let what is in series come to its end, and choose y: all equations."""
-        free, kept, gauge, sprung = self._free, self._kept, self._gauge, self._sprung
-        own = self._rows[sprung]
-        base = np.zeros((len(own), len(self._base)))
-        follows = self._place[own] < 0
-        base[follows] = self._ties[np.searchsorted(self._others, own[follows])]
-        base[np.flatnonzero(~follows), self._place[own[~follows]]] = 1.0
-        none = np.zeros((len(own), len(self._others)))
-        come = np.hstack([base[:, free], none, base[:, free] @ gauge[free]])
-        self._share = 1.0 / (1.0 + self._soft[own])
-        matrix[sprung] = self._share * (self._soft[own] * matrix[sprung] + come)
-        middle = np.zeros((gauge.shape[1], len(self._others)))
-        chosen = np.hstack([-gauge[free].T, middle, gauge[kept].T @ gauge[kept]])
-        return np.asarray(np.vstack([matrix, chosen]))
+        Parameters
+        ----------
+        forces, strained
+            What the equations say of the unknowns, and of y of the base, shape (n_rows, ...).
+        """
+        free, gauge, sprung = self._free, self._gauge, self._sprung
+        kept = self._gauge_kept = gauge[self._kept]
+        own, n_rows, n_free = self._rows[sprung], len(forces), len(free)
+        self._held = np.concatenate([self._base[self._kept], own])
+        matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
+        matrix[:n_rows, :n_rows] = forces
+        matrix[:n_rows, n_rows:] = strained[:, self._kept] @ -kept
+        if len(sprung):
+            come = self._come = self._jumps_of(own)
+            soft, size = self._soft[own], (len(own), len(self._others))
+            self._share = 1.0 / (1.0 + soft)
+            moved = [come[:, free], np.zeros(size), come[:, free] @ gauge[free]]
+            matrix[sprung] = self._share * (soft * matrix[sprung] + np.hstack(moved))
+        matrix[n_rows:, :n_free] = -gauge[free].T
+        matrix[n_rows:, n_rows:] = kept.T @ kept
+        return matrix
+
+    def _jumps_of(self, own: Indices) -> Array:
+        """Give what some jumps are of those of the base, shape (n_own, n_base)."""
+        if self._ties is not None:
+            return np.asarray(self._ties[own])
+        found = np.zeros((len(own), len(self._base)))
+        found[np.arange(len(own)), own] = 1.0
+        return found

@@ -46,17 +46,14 @@ class Balance:
             Shift up to which the spring pulls, shape (n_instants,).
         """
         enough = BALANCED * (reach @ self._stiffness + np.abs(self._load))
-        place, shift = np.zeros(targets.shape[1]), 0.0
+        # Points are seen from the body, where the digits of how far they are behind stay.
+        back = -np.diff(targets, axis=0, prepend=0.0)
         numbers = (one.tolist() for one in (ends, self._load, enough))
+        held, shift = np.zeros(targets.shape[1]), 0.0
         steps = []
-        for target, least, most, end, load, left in zip(
-            targets, -reach, reach, *numbers, strict=True
-        ):
-            # Places are those of the points before, seen from the body: their digits stay.
-            behind = place - target
-            given = behind, least, most, end - shift, load
+        for came, least, most, end, load, left in zip(back, -reach, reach, *numbers, strict=True):
+            given = held + came, least, most, end - shift, load
             step, held = self._followed(*given, left) or self._between(*given)
-            place = target + held
             shift += step
             steps.append(step)
         return np.cumsum(steps)
@@ -75,20 +72,22 @@ class Balance:
         With it, how far the points are behind then.
         """
         # The nearer the iteration is to its end, the less is left to shift.
-        pulled, step = self._stiffness.dot, 0.0
-        for _ in range(TRIALS):
-            wanted = behind - step
+        pulled, wanted, step = self._stiffness.dot, behind, 0.0
+        for trial in range(TRIALS):
             held = np.minimum(np.maximum(wanted, least), most)
-            slope = float(pulled(held == wanted))
             left = float(pulled(held)) + load
             if end > step:
-                slope += self._spring
                 left += self._spring * (end - step)
+            # A step that a line has led to is where that line ends; no step at all may be a flat.
+            if trial and abs(left) <= enough:
+                return step, held
+            slope = float(pulled(held == wanted)) + (self._spring if end > step else 0.0)
             if not slope > 0.0:
                 return None
             if abs(left) <= enough:
                 return step, held
             step += left / slope
+            wanted = behind - step
         return None
 
     def _between(

@@ -82,7 +82,7 @@ class Slide:
         self._soft = soft[:, None]
         stop = float(1.0 / (1.0 / k[pulls] + spring.softness)[0])
         self._slack = float(spring.gap[0])
-        self._way = way[problem.row_dofs]
+        self._way = way[problem.row_dofs, None]
         parts = problem.substructures
         loads = [way[one.dofs] @ one.body_force for one in parts if one.body_force is not None]
         load = np.sum(loads, axis=0) if loads else np.zeros(problem.n_instants)
@@ -90,7 +90,9 @@ class Slide:
 
     def balanced(self, incoming: Array) -> Array:
         """Shift z = W - F/k of all rows, shape (n_rows, n_instants), instant by instant."""
-        return np.asfortranarray(incoming + np.multiply.outer(self._way, self.shifts(incoming)))
+        found = np.empty_like(incoming)
+        np.multiply(self._way, self.shifts(incoming), out=found)
+        return np.add(found, incoming, out=found)
 
     def shifts(self, incoming: Array) -> Array:
         """Give the shift of every instant, shape (n_instants,), scaled."""
