@@ -73,6 +73,7 @@ class Chrome:
         free = self._free.setdefault(tuple(sorted(device.items())), [])
         page = free.pop() if free else self._browser.new_page(**device)
         self._used[page] = free
+        page.set_default_timeout(1e3 * PATIENCE)
         page.set_viewport_size(ViewportSize(width=width, height=height))
         return page
 

@@ -80,7 +80,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    made = Server(tmp_path_factory.mktemp("server") / "log")
+    # Pages also come to it by proxies of the tests.
+    made = Server(tmp_path_factory.mktemp("server") / "log", 0, "--allow-websocket-origin", "*")
     made.wait()
     yield made
     made.stop()

@@ -9,10 +9,10 @@ from typing import Any
 
 from browser import Chrome, Server
 from playwright.sync_api import ConsoleMessage, Error, Locator, Page, expect
-from processes import PATIENCE
 
 ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=5"
 """In an address: a run that goes on, no faster than it takes to see that it does."""
+POLL_MS = 100.0
 IGNORED = ("Failed to load resource", "favicon")
 OURS = re.compile(r'File ".*/(app|solver)/')
 """In a traceback; a page that is closed leaves those of the web server."""
@@ -40,7 +40,6 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
 
     def visit(query: str = "", width: int = 1280, height: int = 720, **device: Any) -> Page:
         page = chrome.new_page(width, height, **device)
-        page.set_default_timeout(1e3 * PATIENCE)
         page.on("console", hear)
         page.on("pageerror", stumble)
         pages.append(page)
@@ -107,9 +106,15 @@ def at_rest(page: Page, place: str) -> Any:
     return now
 
 
+def comes_true(page: Page, expression: str, arg: Any = None) -> None:
+    """Wait until an expression holds; to ask at every frame takes more than the page itself."""
+    page.wait_for_function(expression, arg=arg, polling=POLL_MS)
+
+
 def bodies_drawn(page: Page, number: str) -> None:
     """Wait until the number of quadrilaterals that the browser draws is as an expression says."""
-    page.wait_for_function(
+    comes_true(
+        page,
         f"""() => {{
           const documents = window.Bokeh ? Bokeh.documents : []
           const models = documents.flatMap(({{_all_models}}) => [..._all_models.values()])
@@ -119,5 +124,5 @@ def bodies_drawn(page: Page, number: str) -> None:
             }}
           }}
           return false
-        }}"""
+        }}""",
     )

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
-from pages import ENDLESS, Visit, press, status
+import pytest
+from browser import Chrome, Server
+from pages import ENDLESS, Visit, comes_true, press, status, visits
 from playwright.sync_api import Locator, Page, expect
 from test_page_for_everybody import violations
 
 TINY = "?elements=20&substructures=2&instants=11"
 CURVE = f"{TINY}&tab=What+if&vary=peak=300:1500:5&of=peak_displacement"
 MAP = f"{TINY}&tab=what+if&vary=friction=0.1:0.7:7&vary=peak=300:1500:7&of=peak_displacement"
-SLOW = f"{ENDLESS}&elements=400&instants=401"
+SLOW = f"{ENDLESS}&elements=400&instants=401&plots=Scene"
 ENDED = re.compile(r"(\d+) of \1 runs: ")
 
 
@@ -26,7 +29,8 @@ SOURCE = """(kind) => Bokeh.documents.flatMap(({_all_models}) => [..._all_models
 
 def has(page: Page, kind: str, number: str) -> None:
     """Wait until so much stands in the chart of a kind: answers, hollow ones, ghosts, contours."""
-    page.wait_for_function(
+    comes_true(
+        page,
         f"""(kind) => {{
           const data = ({SOURCE})(kind), count = (data.number ?? data.xs ?? []).length
           return count {number}
@@ -61,6 +65,25 @@ def first_answer(page: Page) -> tuple[float, float]:
     return place(page, x, y)
 
 
+@pytest.fixture(scope="module")
+def curve(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give a page with a curve of five answers."""
+    with visits(server, chrome) as visit:
+        opened = visit(CURVE)
+        has(opened, "answer", "=== 5")
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def mapped(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give a page with a map that is whole."""
+    with visits(server, chrome) as visit:
+        opened = visit(MAP)
+        expect(opened.get_by_text(ENDED).first).to_be_visible()
+        has(opened, "answer", "=== 49")
+        yield opened
+
+
 def test_a_stranger_has_the_bathtub_in_two_clicks_and_a_third_opens_one_of_its_runs(
     open_page: Visit,
 ) -> None:
@@ -78,11 +101,9 @@ def test_a_stranger_has_the_bathtub_in_two_clicks_and_a_third_opens_one_of_its_r
 
 
 def test_a_link_comes_back_to_a_map_whose_points_say_what_they_are_and_keys_open_them(
-    open_page: Visit,
+    mapped: Page,
 ) -> None:
-    page = open_page(MAP)
-    expect(page.get_by_text(ENDED).first).to_be_visible()
-    has(page, "answer", "=== 49")
+    page = mapped
     has(page, "contour", "> 2")
     page.mouse.move(*place(page, 0.4, 900.0))
     expect(page.get_by_text("Friction coefficient μ 0.4, Peak load 900 N: ")).to_be_visible()
@@ -107,47 +128,46 @@ def test_a_link_comes_back_to_a_map_whose_points_say_what_they_are_and_keys_open
     assert ">Friction coefficient μ<" in words
 
 
-def test_the_chart_before_is_left_as_a_ghost_and_a_foolish_range_is_refused(
-    open_page: Visit,
+def test_a_chart_leaves_a_ghost_of_that_before_and_fills_beside_one_of_another_page(
+    curve: Page, open_page: Visit
 ) -> None:
-    page = open_page(CURVE)
-    has(page, "answer", "=== 5")
-    has(page, "ghost", "=== 0")
-    field = page.get_by_role("textbox", name=re.compile("^Pressure"))
-    field.fill("2500")
-    field.press("Enter")
-    expect(page.get_by_text("have changed since")).to_be_visible()
-    press(page, "Start")
-    has(page, "ghost", "=== 1")
-    has(page, "answer", "=== 5")
-    expect(page.get_by_text("the chart before")).to_be_visible()
-    upper = page.get_by_role("textbox", name="Over: to")
-    upper.fill("1e99")
-    upper.press("Enter")
-    expect(page.get_by_text("Peak load cannot be 1e+99")).to_be_visible()
-    expect(page.get_by_role("button", name="Start", exact=True)).to_be_disabled()
-    upper.fill("1200")
-    upper.press("Enter")
-    expect(page.get_by_text("Peak load cannot be")).to_be_hidden()
-    expect(page).to_have_url(re.compile("vary=peak%3D300%3A1200%3A5"))
-
-
-def test_two_pages_fill_at_once_and_a_cancelled_one_keeps_what_it_has(open_page: Visit) -> None:
     slow = open_page(
         f"?{SLOW}&tab=What+if&vary=max_iterations=1,2,3,4,5,90000,91000,92000&of=peak_displacement"
     )
     has(slow, "hollow", "> 0")
-    other = open_page(CURVE)
-    has(other, "answer", "=== 5")
+    field = curve.get_by_role("textbox", name=re.compile("^Pressure"))
+    before = float(field.input_value())
+    field.fill(f"{before / 2.0:g}")
+    field.press("Enter")
+    expect(curve.get_by_text("have changed since")).to_be_visible()
+    press(curve, "Start")
+    has(curve, "ghost", "=== 1")
+    has(curve, "answer", "=== 5")
+    expect(curve.get_by_text("the chart before")).to_be_visible()
     press(slow, "Cancel")
     expect(slow.get_by_text(re.compile(r"Cancelled\. \d of 8 runs: ")).first).to_be_visible()
     expect(slow.get_by_role("button", name="Cancel", exact=True)).to_be_hidden()
 
 
-def test_the_tab_is_accessible_and_needs_no_scrolling(open_page: Visit) -> None:
-    page = open_page(MAP, width=1280, height=720)
-    expect(page.get_by_text(ENDED).first).to_be_visible()
-    for scheme in ("light", "dark"):
+def test_a_foolish_range_is_refused(curve: Page) -> None:
+    upper = curve.get_by_role("textbox", name="Over: to")
+    before = upper.input_value()
+    upper.fill("1e99")
+    upper.press("Enter")
+    expect(curve.get_by_text("Peak load cannot be 1e+99")).to_be_visible()
+    expect(curve.get_by_role("button", name="Start", exact=True)).to_be_disabled()
+    upper.fill("1200")
+    upper.press("Enter")
+    expect(curve.get_by_text("Peak load cannot be")).to_be_hidden()
+    expect(curve).to_have_url(re.compile("vary=peak%3D300%3A1200%3A5"))
+    upper.fill(before)
+    upper.press("Enter")
+    expect(curve).to_have_url(re.compile("vary=peak%3D300%3A1500%3A5"))
+
+
+def test_the_tab_is_accessible_and_needs_no_scrolling(mapped: Page) -> None:
+    page = mapped
+    for scheme in ("dark", "light"):
         page.emulate_media(color_scheme=scheme)
         expect(page.locator(f".mui-{scheme}").first).to_be_visible()
         assert violations(page) == []
@@ -157,9 +177,8 @@ def test_the_tab_is_accessible_and_needs_no_scrolling(open_page: Visit) -> None:
     assert box["y"] + box["height"] <= 720
 
 
-def test_back_from_a_run_of_a_chart_shows_the_chart(open_page: Visit) -> None:
-    page = open_page(CURVE)
-    has(page, "answer", "=== 5")
+def test_back_from_a_run_of_a_chart_shows_the_chart(curve: Page) -> None:
+    page = curve
     expect(page).to_have_url(re.compile("vary=peak%3D"))
     before = page.url
     chart(page).press("ArrowRight")
@@ -173,3 +192,5 @@ def test_back_from_a_run_of_a_chart_shows_the_chart(open_page: Visit) -> None:
     page.go_forward()
     expect(status(page)).to_be_visible()
     expect(page).to_have_url(opened)
+    page.go_back()
+    expect(chart(page)).to_be_visible()

@@ -2,7 +2,7 @@
 
 import time
 
-from pages import at_rest, press
+from pages import at_rest, comes_true, press
 from playwright.sync_api import expect
 from processes import PATIENCE
 
@@ -97,7 +97,8 @@ def test_two_rows_of_plots_fit_a_window_under_all_buttons_and_words(open_page):
     expect(status).to_contain_text("after 3 iterations")
     expect(page.get_by_role("slider", name="Magnification")).to_be_visible()
     card = page.locator(".card").nth(5).element_handle()
-    page.wait_for_function(
+    comes_true(
+        page,
         """(card) => {
           const {bottom, height} = card.getBoundingClientRect()
           return height >= 196 && bottom <= 720
@@ -156,19 +157,19 @@ def test_all_that_a_lesson_names_is_seen_without_scrolling_and_it_leads_to_the_n
         expect(parts).to_be_visible()
         plots_are_seen(lesson)
         while not leave.is_visible():
-            page.wait_for_function(NOTHING_SCROLLS)
+            comes_true(page, NOTHING_SCROLLS)
             assert size_of_type(region) >= 24
             page.keyboard.press("PageDown")
 
     def all_fits():
         expect(leave).to_be_in_viewport(ratio=1)
-        page.wait_for_function(NOTHING_SCROLLS)
+        comes_true(page, NOTHING_SCROLLS)
         nothing_collides(page)
 
     views = [all_is_on_the_page, all_comes_in_front_of_a_class]
     for lesson in LESSONS.values():
         expect(region).to_contain_text(lesson.question)
-        page.wait_for_function(NOTHING_SCROLLS)
+        comes_true(page, NOTHING_SCROLLS)
         wrong = [choice for place, choice in enumerate(lesson.choices) if place != lesson.right]
         press(page, max(wrong, key=len))
         views[0](lesson)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browser import Chrome, Server
-from pages import ENDLESS, Visit, card, press, slider, status, visits
+from pages import ENDLESS, Visit, card, comes_true, press, slider, status, visits
 from playwright.sync_api import Locator, Page, expect
 
 SERIOUS = ("serious", "critical")
@@ -39,7 +39,7 @@ def field(page: Page, name: str) -> Locator:
 def violations(page: Page) -> list[Any]:
     """Give what of a page is not accessible, and where."""
     # Colours that fade into those of another theme have less contrast on their way.
-    page.wait_for_function(AT_REST)
+    comes_true(page, AT_REST)
     return [
         (one["id"], [node["html"] for node in one["nodes"]])
         for one in Axe().run(page).response["violations"]
@@ -129,19 +129,21 @@ def test_a_projector_has_one_row_without_controls_and_its_address_leads_back(
     expect(status(page)).to_be_visible()
     expect(page).to_have_url(re.compile("view=present"))
     expect(page.locator(".card").first).to_be_in_viewport(ratio=1)
-    page.wait_for_function(
+    comes_true(
+        page,
         """() => [...Bokeh.index.roots].flatMap((one) => one.renderer_views ? [one] : []).some(
           (one) => [...one.renderer_views.values()].some(
-            (axis) => parseInt(axis.visuals?.axis_label_text?.get_text_font_size()) >= 20))"""
+            (axis) => parseInt(axis.visuals?.axis_label_text?.get_text_font_size()) >= 20))""",
     )
     page.reload()
     expect(status(page)).to_contain_text("✓ converged")
     expect(page.locator(".card")).to_have_count(3)
     # Plots that have shrunk, as the words above them came, are laid out anew.
-    page.wait_for_function(
+    comes_true(
+        page,
         """() => Bokeh.documents.flatMap((one) => one.roots()).filter((one) => one.type === "Plot")
           .map((one) => Bokeh.index.find_one_by_id(one.id)).filter((one) => one?.layout)
-          .every((one) => one.layout.bbox.height === one.bbox.height)"""
+          .every((one) => one.layout.bbox.height === one.bbox.height)""",
     )
     page.locator("body").press("p")
     expect(page.get_by_role("button", name="Study", exact=True)).to_be_visible()
@@ -174,7 +176,7 @@ def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_go
     assert (box["x"], box["width"], box["height"]) == (0, 1280, 720)
     page.mouse.move(640, 360)
     page.mouse.wheel(0, -100)
-    page.wait_for_function(f"(all) => ({SEEN})('friction-force.x')[1] < all[1]", arg=all_seen)
+    comes_true(page, f"(all) => ({SEEN})('friction-force.x')[1] < all[1]", arg=all_seen)
     zoomed = page.evaluate(SEEN, "friction-force.x")
     shown = status(page).inner_text()
     expect(status(page)).not_to_have_text(shown)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Chrome, Server
-from pages import Visit, at_rest, card, status, visits
+from pages import Visit, at_rest, card, comes_true, status, visits
 from playwright.sync_api import Page, expect
 from processes import PATIENCE
 
@@ -32,8 +32,8 @@ def place(page: Page, name: str, share: float) -> tuple[float, float]:
 
 def load_arrow(page: Page) -> list[float]:
     """Give the tail and the head of the handle of the peak load, on the screen."""
-    page.wait_for_function(
-        f"() => {{{MODEL}; return model('scene.handles')?.data.setting.includes('peak')}}"
+    comes_true(
+        page, f"() => {{{MODEL}; return model('scene.handles')?.data.setting.includes('peak')}}"
     )
     found: list[float] = page.evaluate(
         f"() => {{{MODEL}"
@@ -75,26 +75,26 @@ def test_a_tap_on_the_bar_marks_its_place_in_the_plots_and_another_takes_it_away
     assert not page.evaluate(shown)
     # Arrows of the pressure end there: who does not drag them taps on the bar.
     page.mouse.click(*at_rest(page, MIDDLE))
-    page.wait_for_function(shown)
+    comes_true(page, shown)
     # Two taps that follow at once would be a double one.
     page.wait_for_timeout(400)
     page.mouse.click(*at_rest(page, MIDDLE))
-    page.wait_for_function(f"() => !({shown})()")
+    comes_true(page, f"() => !({shown})()")
 
 
 def test_an_instant_is_chosen_on_the_load_path_and_the_picture_follows(page: Page) -> None:
     expect(page.get_by_text("Load path").last).to_be_visible()
     words = f"{MODEL}; return model('scene.words').data.text.join()"
-    page.wait_for_function(f"() => {{{words}.includes('F = −0.9 kN')}}")
+    comes_true(page, f"() => {{{words}.includes('F = −0.9 kN')}}")
     page.mouse.click(*place(page, "Load path", 0.4))
-    page.wait_for_function(f"() => {{{words}.includes('F = 0.')}}")
+    comes_true(page, f"() => {{{words}.includes('F = 0.')}}")
     expect(page.get_by_text("Instant").first).not_to_contain_text("0.75")
 
 
 def test_the_load_arrow_is_dragged_and_the_run_follows(page: Page) -> None:
     page.get_by_role("slider", name="Instant", exact=True).fill("15")
     words = f"{MODEL}; return model('scene.words').data.text.join()"
-    page.wait_for_function(f"() => {{{words}.includes('F = −0.9 kN')}}")
+    comes_true(page, f"() => {{{words}.includes('F = −0.9 kN')}}")
     tail, height, head, _ = load_arrow(page)
     assert head < tail
     middle = 0.5 * (tail + head)
@@ -119,7 +119,7 @@ def test_the_load_arrow_is_dragged_and_the_run_follows(page: Page) -> None:
     expect(status(page)).to_contain_text("✓ converged")
     value = float(peak.input_value())
     assert value > 950.0
-    page.wait_for_function(f"() => {{{words}.includes('F = −{value / 1e3:.3g} kN')}}")
+    comes_true(page, f"() => {{{words}.includes('F = −{value / 1e3:.3g} kN')}}")
 
 
 def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None:
@@ -133,7 +133,8 @@ def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None
 def test_no_word_of_a_picture_is_cut_in_front_of_a_class(open_page: Visit) -> None:
     page = open_page("?scene=block&view=present")
     expect(status(page)).to_contain_text("converged")
-    page.wait_for_function(
+    comes_true(
+        page,
         f"() => {{{MODEL}"
         """
           const words = model("scene.words"), [figure] = words.document.roots()
@@ -143,5 +144,5 @@ def test_no_word_of_a_picture_is_cut_in_front_of_a_class(open_page: Visit) -> No
           const above = {bottom: 1, middle: 0.5, top: 0}
           return size >= 20 && y.length
             && [...y].every((at, i) => y_scale.compute(at) >= above[up[i]] * 1.4 * size)
-        }"""
+        }""",
     )

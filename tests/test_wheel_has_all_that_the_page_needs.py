@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import sysconfig
@@ -15,6 +16,7 @@ import pytest
 from browser import ROOT, Chrome, Server
 from pages import status, visits
 from playwright.sync_api import expect
+from test_server_leaves_nothing_behind import end_with_pages
 
 PROGRAM = """
 from solver import Latin, Rods, solve
@@ -103,10 +105,13 @@ def served(place: Path, tmp_path: Path) -> Iterator[Server]:
         made.stop()
 
 
-def test_the_page_of_the_wheel_runs_in_a_browser(served: Server, chrome: Chrome) -> None:
+def test_the_page_of_the_wheel_runs_in_a_browser_and_an_interrupt_leaves_no_process(
+    served: Server, chrome: Chrome
+) -> None:
     with visits(served, chrome) as visit:
         page = visit("?lesson=best-k")
         expect(page.get_by_role("button", name="Show me")).to_be_visible()
         styled = "getComputedStyle(document.querySelector('.logo img, img')).height"
         assert page.evaluate("[...document.styleSheets].length") > 0, styled
         expect(status(page)).to_contain_text("onverged")
+    end_with_pages(served, signal.SIGINT)
