@@ -18,7 +18,7 @@ from playwright.sync_api import expect, sync_playwright
 from processes import PATIENCE
 from worker_line import Line
 
-from app.session.bench import Bench
+from app.session.report_executor import ReportExecutor
 from app.session.report_job import ReportJob
 from solver.study.paper_runs import PaperRuns
 
@@ -120,13 +120,13 @@ def line() -> Iterator[Line]:
 
 
 @pytest.fixture
-def bench() -> Iterator[Bench]:
-    with Bench() as opened:
+def executor() -> Iterator[ReportExecutor]:
+    with ReportExecutor() as opened:
         yield opened
 
 
 @pytest.fixture
-def job(bench: Bench) -> Iterator[ReportJob]:
-    made = ReportJob(bench)
+def job(executor: ReportExecutor) -> Iterator[ReportJob]:
+    made = ReportJob(executor)
     yield made
     made.cancel()

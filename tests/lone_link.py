@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
+from app.session.session import Session
+from app.session.turns import Turns
 from app.wire.orders import Order
 from app.wire.reports import Report
+from solver.settings import Settings
 
 
 class LoneLink:
@@ -28,3 +33,8 @@ class LoneLink:
 
     def close(self) -> None:
         self.is_closed = True
+
+
+def lone_session(settings: Settings, turns: Turns | None = None) -> Session:
+    """Give the only page of a server, without a process."""
+    return Session(Pages(1), ReportExecutor(), settings, LoneLink().hire, turns)

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import panel as pn
 import pytest
 from clock import Clock
-from lone_link import LoneLink
+from lone_link import LoneLink, lone_session
 
 from app.lessons.lesson import LESSONS, NO_CHOICE
-from app.session.bench import Bench
 from app.session.classroom import ROOMS, Room, Rooms, Seat
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.shell import banner
 from app.shell.address import class_from_query, query_of
@@ -94,7 +94,7 @@ def pages() -> Iterator[tuple[Session, LoneLink, Session, LoneLink]]:
     """Give a page that leads and one that follows, with what would be their processes."""
     links = LoneLink(), LoneLink()
     both = Pages(2)
-    leader, follower = (Session(both, Bench(), BAR, link.hire) for link in links)
+    leader, follower = (Session(both, ReportExecutor(), BAR, link.hire) for link in links)
     leader.start()
     leader.attendance.lead(leader.settings)
     room = leader.attendance.leads
@@ -173,7 +173,7 @@ def test_a_class_waits_some_minutes_for_its_leader_who_leads_on_by_its_key(
     leader.close()
     assert room.is_alone
     assert ROOMS.find(code) is room
-    again = Session(Pages(1), Bench(), BAR, LoneLink().hire)
+    again = lone_session(BAR)
     for wrong in ("", code, f"{code} {key[:-1]}", f"{code} é"):
         assert not again.attendance.resume(wrong)
     assert again.attendance.resume(ticket)
@@ -190,7 +190,7 @@ def test_a_class_waits_some_minutes_for_its_leader_who_leads_on_by_its_key(
 def test_a_page_whose_class_was_taken_over_leads_no_more(pages: Two) -> None:
     leader, link, follower, _ = pages
     room, ticket = leader.attendance.leads, leader.attendance.ticket
-    other = Session(Pages(1), Bench(), BAR, LoneLink().hire)
+    other = lone_session(BAR)
     other.attendance.resume(ticket)
     assert (leader.attendance.leads, leader.attendance.ticket) == (None, "")
     assert other.attendance.leads is room
@@ -230,7 +230,7 @@ def test_a_class_at_rest_has_nothing_to_do_and_says_who_comes_and_goes() -> None
     pn.extension(notifications=True)
     links, clocks = (LoneLink(), LoneLink()), (Clock(), Clock())
     leader, follower = (
-        Session(Pages(2), Bench(), BAR, link.hire, clock)
+        Session(Pages(2), ReportExecutor(), BAR, link.hire, clock)
         for link, clock in zip(links, clocks, strict=True)
     )
     pages = [Dashboard(leader)]

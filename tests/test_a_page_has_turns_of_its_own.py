@@ -8,12 +8,9 @@ from contextlib import closing
 import panel as pn
 import pytest
 from bokeh.document import Document
-from lone_link import LoneLink
+from lone_link import lone_session
 from panel.io.state import set_curdoc
 
-from app.session.bench import Bench
-from app.session.pages import Pages
-from app.session.session import Session
 from app.session.turns import Act, Turns
 from app.shell.dashboard import Dashboard
 from solver.files import scene_settings
@@ -35,7 +32,7 @@ def test_nothing_has_a_turn_before_the_browser_has_built_the_page() -> None:
         done: list[str] = []
         turns = Turns(lambda act: act())
         settings = scene_settings("bar").checked({})
-        with closing(Session(Pages(1), Bench(), settings, LoneLink().hire, turns)) as session:
+        with closing(lone_session(settings, turns)) as session:
             page = Dashboard(session)
             turns.soon(lambda: done.append("news"))
             turns.timer(lambda: done.append("timer")).set(0.0)

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from lone_link import LoneLink
 
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.takeaway.takeaway import MOST_PICTURES, Saver
 from app.wire.orders import Pace, Seek, Tabulate, Watch
@@ -23,7 +23,9 @@ Film = tuple[Saver, Session, LoneLink]
 @pytest.fixture
 def film() -> Iterator[Film]:
     link = LoneLink()
-    with closing(Session(Pages(1), Bench(), BarSettings.checked({}), link.hire)) as session:
+    with closing(
+        Session(Pages(1), ReportExecutor(), BarSettings.checked({}), link.hire)
+    ) as session:
         session.start()
         session.facts = Facts(iteration=5, done=5, instants=9, instant=6)
         link.orders.clear()

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
-from studios import SMALL
+from shown_pages import SMALL
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import Compliant, Component, Contact, Sliders, Unilateral

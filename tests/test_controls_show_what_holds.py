@@ -8,15 +8,12 @@ from typing import Any
 
 import param
 import pytest
-from lone_link import LoneLink
+from lone_link import lone_session
 
 from app.components.form import ENDS, POINTS, USUAL, item_of
 from app.controls.items import SHARE
 from app.controls.refusals import refused
 from app.controls.sidebar import Sidebar
-from app.session.bench import Bench
-from app.session.pages import Pages
-from app.session.session import Session
 from app.shell import notes
 from solver.definitions import CurveParameter, SettingError, about
 from solver.scenes import CATALOGUE
@@ -28,7 +25,7 @@ TABLE = [(0.0, 0.0), (1.0, 500.0)]
 @pytest.fixture
 def sidebar() -> Sidebar:
     settings = BarSettings.checked({"method": "paper", "load": TABLE})
-    session = Session(Pages(1), Bench(), settings, LoneLink().hire)
+    session = lone_session(settings)
     return Sidebar(session, lambda: None, lambda name: None)
 
 
@@ -74,7 +71,7 @@ def test_a_word_in_place_of_a_number_is_refused(sidebar: Sidebar) -> None:
 @pytest.fixture
 def strand() -> Sidebar:
     settings = CATALOGUE["strand"].settings.checked({})
-    session = Session(Pages(1), Bench(), settings, LoneLink().hire)
+    session = lone_session(settings)
     return Sidebar(session, lambda: None, lambda name: None)
 
 
@@ -162,7 +159,7 @@ def test_a_refusal_stays_until_something_changes(monkeypatch: pytest.MonkeyPatch
 
     area = SimpleNamespace(notifications=SimpleNamespace(error=error))
     monkeypatch.setattr(notes.pn, "state", area)
-    session = Session(Pages(1), Bench(), BarSettings.checked({}), LoneLink().hire)
+    session = lone_session(BarSettings.checked({}))
     told = notes.Notes(session)
     session.refusal = "Friction cannot be this."
     session.watch(phase=0.5)

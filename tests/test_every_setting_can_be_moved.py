@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import Shown
+from shown_pages import Shown
 from tour import Move, ends, never_apply, one_end, small, tour
 
 from app.picture.shown import has_reference

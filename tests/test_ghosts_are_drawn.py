@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, SMALL, Shown, keys
+from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.portrait import rims
 from app.views import deformed, picture, status_map
@@ -54,7 +54,7 @@ def test_a_line_around_every_body_comes_back_to_where_it_began(scene: str) -> No
 def test_the_ghost_of_the_same_run_lies_on_the_bodies_at_every_instant(scene: str) -> None:
     shown = run_twice(scene, 0.5)
     for view in (picture, deformed) if scene in PLANE else (picture,):
-        looked = shown.scene(shown.studio._look, shown.pictures[-1].facts.instant)
+        looked = shown.scene(shown.runs._look, shown.pictures[-1].facts.instant)
         drawing = view.draw(looked, None)
         assert drawing is not None
         assert drawing.bodies is not None

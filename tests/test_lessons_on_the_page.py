@@ -10,11 +10,11 @@ from typing import Any
 import panel as pn
 import pytest
 from lone_link import LoneLink
-from studios import ALL, Shown
+from shown_pages import ALL, Shown
 
 from app.lessons.lesson import LESSONS, NO_CHOICE, content, parts, readings
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.shell.address import Sight, query_of, settings_from_query, sight_from_query
 from app.shell.dashboard import Dashboard
@@ -38,7 +38,7 @@ def link() -> LoneLink:
 def session(link: LoneLink) -> Iterator[Session]:
     pn.extension(notifications=True)
     settings = LESSONS["coarse-problem"].settings
-    with closing(Session(Pages(9), Bench(), settings, link.hire)) as made:
+    with closing(Session(Pages(9), ReportExecutor(), settings, link.hire)) as made:
         yield made
 
 

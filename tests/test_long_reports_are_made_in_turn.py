@@ -19,9 +19,9 @@ from processes import PATIENCE, is_alive, wait_for
 from report_jobs import until_idle
 
 from app.reports.report import progress
-from app.session.bench import Bench
 from app.session.inquiry import LENDER
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.report_folder import PROGRESS, SECTIONS, ReportFolder, files, said
 from app.session.report_job import KEPT, STARTING, WAITING, ReportJob
 from app.session.session import Session
@@ -84,12 +84,12 @@ def write_and_sleep(folder: Path) -> None:
     sleep(folder)
 
 
-def test_the_executor_is_one_as_the_library_has_them(bench: Bench) -> None:
-    results: list[Future[int]] = [bench.submit(pow, 2, power) for power in (3, 4)]
+def test_the_executor_is_one_as_the_library_has_them(executor: ReportExecutor) -> None:
+    results: list[Future[int]] = [executor.submit(pow, 2, power) for power in (3, 4)]
     assert [one.result(timeout=PATIENCE) for one in results] == [8, 16]
-    assert list(bench.map(abs, [-1, 2])) == [1, 2]
+    assert list(executor.map(abs, [-1, 2])) == [1, 2]
     with pytest.raises(ValueError, match="invalid literal"):
-        bench.submit(int, "no number").result(timeout=PATIENCE)
+        executor.submit(int, "no number").result(timeout=PATIENCE)
 
 
 @pytest.mark.parametrize(
@@ -110,8 +110,8 @@ def test_a_job_that_breaks_says_so_and_the_next_one_is_done(
     assert (job.last.title, job.last.sections) == ("second", ["<p>0</p>"])
 
 
-def test_jobs_of_all_pages_take_turns(bench: Bench) -> None:
-    first, second = ReportJob(bench), ReportJob(bench)
+def test_jobs_of_all_pages_take_turns(executor: ReportExecutor) -> None:
+    first, second = ReportJob(executor), ReportJob(executor)
     first.ask("first", sleep)
     second.ask("second", partial(count_to, 3))
     wait_for(lambda: first.collect() and first.doing == "asleep")
@@ -131,28 +131,28 @@ def test_a_job_that_nobody_is_before_does_not_say_that_it_waits(job: ReportJob) 
 
 
 def test_a_cancelled_job_ends_its_process_and_says_nothing_more(
-    bench: Bench, job: ReportJob
+    executor: ReportExecutor, job: ReportJob
 ) -> None:
     job.ask("any", sleep)
     wait_for(lambda: job.collect() and job.doing == "asleep")
-    pid = bench.pid
+    pid = executor.pid
     assert pid is not None
     job.cancel()
     assert not job.is_busy
     assert job.notice == "Cancelled."
-    wait_for(lambda: bench.pid is None)
+    wait_for(lambda: executor.pid is None)
     assert not is_alive(pid)
     job.collect()
     assert job.last is None
 
 
-def test_a_job_that_is_cancelled_while_it_waits_is_never_begun(bench: Bench) -> None:
-    first, second = ReportJob(bench), ReportJob(bench)
+def test_a_job_that_is_cancelled_while_it_waits_is_never_begun(executor: ReportExecutor) -> None:
+    first, second = ReportJob(executor), ReportJob(executor)
     first.ask("first", sleep)
     second.ask("second", refuse)
     second.cancel()
     first.cancel()
-    wait_for(lambda: bench.pid is None)
+    wait_for(lambda: executor.pid is None)
     second.collect()
     assert second.notice == "Cancelled."
 
@@ -166,11 +166,11 @@ def test_a_server_whose_setting_names_no_executor_says_so(
     assert not job.is_busy
 
 
-def test_closing_the_bench_ends_the_job(bench: Bench, job: ReportJob) -> None:
+def test_closing_the_executor_ends_the_job(executor: ReportExecutor, job: ReportJob) -> None:
     job.ask("any", sleep)
     wait_for(lambda: job.collect() and job.doing == "asleep")
-    pid = bench.pid
-    bench.shutdown()
+    pid = executor.pid
+    executor.shutdown()
     assert pid is not None
     wait_for(lambda: not is_alive(pid))
 
@@ -178,15 +178,15 @@ def test_closing_the_bench_ends_the_job(bench: Bench, job: ReportJob) -> None:
 SERVER = """
 import sys
 from app.session.report_job import ReportJob
-from app.session.bench import shared_bench
+from app.session.report_executor import shared_executor
 from report_jobs import until_idle
 from jobs import sleep
 
-bench, job = shared_bench(), ReportJob(shared_bench())
+executor, job = shared_executor(), ReportJob(shared_executor())
 job.ask("any", sleep)
 while not (job.collect() and job.doing == "asleep"):
     pass
-print(bench.pid, job._folder.name, flush=True)
+print(executor.pid, job._folder.name, flush=True)
 sys.stdin.readline()
 """
 
@@ -215,13 +215,13 @@ def test_a_report_ends_with_its_server_which_does_not_wait_for_it(killed: bool) 
     assert not Path(folder).exists()
 
 
-def test_a_page_that_closes_ends_its_jobs(bench: Bench) -> None:
+def test_a_page_that_closes_ends_its_jobs(executor: ReportExecutor) -> None:
     with closing(
-        Session(Pages(1), bench, BarSettings.checked({"method": "paper", **TINY}))
+        Session(Pages(1), executor, BarSettings.checked({"method": "paper", **TINY}))
     ) as session:
         session.asked.stability.ask("any", sleep)
         wait_for(lambda: session.attend() and session.asked.stability.doing == "asleep")
-        pid = bench.pid
+        pid = executor.pid
         session.close()
         assert pid is not None
         wait_for(lambda: not is_alive(pid))
@@ -234,11 +234,11 @@ def test_results_stay_and_the_oldest_go(job: ReportJob) -> None:
     assert [found.title for found in job.found] == [str(n) for n in range(1, KEPT + 1)]
 
 
-def test_the_run_of_the_page_stands_still_while_a_study_is_timed(bench: Bench) -> None:
+def test_the_run_of_the_page_stands_still_while_a_study_is_timed(executor: ReportExecutor) -> None:
     pages, link = Pages(2), LoneLink()
     settings = BarSettings.checked({"method": "paper"})
-    session = Session(pages, bench, settings, link.hire)
-    other = Session(pages, bench, settings, LoneLink().hire)
+    session = Session(pages, executor, settings, link.hire)
+    other = Session(pages, executor, settings, LoneLink().hire)
     session.start()
     assert pages.at_work_beside(other) == 1
     session.asked.study.ask("any", sleep)

@@ -14,8 +14,8 @@ from processes import is_alive, wait_for
 from web_pages import WebPage, give_up_pages, run_apart, serve_pages, until
 
 from app.server import serve
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.worker.link import warm_up
 from solver.scenes.bar import BarSettings
@@ -39,7 +39,7 @@ def test_many_kills_in_a_row_leave_nothing_and_the_run_goes_on() -> None:
     settings = BarSettings.checked({**endless, "max_iterations": 100_000, "substructures": 2})
     files, threads = open_files(), workers()
     killed = []
-    with closing(Session(Pages(1), Bench(), settings)) as session:
+    with closing(Session(Pages(1), ReportExecutor(), settings)) as session:
         session.set_pace(None)
         session.start()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from studios import Shown
+from shown_pages import Shown
 
 from app.views import deformed, loop
 from solver.discrete.idle import nothing_acts

@@ -6,11 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 from clock import Clock
-from lone_link import LoneLink
+from lone_link import lone_session
 
-from app.session.bench import Bench
-from app.session.pages import Pages
-from app.session.session import Session
 from app.shell import transport as module
 from app.shell.transport import PLAYED_IN, Transport
 from solver.scenes.bar import BarSettings
@@ -25,9 +22,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 @pytest.fixture
 def transport(clock: Clock) -> Transport:
-    session = Session(
-        Pages(1), Bench(), BarSettings.checked({"instants": 11}), LoneLink().hire, clock
-    )
+    session = lone_session(BarSettings.checked({"instants": 11}), clock)
     session.watch(phase=0.4)
     return Transport(session)
 

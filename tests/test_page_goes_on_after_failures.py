@@ -17,12 +17,12 @@ import pytest
 from clock import Clock
 from lone_link import LoneLink
 from processes import PATIENCE, is_alive, wait_for
-from studios import Shown
+from shown_pages import Shown
 from unpacking import unpack
 
-from app.session.bench import STOPPED, Bench
 from app.session.page_worker import GIVEN_UP, RESTARTS
 from app.session.pages import Pages
+from app.session.report_executor import STOPPED, ReportExecutor
 from app.session.report_job import ReportJob
 from app.session.session import LEFT_ALONE, Session
 from app.shell.transport import Transport
@@ -53,7 +53,7 @@ def clock() -> Clock:
 @pytest.fixture
 def session(lone: LoneLink, clock: Clock) -> Session:
     settings = BarSettings.checked({"method": "paper"})
-    made = Session(Pages(1), Bench(), settings, lone.hire, clock)
+    made = Session(Pages(1), ReportExecutor(), settings, lone.hire, clock)
     made.start()
     return made
 
@@ -177,7 +177,7 @@ def no_fork_server(*arguments: Any, **options: Any) -> Any:
 
 def test_a_job_whose_process_does_not_start_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(calls, "start_process", no_fork_server)
-    job = ReportJob(Bench())
+    job = ReportJob(ReportExecutor())
     job.ask("any", print)
     await_end(job)
     assert job.notice == STOPPED
@@ -192,7 +192,7 @@ def await_end(job: ReportJob) -> None:
 
 
 def test_a_job_that_breaks_says_so() -> None:
-    job = ReportJob(Bench())
+    job = ReportJob(ReportExecutor())
     job.ask("any", _refused)
     await_end(job)
     assert job.notice == "It broke (LookupError: made to break)."
@@ -203,7 +203,7 @@ def _refused(send: Any) -> Any:
 
 
 def test_a_job_that_cannot_be_sent_says_so() -> None:
-    job = ReportJob(Bench())
+    job = ReportJob(ReportExecutor())
     job.ask("any", lambda send: None)
     await_end(job)
     assert "It broke" in job.notice
@@ -212,7 +212,7 @@ def test_a_job_that_cannot_be_sent_says_so() -> None:
 @pytest.fixture
 def session_at_work() -> Iterator[Session]:
     settings = BarSettings.checked({"method": "paper", "tolerance": 1e-30})
-    with closing(Session(Pages(1), Bench(), settings)) as made:
+    with closing(Session(Pages(1), ReportExecutor(), settings)) as made:
         made.start()
         yield made
 

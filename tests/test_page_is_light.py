@@ -15,12 +15,12 @@ import pytest
 from bokeh.document import Document
 from bokeh.models import Plot
 from browser import ROOT
-from lone_link import LoneLink
+from lone_link import LoneLink, lone_session
 from panel.io.state import set_curdoc
 
 from app.components.innards import forget
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.shell.address import settings_from_query, sight_from_query
 from app.shell.dashboard import Dashboard
@@ -38,12 +38,12 @@ def make(link: LoneLink) -> Iterator[Callable[[str], Dashboard]]:
     """Give what makes the page of an address."""
     pn.extension(notifications=True)
     with ExitStack() as stack:
-        bench = stack.enter_context(Bench())
+        executor = stack.enter_context(ReportExecutor())
 
         def made(query: str) -> Dashboard:
             settings, complaint = settings_from_query(query)
             assert not complaint
-            session = stack.enter_context(closing(Session(Pages(9), bench, settings, link.hire)))
+            session = stack.enter_context(closing(Session(Pages(9), executor, settings, link.hire)))
             return Dashboard(session, sight=sight_from_query(query)[0])
 
         yield made
@@ -58,7 +58,7 @@ def test_a_page_that_nobody_looks_at_is_forgotten() -> None:
     """Twenty pages that the server did not let go were 200 MB."""
     with set_curdoc(Document()):
         pn.extension(notifications=True)
-        session = Session(Pages(1), Bench(), scene_settings("bar").checked({}), LoneLink().hire)
+        session = lone_session(scene_settings("bar").checked({}))
         page = weakref.ref(Dashboard(session).page)
         del session
     gc.collect()
@@ -78,9 +78,7 @@ def test_the_server_makes_no_figure_for_a_page_and_sends_little_of_any() -> None
     document = Document()
     with set_curdoc(document):
         pn.extension(notifications=True)
-        with closing(
-            Session(Pages(1), Bench(), scene_settings("bar").checked({}), LoneLink().hire)
-        ) as session:
+        with closing(lone_session(scene_settings("bar").checked({}))) as session:
             dashboard = Dashboard(session)
             dashboard.page.server_doc(document)
             assert len(dashboard._gallery.shown) == 8

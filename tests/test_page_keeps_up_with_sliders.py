@@ -10,8 +10,8 @@ from clock import Clock
 from lone_link import LoneLink
 
 from app.controls.sidebar import MOMENT, Sidebar
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import HELD_STILL, Session
 from app.shell.dashboard import Dashboard
 from app.shell.transport import Transport
@@ -32,7 +32,7 @@ def link() -> LoneLink:
 @pytest.fixture
 def session(clock: Clock, link: LoneLink) -> Session:
     settings = BarSettings.checked({"method": "paper"})
-    return Session(Pages(1), Bench(), settings, link.hire, clock)
+    return Session(Pages(1), ReportExecutor(), settings, link.hire, clock)
 
 
 @pytest.fixture

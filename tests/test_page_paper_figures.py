@@ -22,7 +22,7 @@ from app.charts.draw import draw
 from app.picture.glossary import explained
 from app.reports import reports
 from app.reports.reports import PaperFigures
-from app.session.bench import Bench
+from app.session.report_executor import ReportExecutor
 from app.session.report_folder import SECTIONS, ReportFolder, said
 from app.session.report_job import Found, ReportJob
 from app.session.studies import figures_of_the_paper
@@ -77,8 +77,8 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[Found]:
 
 @pytest.fixture
 def job() -> Iterator[ReportJob]:
-    with Bench() as bench:
-        made = ReportJob(bench)
+    with ReportExecutor() as executor:
+        made = ReportJob(executor)
         yield made
         made.cancel()
 

@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import quote, unquote
 
 import pytest
-from studios import ALL, Shown
+from shown_pages import ALL, Shown
 
 from app.controls.comparing import CHOICES, choice_of, pair
 from app.server.serve import is_phone

@@ -6,14 +6,14 @@ from contextlib import closing
 from typing import Any
 
 import pytest
-from studios import Shown
+from shown_pages import Shown
 
 from app.controls.sidebar import SAVE, SHARE, Sidebar
 from app.picture.recording import Recording
 from app.picture.sampler import Sampler
 from app.picture.shown import Look
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.wire.reports import Facts
 from app.worker.words import start_line
@@ -66,7 +66,7 @@ def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> Non
 
 def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     settings = BarSettings.checked({"method": "paper", "peak": 910.0})
-    with closing(Session(Pages(1), Bench(), settings)) as session:
+    with closing(Session(Pages(1), ReportExecutor(), settings)) as session:
         sidebar = Sidebar(session, lambda: None, lambda name: None)
         sidebar.hear(SHARE, SAVE, hand=False, count=1.0)
         plain, _ = sidebar.view.file

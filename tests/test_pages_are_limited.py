@@ -12,15 +12,15 @@ from panel.io.state import set_curdoc
 
 from app.server import serve
 from app.session import pages
-from app.session.bench import Bench
 from app.session.pages import Pages, most_pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from solver.scenes.bar import BarSettings
 
 
 def test_a_page_counts_until_it_is_closed() -> None:
     found = Pages(1)
-    session = Session(found, Bench(), BarSettings.checked({}), LoneLink().hire)
+    session = Session(found, ReportExecutor(), BarSettings.checked({}), LoneLink().hire)
     assert found.is_full
     session.close()
     assert not found.is_full

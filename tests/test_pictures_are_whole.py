@@ -8,14 +8,14 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from studios import ALL, SMALL, Shown, run_of
+from shown_pages import ALL, SMALL, Shown, run_of
 from unpacking import unpack
 
 from app.views.catalogue import fitting
 from app.wire.block import Packer, Quads
 from app.wire.orders import Pace, Ready, Run, Seek, Step, Watch
 from app.wire.reports import Picture
-from app.worker.studio import Studio
+from app.worker.page_runs import PageRuns
 from solver.scenes import CATALOGUE
 
 PAPER = {**SMALL["bar"], "method": "paper", "max_iterations": 12}
@@ -55,19 +55,19 @@ def test_what_is_painted_bit_by_bit_is_what_is_painted_afresh() -> None:
 
 def test_no_picture_is_made_that_the_page_is_not_ready_for() -> None:
     sent: list[Picture] = []
-    studio = Studio(sent.append, lambda: False)
-    studio.obey(Watch(ALL))
-    studio.obey(Ready())
-    studio.obey(run_of(1, "bar", PAPER))
-    while studio.rest() is not None:
-        if not studio.paint():
-            studio.go_on()
+    runs = PageRuns(sent.append, lambda: False)
+    runs.obey(Watch(ALL))
+    runs.obey(Ready())
+    runs.obey(run_of(1, "bar", PAPER))
+    while runs.rest() is not None:
+        if not runs.paint():
+            runs.go_on()
     assert [picture.facts.iteration for picture in sent] == [1]
-    studio.obey(Ready())
-    assert studio.paint()
+    runs.obey(Ready())
+    assert runs.paint()
     assert [picture.facts.iteration for picture in sent] == [1, 12]
-    studio.obey(Ready())
-    assert studio.rest() is None
+    runs.obey(Ready())
+    assert runs.rest() is None
 
 
 def test_a_run_that_follows_a_hand_is_shown_at_its_end_and_is_no_run_before(
@@ -82,8 +82,8 @@ def test_a_run_that_follows_a_hand_is_shown_at_its_end_and_is_no_run_before(
     assert first.facts.is_over
     assert "converged" in shown.models[count]["status"]["text"]
     shown.run(3, "bar", {**SMALL["bar"], "friction": 0.31}, label="friction 0.31")
-    assert shown.studio._before is not None
-    assert shown.studio._before.ticket == 1
+    assert shown.runs._before is not None
+    assert shown.runs._before.ticket == 1
 
 
 def test_a_paused_run_steps_is_sought_in_and_followed() -> None:

@@ -14,7 +14,7 @@ from report_jobs import until_idle
 
 from app.picture.glossary import explained
 from app.reports.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
-from app.session.bench import Bench
+from app.session.report_executor import ReportExecutor
 from app.session.report_folder import ReportFolder, files
 from app.session.report_job import Found, ReportJob
 from app.session.session import Session
@@ -30,8 +30,8 @@ from solver.study.page import PlotSection
 TINY = {"elements": 8, "substructures": 2, "instants": 5}
 
 
-def test_a_study_gives_the_files_of_the_command_line(bench: Bench) -> None:
-    job = ReportJob(bench)
+def test_a_study_gives_the_files_of_the_command_line(executor: ReportExecutor) -> None:
+    job = ReportJob(executor)
     job.ask("tiny", partial(study_of, "bar", TINY, 1, False))
     until_idle(job)
     assert job.last is not None, job.notice

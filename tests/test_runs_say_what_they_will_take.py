@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from studios import SMALL, Shown
+from shown_pages import SMALL, Shown
 
 from solver.cli import main
 from solver.latin import run_cost as costs

@@ -13,9 +13,9 @@ import sick_workers
 from processes import wait_for
 from unpacking import unpack
 
-from app.session.bench import Bench
 from app.session.page_worker import AGAIN
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.worker import link
 from solver.scenes.bar import BarSettings
@@ -58,7 +58,7 @@ def page(
 ) -> Iterator[Page]:
     monkeypatch.setattr(link, "start", partial(link.start, request.param, str(log)))
     settings = BarSettings.checked({"friction": 0.37})
-    with closing(Session(Pages(1), Bench(), settings)) as session:
+    with closing(Session(Pages(1), ReportExecutor(), settings)) as session:
         yield Page(session)
 
 

@@ -12,8 +12,8 @@ from app.controls.items import NOTE, SCENE, SHARE
 from app.controls.sidebar import Sidebar
 from app.reports.report import Report
 from app.reports.reports import PaperFigures, StabilityReport, StudyReport
-from app.session.bench import Bench
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.report_job import Found
 from app.session.session import Session
 from solver.scenes.bar import BarSettings
@@ -25,8 +25,8 @@ BAR = BarSettings.checked({"elements": 8, "substructures": 2, "instants": 5})
 
 @pytest.fixture
 def session() -> Iterator[Session]:
-    with Bench() as bench:
-        yield Session(Pages(1), bench, BAR, LoneLink().hire)
+    with ReportExecutor() as executor:
+        yield Session(Pages(1), executor, BAR, LoneLink().hire)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import pytest
 from browser import Chrome, Server
 from pages import ENDLESS, Visit, iteration, slider, status, visits
 from playwright.sync_api import Locator, Page, expect
-from studios import SMALL, Shown, keys
+from shown_pages import SMALL, Shown, keys
 
 from app.picture.glossary import TERMS, explained, line_of
 from app.views.catalogue import fitting

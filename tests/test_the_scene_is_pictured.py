@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, SMALL, Shown
+from shown_pages import ALL, SMALL, Shown
 from test_views_say_what_they_draw import looked_at
 
 from app.views import load_path, picture, sketch

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from direct_runs import direct, iterate_number
-from studios import ALL, Shown, keys
+from shown_pages import ALL, Shown, keys
 from test_worker_process import same
 from unpacking import unpack
 
@@ -40,7 +40,7 @@ def paired(pause_after: int | None = None, **options: Any) -> Shown:
 
 def test_both_are_shown_at_equal_iterations_until_each_has_ended() -> None:
     shown = paired()
-    twin = shown.studio._twin
+    twin = shown.runs._twin
     assert twin is not None
     assert [picture.facts.iteration for picture in shown.pictures][-1] == 30
     assert shown.recording.iteration == 12
@@ -72,7 +72,7 @@ def test_the_ghost_is_run_a_at_the_iteration_that_its_legend_says() -> None:
 
 def test_a_step_a_pause_and_another_interface_hold_for_both() -> None:
     shown = paired(pause_after=5)
-    twin = shown.studio._twin
+    twin = shown.runs._twin
     assert twin is not None
     shown.obey(Step(1))
     assert (shown.frame().iteration, twin.recording.shown) == (6, 6)
@@ -89,21 +89,21 @@ def test_a_step_a_pause_and_another_interface_hold_for_both() -> None:
 
 def test_run_a_is_kept_from_one_run_b_to_the_next() -> None:
     shown = paired()
-    twin = shown.studio._twin
+    twin = shown.runs._twin
     shown.run(2, "bar", {**BRIEF, "friction": 0.31}, twin=LONG, pause_after=4)
-    assert shown.studio._twin is twin
+    assert shown.runs._twin is twin
     assert twin is not None
     assert (shown.frame().iteration, twin.recording.shown) == (4, 4)
     shown.run(3, "bar", BRIEF, twin={**LONG, "friction": 0.31})
-    assert shown.studio._twin is not twin
+    assert shown.runs._twin is not twin
     shown.run(4, "bar", BRIEF)
-    assert shown.studio._twin is None
+    assert shown.runs._twin is None
     assert "run before, iteration 12" in keys(friction.VIEW.draw(shown.scene(), None))
 
 
 def test_figures_stand_at_equal_iteration_and_at_equal_run_time() -> None:
     shown = paired(pause_after=5)
-    twin = shown.studio._twin
+    twin = shown.runs._twin
     assert twin is not None
     # What is measured, put where it is known: A is three times as fast as B.
     for history, pace in ((shown.recording.history, 3.0), (twin.recording.history, 1.0)):
@@ -124,7 +124,7 @@ def test_figures_stand_at_equal_iteration_and_at_equal_run_time() -> None:
 def test_a_run_without_an_iteration_at_equal_run_time_is_said_to_have_none() -> None:
     shown = paired()
     assert NONE_YET not in shown.page["figures"]["text"]
-    twin = shown.studio._twin
+    twin = shown.runs._twin
     assert twin is not None
     for iteration in range(1, len(twin.recording.history) + 1):
         twin.recording.history.change(iteration, seconds=1e3 + iteration)

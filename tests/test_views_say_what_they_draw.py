@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, SMALL, Shown, keys
+from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.recording import COLUMNS
 from app.views import convergence, deformed, error_time, friction, load_path, loop

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import SMALL
+from shown_pages import SMALL
 from test_views_say_what_they_draw import looked_at
 
 from app.shell.gallery import gallery

@@ -7,13 +7,11 @@ from contextlib import closing, contextmanager
 from typing import Any
 
 import pytest
-from lone_link import LoneLink
+from lone_link import lone_session
 from processes import wait_for
 from sweeps import TINY, Here, tiny
 
-from app.session.bench import Bench
 from app.session.inquiry import CANCELLED, Inquiry, Lender, part_of
-from app.session.pages import Pages
 from app.session.session import Session
 from app.whatif.charted import is_comparable
 from app.whatif.question import (
@@ -51,7 +49,7 @@ def settled(inquiry: Inquiry) -> list[Row]:
 
 @pytest.fixture
 def session() -> Iterator[Session]:
-    with closing(Session(Pages(1), Bench(), BarSettings.checked(TINY), LoneLink().hire)) as opened:
+    with closing(lone_session(BarSettings.checked(TINY))) as opened:
         opened.asked.inquiry._lent = here
         yield opened
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import SMALL, Shown
+from shown_pages import SMALL, Shown
 
 from app.picture.recording import COLUMNS
 from app.takeaway.snippet import NOTE, snippet
@@ -88,8 +88,8 @@ def test_tables_of_two_runs_have_both_and_the_settings_of_both() -> None:
     shown = told("bar", twin=twin)
     comments, rows = read(table("iterations", shown.scene()))
     assert column(rows, "B", "iteration") == [1, 2, 3, 4, 5]
-    assert shown.studio._twin is not None
-    history = shown.studio._twin.recording.history
+    assert shown.runs._twin is not None
+    history = shown.runs._twin.recording.history
     assert np.array_equal(column(rows, "A", "indicator"), history.column("indicator"))
     assert "friction = 0.4\n" in comments[comments.index("settings of A:\n") :]
     _, rows = read(table("instants", shown.scene()))

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from direct_runs import direct
 from processes import PATIENCE
-from studios import ALL, Shown, run_of
+from shown_pages import ALL, Shown, run_of
 from worker_line import SHORT, STALLING, Line
 
 from app.picture.recording import COLUMNS, History

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studios import ALL, Shown
+from shown_pages import ALL, Shown
 
 from app.picture.frames import DrawnFields
 from app.picture.meshes import MOST_QUADS, Thinned

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from direct_runs import direct, iterate_number
-from studios import ALL, Shown
+from shown_pages import ALL, Shown
 from test_worker_process import same
 
 from app.picture.bases import Bases

@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 from direct_runs import direct
-from studios import ALL, Shown, run_of
+from shown_pages import ALL, Shown, run_of
 from test_worker_process import same
 from worker_line import STALLING
 
@@ -60,7 +60,7 @@ def test_warm_run_starts_from_the_run_that_it_takes_the_place_of() -> None:
 
 def test_warm_run_that_is_replaced_at_once_hands_on_what_it_was_given() -> None:
     shown = after_the_first()
-    shown.studio.obey(run_of(2, "bar", {**NEAR, "peak": 901.0}, warm=True))
+    shown.runs.obey(run_of(2, "bar", {**NEAR, "peak": 901.0}, warm=True))
     shown.run(3, "bar", NEAR, warm=True, pause_after=5)
     assert shown.pictures[-1].facts.was_warm
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 from processes import PATIENCE
-from studios import ALL
+from shown_pages import ALL
 
 from app.wire.orders import Order, Ready, Watch
 from app.wire.reports import Picture

@@ -81,7 +81,7 @@ def rims(portrait: Portrait) -> list[NDArray[np.intp]]:
     return found
 
 
-class Sitter:
+class DrawnGeometry:
     """A problem as its portraits see it.
 
     Parameters

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from app.picture.bases import Bases, bases_of
 from app.picture.frames import DrawnFields, Stand
 from app.picture.meshes import Thinned
-from app.picture.portrait import Pose, Sitter
+from app.picture.portrait import DrawnGeometry, Pose
 from app.picture.shown import (
     LONGEST_CURVE,
     MOST_SPECTRA,
@@ -75,7 +75,7 @@ class Sampler:
         elif kind_of(settings) == "wires":
             self._wires = ShownWires(problem, described.broken[0] + 1 if described.broken else 0)
         mesh = self._mesh.mesh if self._mesh else None
-        self._sitter = Sitter(problem, described, mesh)
+        self._geometry = DrawnGeometry(problem, described, mesh)
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without the closed form."""
@@ -100,7 +100,7 @@ class Sampler:
             all_instants=_floats(problem.instants[self._curve]),
             closed_form=None,
             closed_form_end=None,
-            portrait=self._sitter.portrait,
+            portrait=self._geometry.portrait,
             mesh=self._mesh.mesh if self._mesh else None,
             wires=self._wires.base if self._wires else None,
             is_idle=nothing_acts(problem),
@@ -145,7 +145,7 @@ class Sampler:
 
     def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
         """Show what has moved at the chosen instant."""
-        return self._sitter.pose(iterate, self._column(look), bodies)
+        return self._geometry.pose(iterate, self._column(look), bodies)
 
     def axial(self, iterate: Iterate, look: Look) -> Floats | None:
         """Give the forces in the wires of a strand at the chosen instant."""

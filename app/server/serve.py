@@ -14,8 +14,8 @@ from panel_material_ui.template.base import Page
 
 from app.components.innards import forget
 from app.server.lateness import Lateness
-from app.session.bench import shared_bench
 from app.session.pages import Pages, most_pages
+from app.session.report_executor import shared_executor
 from app.session.session import Session
 from app.session.state import PACES
 from app.session.turns import Turns
@@ -63,7 +63,7 @@ def open_page() -> Page:
     twin, refused = twin_from_query(query, settings)
     turns = Turns(document.add_next_tick_callback)
     first = room.settings if room else settings
-    session = Session(PAGES, shared_bench(), first, turns=turns)
+    session = Session(PAGES, shared_executor(), first, turns=turns)
     if room is not None:
         session.attendance.follow(room)
     else:
@@ -100,7 +100,7 @@ def rehearse() -> None:
     document = Document()
     with set_curdoc(document):
         _configure()
-        session = Session(PAGES, shared_bench(), settings_from_query("")[0])
+        session = Session(PAGES, shared_executor(), settings_from_query("")[0])
         dashboard = Dashboard(session)
         dashboard.page.server_doc(document)
         document.to_json()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.session.bench import Bench
 from app.session.inquiry import Inquiry
+from app.session.report_executor import ReportExecutor
 from app.session.report_job import ReportJob
 
 
@@ -14,7 +14,7 @@ class Asked:
 
     Parameters
     ----------
-    bench
+    executor
         Where reports are made.
     began
         Is told that there is something to look at.
@@ -25,8 +25,8 @@ class Asked:
         Three reports, and a sweep.
     """
 
-    def __init__(self, bench: Bench, began: Callable[[], None]) -> None:
-        self.figures, self.study, self.stability = (ReportJob(bench, began) for _ in range(3))
+    def __init__(self, executor: ReportExecutor, began: Callable[[], None]) -> None:
+        self.figures, self.study, self.stability = (ReportJob(executor, began) for _ in range(3))
         self.inquiry = Inquiry(began=began)
         self._all = self.figures, self.study, self.stability, self.inquiry
 

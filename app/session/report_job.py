@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from app.session.bench import report, said_of
+from app.session.report_executor import report, said_of
 from app.session.report_folder import PROGRESS, SECTIONS, files, said
 from app.session.studies import Work
 from solver.definitions import SettingError

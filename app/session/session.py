@@ -12,9 +12,9 @@ from typing import Any
 from app.picture.labels import changes_of, label_of
 from app.session.asked import Asked
 from app.session.attendance import Attendance
-from app.session.bench import Bench
 from app.session.page_worker import AGAIN, GIVEN_UP, Hire, PageWorker
 from app.session.pages import Pages
+from app.session.report_executor import ReportExecutor
 from app.session.state import State
 from app.session.turns import Turns
 from app.session.uploads import cut_off
@@ -42,7 +42,7 @@ class Session(State):
     ----------
     pages
         Those of this server; this one is added.
-    bench
+    executor
         Where reports are made.
     settings
         Of the first run, for which `start` has to be called.
@@ -67,7 +67,7 @@ class Session(State):
     def __init__(
         self,
         pages: Pages,
-        bench: Bench,
+        executor: ReportExecutor,
         settings: Settings,
         hire: Hire = Link,
         turns: Turns | None = None,
@@ -81,7 +81,7 @@ class Session(State):
         timer = self.turns.timer
         self._stands_still, self._is_left_alone = timer(self.let_go), timer(self._give_back)
         self._looks = timer(self.attend)
-        self.asked = Asked(bench, partial(self._looks.set, LOOKS))
+        self.asked = Asked(executor, partial(self._looks.set, LOOKS))
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._due: Settings | None = None

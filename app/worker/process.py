@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from app.wire.orders import Order, Run
-from app.worker.studio import Studio
+from app.worker.page_runs import PageRuns
 
 NICENESS = 5
 """Below the server, so that pages stay alive, but not by much: the first picture of a run waits for
@@ -53,19 +53,19 @@ def main(connection: Connection) -> None:
 
 def serve(inbox: Inbox, send: Callable[[Any], None]) -> None:
     """Obey orders and work in between, without end."""
-    studio = Studio(inbox.shielded(send), inbox.urgent)
+    runs = PageRuns(inbox.shielded(send), inbox.urgent)
     while True:
-        order = inbox.take(studio.rest())
-        if order is None and studio.paint():
+        order = inbox.take(runs.rest())
+        if order is None and runs.paint():
             continue
         with contextlib.suppress(InterruptedForNextError):
             if order is None:
-                inbox.attempt(studio.go_on)
+                inbox.attempt(runs.go_on)
             elif isinstance(order, Run):
-                inbox.attempt(partial(studio.obey, order))
+                inbox.attempt(partial(runs.obey, order))
             else:
                 # What is short is done whole: a page would wait for ever for a lost answer.
-                studio.obey(order)
+                runs.obey(order)
 
 
 class Inbox:

@@ -29,7 +29,7 @@ class BrokenReportError(Exception):
     """There is no report; the message is a sentence for the user."""
 
 
-class Bench(Executor):
+class ReportExecutor(Executor):
     """A process for every call, in the order in which they were asked for; or the server's cluster.
 
     What executes is opened when there is first something to do.
@@ -72,11 +72,11 @@ class Bench(Executor):
 
 
 @cache
-def shared_bench() -> Bench:
+def shared_executor() -> ReportExecutor:
     """Give the executor that all pages of this server share; it ends with the server."""
-    bench = Bench()
-    atexit.register(bench.shutdown)
-    return bench
+    executor = ReportExecutor()
+    atexit.register(executor.shutdown)
+    return executor
 
 
 def report(work: Work, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""A worker's studio in this process, asked for pictures as a page asks, and what it shows."""
+"""The runs of a page in this process, asked for pictures as a page asks, and what it shows."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from app.views.catalogue import VIEWS
 from app.views.drawing import Drawing, Scene
 from app.wire.orders import Order, Ready, Run, Watch
 from app.wire.reports import File, Picture
+from app.worker.page_runs import PageRuns
 from app.worker.run import WorkerRun
-from app.worker.studio import Studio
 from solver.scenes import CATALOGUE
 
 ALL = Look(views=tuple(view.name for view in VIEWS))
@@ -40,7 +40,7 @@ def run_of(ticket: int, scene: str, values: dict[str, Any], **options: Any) -> R
 
 
 class Shown:
-    """A studio and a page that paints at once.
+    """The runs of a page that paints at once.
 
     Attributes
     ----------
@@ -55,13 +55,13 @@ class Shown:
         self.files: list[list[Any]] = []
         self.said: list[str] = []
         self.models: list[Models] = []
-        self.studio = Studio(self._paint, lambda: False)
-        self.studio.obey(Watch(look))
-        self.studio.obey(Ready())
+        self.runs = PageRuns(self._paint, lambda: False)
+        self.runs.obey(Watch(look))
+        self.runs.obey(Ready())
 
     def obey(self, *orders: Order) -> None:
         for order in orders:
-            self.studio.obey(order)
+            self.runs.obey(order)
         self.work()
 
     def run(self, ticket: int, scene: str, values: dict[str, Any], **options: Any) -> None:
@@ -69,10 +69,10 @@ class Shown:
 
     def work(self) -> None:
         """Go on until there is nothing to do."""
-        while (rest := self.studio.rest()) is not None:
+        while (rest := self.runs.rest()) is not None:
             time.sleep(rest)
-            if not self.studio.paint():
-                self.studio.go_on()
+            if not self.runs.paint():
+                self.runs.go_on()
 
     @property
     def page(self) -> Models:
@@ -85,8 +85,8 @@ class Shown:
 
     @property
     def at_work(self) -> WorkerRun:
-        assert self.studio._run is not None
-        return self.studio._run
+        assert self.runs._run is not None
+        return self.runs._run
 
     @property
     def recording(self) -> Recording:
@@ -96,21 +96,21 @@ class Shown:
         return self.at_work.frame(look)
 
     def scene(self, look: Look = ALL, instant: int = 5) -> Scene:
-        return replace(self.studio._scene(self.at_work, self.frame(look), instant), look=look)
+        return replace(self.runs._scene(self.at_work, self.frame(look), instant), look=look)
 
     def _paint(self, picture: Picture | File) -> None:
         if isinstance(picture, File):
             found = unpack(picture.block)
             if "take-away" in found:
                 self.files.append(found["take-away"]["file"])
-                self.studio.obey(Ready())
+                self.runs.obey(Ready())
             else:
                 self.said.append(found["status"]["text"])
             return
         self.pictures.append(picture)
         before = self.models[-1] if self.models else {}
         self.models.append({**before, **unpack(picture.block)})
-        self.studio.obey(Ready())
+        self.runs.obey(Ready())
 
 
 def keys(drawing: Drawing | None) -> list[str]:

@@ -1,4 +1,4 @@
-"""What a page's worker has: the run at work, those before it, where one looks, and its pictures."""
+"""The runs of a page: the one at work, those before it, and the pictures of where one looks."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PAST_RUNS = 6
 _log = logging.getLogger(__name__)
 
 
-class Studio:
+class PageRuns:
     """The runs of one page, and the pictures made of them when the page is ready for one.
 
     Parameters
