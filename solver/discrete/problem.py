@@ -116,6 +116,14 @@ class Problem:
         return weights
 
     @cached_property
+    def laws(self) -> list[Interface]:
+        """All interfaces, those of one kind that may be treated as one joined: no macro bases."""
+        kinds: dict[type[Interface], list[Interface]] = {}
+        for law in self.interfaces.values():
+            kinds.setdefault(type(law), []).append(law)
+        return [law for kind, laws in kinds.items() for law in kind.together(laws)]
+
+    @cached_property
     def given_forces(self) -> list[RowValues]:
         """Forces that are prescribed, interface by interface."""
         found = (law.given_force for law in self.interfaces.values())
@@ -126,6 +134,11 @@ class Problem:
         """Displacements that are prescribed, interface by interface."""
         found = (law.given_displacement for law in self.interfaces.values())
         return [one for one in found if one is not None]
+
+    @cached_property
+    def is_held(self) -> NDArray[np.bool_]:
+        """At which rows a displacement is prescribed, shape (n_rows,)."""
+        return np.isin(self.row_dofs, self.prescribed[0])
 
     @cached_property
     def cuts(self) -> list[tuple[Indices, Indices]]:
@@ -208,6 +221,18 @@ class Problem:
         )
         counts = np.asarray(total.sum(axis=1)).ravel()
         return sparse.csr_array(sparse.diags_array(1.0 / np.maximum(counts, 1.0)) @ total)
+
+    @cached_property
+    def body_force_on_rows(self) -> Array | None:
+        """Forces on the rows that do the work of all body forces, (n_rows, n_instants); or None."""
+        parts = self.substructures
+        loads = [(one.dofs, one.body_force) for one in parts if one.body_force is not None]
+        if not loads:
+            return None
+        whole = np.zeros((self.n_dofs, self.n_instants))
+        for dofs, load in loads:
+            whole[dofs] += load
+        return np.asfortranarray(self.mean_of_rows.T @ whole)
 
     @cached_property
     def sum_of_contact(self) -> sparse.csr_array:

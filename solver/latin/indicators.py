@@ -73,16 +73,9 @@ def behaviour_of(problem: Problem, displacement: Array, force: Array) -> float:
 
 def _elastic_energy(problem: Problem, displacement: Array, force: Array) -> float:
     """Give the largest elastic energy over time; body forces work on it like the interfaces."""
+    if problem.body_force_on_rows is not None:
+        force = force + problem.body_force_on_rows
     work = np.einsum("ij,ij->j", displacement, force)
-    loads = [
-        (part.dofs, part.body_force)
-        for part in problem.substructures
-        if part.body_force is not None
-    ]
-    if loads:
-        whole = problem.mean_of_rows @ displacement
-        for dofs, load in loads:
-            work += np.einsum("ij,ij->j", load, whole[dofs])
     return 0.5 * max(float(work.max(initial=0.0)), 0.0)
 
 
@@ -105,15 +98,14 @@ def _share_of_friction(problem: Problem, force: Array) -> float:
     contact carries, unless that is a thousandth or more.
     """
     largest = float(np.abs(force).max())
-    held = np.isin(problem.row_dofs, problem.prescribed[0])
     laws = problem.rubbing.values()
     carried = max(law.carried(force) for law in laws)
-    capacity = max(sum(law.capacity(held) for law in laws), SMALL_CONTACT * carried)
+    capacity = max(sum(law.capacity(problem.is_held) for law in laws), SMALL_CONTACT * carried)
     return min(capacity / largest, 1.0) if capacity > 0.0 and largest > 0.0 else 1.0
 
 
 def _gap_of_bonds(problem: Problem, displacement: Array, force: Array, noise: float) -> float:
-    found = [law.gaps(displacement, force, noise) for law in problem.interfaces.values()]
+    found = [law.gaps(displacement, force, noise) for law in problem.laws]
     apart = sum(gaps.displacement for gaps in found)
     unbalanced = sum(gaps.force for gaps in found)
     return float(

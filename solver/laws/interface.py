@@ -110,7 +110,7 @@ class Interface(ABC):
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join interfaces of one law that a local stage may treat as one: points know none."""
+        """Join interfaces of one law that may be treated as one: points know none."""
         return list(laws)
 
     @abstractmethod
@@ -161,4 +161,5 @@ def beyond(field: Array, noise: float) -> Array:
 
 def squared(field: Array) -> float:
     """Give the sum of the squares of a field."""
-    return float(np.vdot(field, field))
+    numbers = field.ravel(order="K")  # without a copy, however it lies in memory
+    return float(np.dot(numbers, numbers))

@@ -40,7 +40,7 @@ class Perfect(Interface):
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join all cuts; the macro bases stay behind, a local stage knows none."""
+        """Join all cuts; the macro bases stay behind."""
         if not laws:
             return []
         first = np.concatenate([law.first for law in laws])
@@ -62,13 +62,18 @@ class Perfect(Interface):
 
     def gaps(self, displacement: Array, force: Array, noise: float) -> Gaps:
         """Compare both sides."""
-        apart = beyond(displacement[self.first] - displacement[self.second], 2.0 * noise)
-        unbalanced = beyond(force[self.first] + force[self.second], noise)
-        return Gaps(squared(apart), squared(unbalanced))
+        apart = _at(displacement, self.first) - _at(displacement, self.second)
+        unbalanced = _at(force, self.first) + _at(force, self.second)
+        return Gaps(squared(beyond(apart, 2.0 * noise)), squared(beyond(unbalanced, noise)))
 
     def macro_parts(self) -> Iterator[MacroPart]:
         """Give the macro forces of both sides, which cancel."""
         yield MacroPart(self.rows, np.concatenate([self.macro, self.macro]))
+
+
+def _at(field: Array, rows: Indices) -> Array:
+    """Give rows of a field that is contiguous in space, as it lies in memory: (n_times, n)."""
+    return np.take(field.T, rows, axis=1)
 
 
 def perfect(first: Array, second: Array, share: Array) -> Array:

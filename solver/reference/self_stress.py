@@ -95,10 +95,21 @@ def _of_rigid(jumps: sparse.csr_array) -> Array:
     products = sparse.csr_array(jumps @ jumps.T)
     _, group = connected_components(products, directed=False)
     found = []
-    for members in np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1]):
+    for number in np.flatnonzero(_rings(jumps, group)):
+        members = np.flatnonzero(group == number)
         values, vectors = np.linalg.eigh(products[members][:, members].toarray())
         own = vectors[:, values < NONE]
         whole = np.zeros((size, own.shape[1]))
         whole[members] = np.where(np.abs(own) > NONE, own, 0.0)
         found.append(whole)
     return np.concatenate(found, axis=1)
+
+
+def _rings(jumps: sparse.csr_array, group: Indices) -> Indices:
+    """Count the rings in every group of jumps that share points: edges beyond those of a tree."""
+    _, at = np.unique(jumps.indices, return_index=True)
+    of_entries = np.repeat(group, np.diff(jumps.indptr))
+    edges = np.bincount(group)
+    nodes = np.bincount(of_entries[at], minlength=len(edges))
+    nodes[np.unique(group[np.diff(jumps.indptr) == 1])] += 1  # the ground is one more
+    return np.asarray(edges - nodes + 1)

@@ -8,7 +8,6 @@ from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
 from solver.latin.local.slide import Slide, slide_of
-from solver.laws import Interface
 
 
 class LocalStage:
@@ -40,9 +39,9 @@ class LocalStage:
         self._outgoing = space_time(*shape)
         way = slide_of(problem)
         self._slide = None if way is None else Slide(problem, way, k)
-        laws = together(problem)
-        self._remembering = [law.rule(k, problem.n_instants) for law in laws if law.remembers]
-        self._instant = [law.rule(k, problem.n_instants) for law in laws if not law.remembers]
+        laws, n_instants = problem.laws, problem.n_instants
+        self._remembering = [law.rule(k, n_instants) for law in laws if law.remembers]
+        self._instant = [law.rule(k, n_instants) for law in laws if not law.remembers]
 
     def __call__(self, incoming: Array) -> Array:
         """Obey all laws.
@@ -72,11 +71,3 @@ class LocalStage:
             rule(incoming, found, some)
         np.multiply(found, 2.0, out=outgoing)
         np.subtract(outgoing, incoming, out=outgoing)
-
-
-def together(problem: Problem) -> list[Interface]:
-    """Give the interfaces of a problem, those of one kind that may be treated as one joined."""
-    kinds: dict[type[Interface], list[Interface]] = {}
-    for law in problem.interfaces.values():
-        kinds.setdefault(type(law), []).append(law)
-    return [law for kind, laws in kinds.items() for law in kind.together(laws)]
