@@ -1,10 +1,5 @@
 // Controls of settings, for the components that hold some.
 function controls(model) {
-  const make = (tag, more = {}, ...children) => {
-    const made = Object.assign(document.createElement(tag), more)
-    made.append(...children)
-    return made
-  }
   const tell = (row, value, hand = false) => {
     // The time numbers the messages of all components of a page in one order.
     const count = row.count = performance.now()
@@ -13,10 +8,6 @@ function controls(model) {
   const named = (item, input) => {
     input.ariaLabel = item.label
     return input
-  }
-  const filled = (select, options, value) => {
-    select.replaceChildren(...options.map(([text, value]) => new Option(text, value)))
-    select.value = value
   }
   const slider = (row, item) => {
     const step = item.whole && !item.log ? 1 : "any"
@@ -63,8 +54,9 @@ function controls(model) {
     return [label, range]
   }
   const choice = (row, item) => {
-    const select = named(item, make("select", {onchange: () => tell(row, select.value)}))
-    filled(select, item.options)
+    const options = item.options.map(([text, value]) => new Option(text, value))
+    const select = named(item,
+      make("select", {onchange: () => tell(row, select.value)}, ...options))
     row.show = (value) => { select.value = value }
     return [make("label", {}, item.label), select]
   }
@@ -84,9 +76,9 @@ function controls(model) {
     const send = (rows) => {
       if (rows.every((one) => one.every(Number.isFinite))) { tell(row, rows) }
     }
-    const drawn = drawn_points(item, send)
+    const path = drawn_points(item, send)
     const told = make("p"), listed = make("div", {className: "points"}, table)
-    const points = make("div", {}, drawn.picture, listed, told)
+    const points = make("div", {}, path.picture, listed, told)
     const number = (value) => make("input", {
       type: "number", step: "any", required: true, value, onchange: () => send(read()),
     })
@@ -111,12 +103,20 @@ function controls(model) {
       points.hidden = !own.length && !long
       listed.hidden = Boolean(long)
       told.textContent = long ? `${long} points. Change them in their file.` : ""
-      drawn.show(long ? value.drawn : own, Boolean(long))
+      path.show(long ? value.drawn : own, Boolean(long))
       if (JSON.stringify(read()) !== JSON.stringify(own)) {
         body.replaceChildren(...own.map(line))
       }
     }
     return [...parts, points]
   }
-  return {make, tell, named, kinds: {slider, choice, flip, curve}}
+  // A control that was moved since says what it was moved to.
+  const show = (rows) => {
+    const {"": obeyed, "the-ends": ends} = model.shown
+    for (const [name, row] of rows) {
+      row.box.hidden = !(name in model.shown)
+      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name], ends?.[name]) }
+    }
+  }
+  return {tell, named, show, kinds: {slider, choice, flip, curve}}
 }

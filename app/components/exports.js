@@ -1,22 +1,6 @@
 // Plots as files: drawn once more as SVG with what stands above them, and painted of that.
-const SVG = "http://www.w3.org/2000/svg", FONT = "system-ui, sans-serif", LINE = 20, FINE = 2
+const FONT = "system-ui, sans-serif", LINE = 20, FINE = 2
 const DASHES = {dashed: "6 4", dotted: "2 3"}, WIDTHS = {band: 7, thin: 1.5}, EDGE = "#8a8a8a"
-const make = (tag, more = {}, ...children) => {
-  const made = Object.assign(document.createElement(tag), more)
-  made.append(...children)
-  return made
-}
-const drawn = (tag, attributes, text = "") => {
-  const made = document.createElementNS(SVG, tag)
-  for (const [name, value] of Object.entries(attributes)) { made.setAttribute(name, value) }
-  made.textContent = text
-  return made
-}
-const save = (name, blob) => {
-  const href = URL.createObjectURL(blob)
-  make("a", {href, download: name}).click()
-  setTimeout(() => URL.revokeObjectURL(href), 1e4)
-}
 const ruler = make("canvas").getContext("2d")
 const wide = (text, weight) => {
   ruler.font = `${weight} 14px ${FONT}`
@@ -30,7 +14,7 @@ const mark = ({className, style}, x, y) => {
   }
   if (className === "front") {
     const edge = {x: x + 1, y: y - 6, width: 14, height: 12, fill: "#d9d9d9", stroke: EDGE}
-    const group = drawn("g", {})
+    const group = drawn("g")
     group.append(drawn("rect", edge), drawn("rect", {...edge, y: y - 1, height: 2, fill: color,
       stroke: "none"}))
     return group
@@ -86,4 +70,9 @@ const painted = async ({width, height, paper, text}, scale, size = {width, heigh
   pen.drawImage(image, 0, 0, scale * width, scale * height)
   URL.revokeObjectURL(image.src)
   return canvas
+}
+const save_svg = (name, {text}) => save(`${name}.svg`, new Blob([text], {type: "image/svg+xml"}))
+const save_png = async (name, picture) => {
+  const canvas = await painted(picture, FINE)
+  canvas.toBlob((blob) => save(`${name}.png`, blob))
 }

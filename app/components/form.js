@@ -1,5 +1,5 @@
 export function render({model}) {
-  const {make, tell, named, kinds} = controls(model)
+  const {tell, named, show: put, kinds} = controls(model)
   const root = make("div")
   let rows = new Map()
   const checks = (row, item) => {
@@ -76,18 +76,11 @@ export function render({model}) {
     show()
   }
   const show = () => {
-    const obeyed = model.shown[""]
-    for (const [name, row] of rows) {
-      row.box.hidden = !(name in model.shown)
-      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name], model.shown["the-ends"]?.[name]) }
-    }
+    put(rows)
     for (const head of heads) { head.hidden = head.rows.every((box) => box.hidden) }
   }
-  model.on("file", () => {
-    const href = URL.createObjectURL(new Blob([model.file[0]], {type: "application/toml"}))
-    make("a", {href, download: "slipfront.toml"}).click()
-    setTimeout(() => URL.revokeObjectURL(href), 1e4)
-  })
+  model.on("file", () =>
+    save("slipfront.toml", new Blob([model.file[0]], {type: "application/toml"})))
   model.on("items", build)
   model.on("shown", show)
   build()

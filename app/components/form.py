@@ -73,6 +73,7 @@ class Form(Plain):
     file = param.List(default=[])
 
     _esm = script(
+        "components/elements.js",
         "components/values.js",
         "components/points.js",
         "components/controls.js",

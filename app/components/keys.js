@@ -7,16 +7,9 @@ const SKIP = `position: fixed; left: 8px; top: -99px; z-index: 2000; padding: 8p
   border-radius: 4px; color: #fff; background: #0b3d66; font: 500 16px sans-serif`
 
 export function render({model}) {
-  const dialog = document.createElement("dialog")
+  const dialog = make("dialog", {ariaLabel: "Keys and words"})
   dialog.innerHTML = "<h2>Keys</h2><table></table><h2>Words</h2><table class=words></table>"
-  dialog.ariaLabel = "Keys and words"
-  const row = (head, text) => {
-    const row = document.createElement("tr")
-    row.append(document.createElement("th"), document.createElement("td"))
-    row.firstChild.textContent = head
-    row.lastChild.textContent = text
-    return row
-  }
+  const row = (head, text) => make("tr", {}, make("th", {}, head), make("td", {}, text))
   const [keys, words] = dialog.querySelectorAll("table")
   keys.append(...model.keys.map(([, written, does]) => row(written, does)))
   const open = () => {
@@ -25,9 +18,8 @@ export function render({model}) {
   }
   const close = glossary(model.terms)
   dialog.onclick = () => dialog.close()
-  const button = document.createElement("button")
-  Object.assign(button, {textContent: "?", title: "Keys and words (?).", ariaLabel: "Keys and words"})
-  button.onclick = open
+  const button = make("button", {title: "Keys and words (?).", ariaLabel: "Keys and words",
+    onclick: open}, "?")
   // Whoever has no mouse comes to the run without passing all settings.
   const inside = (node, wanted) => {
     for (const one of node.querySelectorAll("*")) {
@@ -36,9 +28,7 @@ export function render({model}) {
     }
     return null
   }
-  const skip = document.createElement("a")
-  Object.assign(skip, {href: "#", textContent: "Go to the run"})
-  skip.style = SKIP
+  const skip = make("a", {href: "#", style: SKIP}, "Go to the run")
   skip.onfocus = () => { skip.style.top = "8px" }
   skip.onblur = () => { skip.style.top = "-99px" }
   skip.onclick = (event) => {
@@ -55,10 +45,8 @@ export function render({model}) {
     event.preventDefault()
     all[(all.indexOf(chosen) + by + all.length) % all.length].focus()
   }
-  const leave = document.createElement("button")
   const out = "Leave the presenter's view (p)."
-  Object.assign(leave, {textContent: "✕", title: out, ariaLabel: out})
-  leave.onclick = () => model.send_msg("p")
+  const leave = make("button", {title: out, ariaLabel: out, onclick: () => model.send_msg("p")}, "✕")
   const show = () => { leave.hidden = !model.presents }
   model.on("presents", show)
   show()
@@ -85,8 +73,5 @@ export function render({model}) {
     skip.remove()
     document.removeEventListener("keydown", press)
   })
-  const root = document.createElement("div")
-  root.className = "corner"
-  root.append(button, leave, dialog)
-  return root
+  return make("div", {className: "corner"}, button, leave, dialog)
 }

@@ -1,15 +1,9 @@
 // A path through points that are dragged, added by a double click and taken away by another.
 function drawn_points(item, send) {
-  const WIDE = 280, TALL = 110, ROOM = 10, SPACE = "http://www.w3.org/2000/svg"
-  const make = (tag, more = {}) => {
-    const made = document.createElementNS(SPACE, tag)
-    for (const [name, value] of Object.entries(more)) { made.setAttribute(name, value) }
-    return made
-  }
-  const picture = make("svg", {viewBox: `0 0 ${WIDE} ${TALL}`, class: "path"})
+  const WIDE = 280, TALL = 110, ROOM = 10
+  const picture = drawn("svg", {viewBox: `0 0 ${WIDE} ${TALL}`, class: "path"})
   const help = "Drag a point; double click adds one, or takes it away."
-  picture.append(make("title"))
-  picture.firstChild.textContent = help
+  picture.append(drawn("title", {}, help))
   let points = [], limits = [0, 1, 0, 1], held = null, moved = false, fixed = false
   const across = (x) => ROOM + (WIDE - 2 * ROOM) * (x - limits[0]) / (limits[1] - limits[0])
   const up = (y) => TALL - ROOM - (TALL - 2 * ROOM) * (y - limits[2]) / (limits[3] - limits[2])
@@ -30,17 +24,17 @@ function drawn_points(item, send) {
     if (limits[0] === limits[1]) { limits[1] += 1 }
   }
   const draw = () => {
-    const zero = make("line", {
+    const zero = drawn("line", {
       x1: 0, x2: WIDE, y1: up(0), y2: up(0), stroke: "currentColor", opacity: 0.3,
     })
-    const line = make("polyline", {
+    const line = drawn("polyline", {
       points: points.map(([x, y]) => `${across(x)},${up(y)}`).join(" "),
       fill: "none", stroke: "#C24E00", "stroke-width": 2,
     })
     const dots = (fixed ? [] : points).map(([x, y], number) => {
-      const dot = make("circle", {cx: across(x), cy: up(y), r: 6, fill: "#C24E00"})
-      dot.append(make("title"))
-      dot.firstChild.textContent = `${item.columns[0]}: ${short(x)}, ${item.columns[1]}: ${short(y)}`
+      const dot = drawn("circle", {cx: across(x), cy: up(y), r: 6, fill: "#C24E00"})
+      const told = `${item.columns[0]}: ${short(x)}, ${item.columns[1]}: ${short(y)}`
+      dot.append(drawn("title", {}, told))
       dot.onpointerdown = (event) => {
         held = number
         moved = false

@@ -1,15 +1,8 @@
 export function render({model}) {
-  const label = document.createElement("label")
-  const text = document.createElement("output")
-  const range = document.createElement("input")
-  range.type = "range"
-  const button = document.createElement("button")
-  button.onclick = () => model.send_msg(null)
-  label.append(document.createElement("span"), text)
-  const line = document.createElement("div"), root = document.createElement("div")
-  line.className = "line"
-  line.append(button, range)
-  root.append(label, line)
+  const text = make("output"), label = make("label", {}, make("span"), text)
+  const range = make("input", {type: "range"})
+  const button = make("button", {onclick: () => model.send_msg(null)})
+  const root = make("div", {}, label, make("div", {className: "line"}, button, range))
   const show = () => {
     label.title = model.help
     button.hidden = !model.plays

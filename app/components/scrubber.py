@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import param
 
 from app.components.innards import Plain
+from app.components.panes import script
 
 STYLE = """
 label { display: block; font-size: 15px; line-height: 1.4; white-space: nowrap; }
@@ -47,7 +48,7 @@ class Scrubber(Plain):
     plays = param.String(default="")
     playing = param.Boolean(default=False)
 
-    _esm = "scrubber.js"
+    _esm = script("components/elements.js", "components/scrubber.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

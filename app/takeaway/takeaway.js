@@ -9,14 +9,7 @@ export function render({model}) {
   const button = (name, title, onclick) =>
     make("button", {className: "wide", title, onclick}, name)
   const tell = (kind, value = "") => model.send_msg({kind, value})
-  const png = async () => {
-    const canvas = await painted(seen(plots.value), FINE)
-    canvas.toBlob((blob) => save(`slipfront-${plots.value}.png`, blob))
-  }
-  const svg = () => {
-    const blob = new Blob([seen(plots.value).text], {type: "image/svg+xml"})
-    save(`slipfront-${plots.value}.svg`, blob)
-  }
+  const saved = (how) => () => how(`slipfront-${plots.value}`, seen(plots.value))
   let frames = [], filmed = ""
   const animate = (over) => () => {
     frames = []
@@ -53,8 +46,10 @@ export function render({model}) {
   show()
   return make("div", {}, make("h4", {}, "Take away"),
     make("label", {}, "Plot", plots),
-    button("PNG", "Save the picture, with its name, legend and units.", png),
-    button("SVG", "The same, as lines and words that can be edited.", svg),
+    button("PNG", "Save the picture, with its name, legend and units.",
+      saved(save_png)),
+    button("SVG", "The same, as lines and words that can be edited.",
+      saved(save_svg)),
     button("GIF over time", "Save its pictures at all instants as an animation.",
       animate("instants")),
     button("GIF over iterations", "Save its pictures from the first iteration to the last.",

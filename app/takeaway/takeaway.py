@@ -50,7 +50,12 @@ class TakeAway(Plain):
     caption = param.String(default="")
     shot = param.Integer(default=0)
 
-    _esm = script("takeaway/gif.js", "components/exports.js", "takeaway/takeaway.js")
+    _esm = script(
+        "components/elements.js",
+        "takeaway/gif.js",
+        "components/exports.js",
+        "takeaway/takeaway.js",
+    )
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

@@ -1,5 +1,5 @@
 export function render({model}) {
-  const {make, tell, kinds} = controls(model)
+  const {tell, show: put, kinds} = controls(model)
   const LESSON = "the-lesson", CHOICE = "the-choice", COUNT = "the-count", SEEN = "slipfront-lessons-seen"
   const root = make("section", {ariaLabel: "Lesson"})
   let rows = new Map(), places = [], taught_last = "", step = 0, turn = () => {}
@@ -146,13 +146,7 @@ export function render({model}) {
     fill()
     if (was_asked && lesson.choice !== undefined) { root.querySelector(".why").focus() }
   }
-  const show = () => {
-    const obeyed = model.shown[""]
-    for (const [name, row] of rows) {
-      row.box.hidden = !(name in model.shown)
-      if (!row.box.hidden && row.count <= obeyed) { row.show(model.shown[name], model.shown["the-ends"]?.[name]) }
-    }
-  }
+  const show = () => put(rows)
   const fill = () => {
     const texts = new Map(model.values)
     for (const [name, place] of places) { place.innerHTML = texts.get(name) ?? "…" }

@@ -101,6 +101,7 @@ class LessonPane(Plain):
     recalls = param.Boolean(default=False)
 
     _esm = script(
+        "components/elements.js",
         "components/values.js",
         "components/points.js",
         "components/controls.js",

@@ -79,16 +79,11 @@ export function render({model}) {
   const bar = make("progress", {ariaLabel: "Share of the runs"}), far = make("span")
   const seen = () => Bokeh.index.find_one_by_id(model.chart.id)
   const picture = () => pictured(seen(), model.chart.legend, "")
-  const painting = async () => {
-    const canvas = await painted(picture(), FINE)
-    canvas.toBlob((blob) => save(`${NAME}.png`, blob))
-  }
   const exports = make("span", {className: "end"})
   exports.append(
     button("Table (CSV)", "Save the table of all runs.", () => tell("table")), " ",
-    button("Chart (SVG)", "Save the chart.", () =>
-      save(`${NAME}.svg`, new Blob([picture().text], {type: "image/svg+xml"}))), " ",
-    button("Chart (PNG)", "Save the chart, painted.", painting))
+    button("Chart (SVG)", "Save the chart.", () => save_svg(NAME, picture())), " ",
+    button("Chart (PNG)", "Save the chart, painted.", () => save_png(NAME, picture())))
   const progress = make("div", {className: "row"}, bar, far, exports)
   const legend = make("div", {className: "legend title"})
   const ended = make("span", {role: "status", className: "unseen"})
