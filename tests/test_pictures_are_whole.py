@@ -98,7 +98,7 @@ def test_a_paused_run_steps_is_sought_in_and_followed() -> None:
     shown.obey(Watch(replace(ALL, phase=0.1)))
     assert shown.pictures[-1].facts.iteration == 3
     shown.obey(Pace(1, 0.0, is_held=True))
-    assert "<b>waits</b> for the study" in shown.words
+    assert "for the study to be timed" in shown.words
     shown.obey(Seek(1, None), Pace(1, None))
     assert shown.pictures[-1].facts.is_over
     assert shown.pictures[-1].facts.iteration == 12

@@ -145,5 +145,5 @@ def test_what_a_picture_sets_has_its_name_in_the_figure() -> None:
         names = {model.name for model in made.references() if model.name}
         expected = {"x", "y", "title"} | {marks.kind for marks in view.plot.marks}
         expected |= {"bodies", "box"} if view.plot.equal else {"curves"}
-        expected |= {"colors", "scale", "color-bar"} if view.plot.scale else set()
+        expected |= {"colors", "color-bar"} if view.plot.scale else set()
         assert {f"{view.slug}.{name}" for name in expected} <= names

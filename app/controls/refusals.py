@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import re
 from typing import Any
 
 import param
 
 from app.components.form import item_of
+from app.picture.labels import in_titles
 from solver.definitions import CurveParameter, Parameter, SettingError, about, allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -89,14 +89,6 @@ def written(value: object) -> str:
         return "this table"
     text = str(value)
     return text if isinstance(value, int) else f"“{text if len(text) <= 40 else text[:37] + '...'}”"
-
-
-def in_titles(settings: Settings, text: str) -> str:
-    """Call settings in a text what the sidebar calls them; one word may be just that."""
-    for name, definition in settings.definitions().items():
-        if "_" in name:
-            text = re.sub(rf"\b{name}\b", about(definition).title, text)
-    return text
 
 
 def last_that_holds(settings: Settings, name: str, value: float) -> float | None:

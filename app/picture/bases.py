@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.picture.shown import (
     MOST_MODES,
@@ -16,6 +14,7 @@ from app.picture.shown import (
     Counts,
     Floats,
     ShownModes,
+    floats,
     thinned,
 )
 from solver.arrays import Array
@@ -70,9 +69,9 @@ class Bases:
         instants = thinned(problem.n_instants)
         time = modes.time_functions[:MOST_MODES, instants] * problem.scales.displacement
         return ShownModes(
-            positions=_floats(places[points]),
-            space_modes=_floats(space / size[:, None]),
-            time_functions=_floats(time * size[:, None]),
+            positions=floats(places[points]),
+            space_modes=floats(space / size[:, None]),
+            time_functions=floats(time * size[:, None]),
             born=_outside(modes, past)[:MOST_MODES] > BORN,
             record=record,
             lost=max((past.n_modes if past else 0) + record.added - record.modes, 0),
@@ -94,7 +93,7 @@ class Bases:
         values = np.linalg.svd(weighted, compute_uv=False)[:MOST_VALUES]
         own = np.sqrt(modes.time_functions**2 @ weights)
         largest = max(float(values.max()), float(own.max(initial=0.0))) or 1.0
-        return _floats(own / largest), _floats(values / largest)
+        return floats(own / largest), floats(values / largest)
 
 
 def bases_of(iterate: Iterate, before: Checkpoint | None, substructure: int | None) -> Bases | None:
@@ -135,7 +134,3 @@ def _outside(modes: Modes, past: Modes | None) -> Array:
         return np.ones(modes.n_modes)
     inside = (modes.k[:, None] * past.outgoing).T @ modes.outgoing
     return np.asarray(1.0 - np.sum(inside**2, axis=0))
-
-
-def _floats(values: NDArray[np.floating[Any]]) -> Floats:
-    return values.astype(np.float32, order="C")

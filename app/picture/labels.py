@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from solver.definitions import about
@@ -29,3 +30,11 @@ def label_of(settings: Settings, changed: dict[str, Any], most: int = FEW) -> st
         parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
     more = len(changed) - most
     return ", ".join(parts) + (f" and {more} more" if more > 0 else "")
+
+
+def in_titles(settings: Settings, text: str, written: str = "{}") -> str:
+    """Call settings in a text what the sidebar calls them; one word may be just that."""
+    for name, definition in settings.definitions().items():
+        if "_" in name:
+            text = re.sub(rf"\b{name}\b", written.format(about(definition).title), text)
+    return text

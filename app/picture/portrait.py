@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.picture.shown import Bytes, Floats, Mesh, MeshField, thinned
+from app.picture.shown import Bytes, Floats, Mesh, MeshField, floats, thinned
 from solver.arrays import Array, Indices
 from solver.discrete import Problem
 from solver.discrete.structure import Description
@@ -116,7 +116,7 @@ class DrawnGeometry:
             places = np.stack([places, heights[along]], axis=1)
         whole = mesh or (self._rods.mesh if self._rods else None)
         assert whole is not None
-        self.portrait = Portrait(described, whole, _floats(places), np.concatenate(chains))
+        self.portrait = Portrait(described, whole, floats(places), np.concatenate(chains))
 
     def pose(self, iterate: Iterate, column: int, bodies: MeshField | None) -> Pose:
         """Show an iterate at one instant; plane bodies are given."""
@@ -129,7 +129,7 @@ class DrawnGeometry:
         return Pose(
             displacement=moved,
             largest=largest,
-            slid=_floats(whole[:, column][self._dofs] * self._moves),
+            slid=floats(whole[:, column][self._dofs] * self._moves),
             status=iterate.status[self._points, column],
         )
 
@@ -156,14 +156,10 @@ class _RodMesh:
         self._dofs: Indices = np.concatenate(kept)
         nodes = np.stack([problem.positions[self._dofs], np.concatenate(lows)], axis=1)
         self.mesh = Mesh(
-            _floats(nodes), np.concatenate(corners).astype(np.int32), np.concatenate(parts)
+            floats(nodes), np.concatenate(corners).astype(np.int32), np.concatenate(parts)
         )
 
     def moved(self, displacement: Array) -> Floats:
         """Give the displacement of the nodes, shape (n_nodes, 2), m."""
         along = displacement[self._dofs]
-        return _floats(np.stack([along, np.zeros_like(along)], axis=1))
-
-
-def _floats(values: Array) -> Floats:
-    return values.astype(np.float32, order="C")
+        return floats(np.stack([along, np.zeros_like(along)], axis=1))

@@ -21,6 +21,7 @@ from app.picture.shown import (
     Floats,
     Look,
     MeshField,
+    floats,
     instant_of,
     thinned,
 )
@@ -82,22 +83,22 @@ class Sampler:
         problem, law, loop = self._problem, self._law, self.loop
         bound = coefficient = None
         if law.opens:
-            coefficient = _floats(law.mean_by_point(law.tangential.friction)[self._rows])
+            coefficient = floats(law.mean_by_point(law.tangential.friction)[self._rows])
         else:
             whole = law.by_point(law.tangential.most)[self._rows]
-            bound = _floats(whole * problem.scales.force / self._lengths)
+            bound = floats(whole * problem.scales.force / self._lengths)
         load = loop.force if isinstance(loop.force, np.ndarray) else None
         return Stand(
             interface=self.interface,
             interfaces=tuple(problem.rubbing),
-            positions=_floats(law.positions[self._rows]),
-            instants=_floats(problem.instants[self._columns]),
-            cuts=_floats(law.positions[np.bincount(law.points) > 1]),
+            positions=floats(law.positions[self._rows]),
+            instants=floats(problem.instants[self._columns]),
+            cuts=floats(law.positions[np.bincount(law.points) > 1]),
             bound=bound,
             coefficient=coefficient,
             loop=Axes(loop.across, loop.up),
-            load=None if load is None else _floats(load[self._curve]),
-            all_instants=_floats(problem.instants[self._curve]),
+            load=None if load is None else floats(load[self._curve]),
+            all_instants=floats(problem.instants[self._curve]),
             closed_form=None,
             closed_form_end=None,
             portrait=self._geometry.portrait,
@@ -113,7 +114,7 @@ class Sampler:
             return replace(
                 stand,
                 closed_form=self._density(closed.friction_force),
-                closed_form_end=_floats(closed.end_displacement[self._curve]),
+                closed_form_end=floats(closed.end_displacement[self._curve]),
             )
         exact = broken_wire_of(self._settings)
         if exact is not None and self._wires is not None:
@@ -141,7 +142,7 @@ class Sampler:
         whole = iterate.displacement
         displacement, stress = self._mesh.fields(whole, column, look.stress)
         largest = max(float(whole.max()), -float(whole.min()))
-        return MeshField(_floats(displacement), _floats(stress), largest)
+        return MeshField(floats(displacement), floats(stress), largest)
 
     def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
         """Show what has moved at the chosen instant."""
@@ -168,15 +169,15 @@ class Sampler:
             friction=self._density(friction),
             pressure=None if pressure is None else self._density(pressure),
             status=np.ascontiguousarray(self._thin(status)),
-            end_displacement=_floats(self.loop.displacement(fields.displacement)[self._curve]),
-            load=None if isinstance(force, np.ndarray) else _floats(force(fields)[self._curve]),
+            end_displacement=floats(self.loop.displacement(fields.displacement)[self._curve]),
+            load=None if isinstance(force, np.ndarray) else floats(force(fields)[self._curve]),
         )
 
     def _thin(self, field: NDArray[Any]) -> NDArray[Any]:
         return field[np.ix_(self._rows, self._columns)]
 
     def _density(self, force: NDArray[np.float64]) -> Floats:
-        return _floats(self._thin(force) / self._lengths[:, None])
+        return floats(self._thin(force) / self._lengths[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,10 +222,6 @@ class Frame:
     def axial(self) -> Floats | None:
         """Forces in the wires of a strand, shape (n_wires, n_positions), N."""
         return self.sampler.axial(self.iterate, self.look)
-
-
-def _floats(values: NDArray[np.float64]) -> Floats:
-    return values.astype(np.float32, order="C")
 
 
 def _table(spectra: list[NDArray[np.float64]]) -> Floats:

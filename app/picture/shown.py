@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -179,6 +180,11 @@ class Look:
     views: tuple[str, ...] = ()
     complaint: str = ""
     readings: tuple[str, ...] = ()
+
+
+def floats(values: NDArray[Any]) -> Floats:
+    """Give numbers as they travel."""
+    return values.astype(np.float32, order="C")
 
 
 def instant_of(phase: float, count: int) -> int:

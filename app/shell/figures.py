@@ -181,7 +181,7 @@ def _add_colors(made: Plot, view: View) -> None:
         made.add_glyph(source, Image(dw="dw", dh="dh", color_mapper=mapper))
     if plot.scale:
         bar = ColorBar(
-            ticker=FixedTicker(ticks=[], name=f"{slug}.scale"),
+            ticker=BasicTicker(desired_num_ticks=4, min_interval=0 if plot.equal else 1),
             color_mapper=mapper,
             title=plot.scale,
             title_text_font=FONT,

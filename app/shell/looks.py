@@ -10,7 +10,6 @@ from app.components.panes import select
 from app.components.scrubber import Scrubber, scrubber
 from app.picture.shown import STRESSES
 from app.session.session import Session
-from app.views.scales import length_of
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6
@@ -96,7 +95,7 @@ class Looks:
 
     def _mark(self, place: float) -> None:
         """Mark a place along the bodies, m; one that is marked already is no more."""
-        marked, near = self._session.look.place, SAME * length_of(self._session.settings)
+        marked, near = self._session.look.place, SAME * self._session.settings.length
         is_marked = marked is not None and abs(marked - place) <= near
         self._session.watch(place=None if is_marked else place)
 

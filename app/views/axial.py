@@ -8,7 +8,7 @@ from app.picture.shown import Wires
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held, length_of, spanned
+from app.views.scales import Limits, decimal_scale, held, spanned
 from solver.scenes import kind_of
 from solver.settings import Settings
 
@@ -44,7 +44,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         width = 3.5 if number == wires.broken else 2.0
         curves.append(Curve(wires.positions, axial[place] / factor, _color(number, wires), width))
     return Drawing(
-        spanned(0.0, length_of(scene.run.settings)),
+        spanned(0.0, scene.run.settings.length),
         spanned(*(limit / factor for limit in limits), label=f"Axial force ({unit})"),
         curves,
         keys=_keys(wires, is_exact=wires.exact is not None),

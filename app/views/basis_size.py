@@ -31,7 +31,7 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
             upright([frame.iteration], y, color=VERMILION, width=1),
         ],
         image=Image(sizes.astype(np.float32), 0.5, 0.5, done, total),
-        colors=Colors(0, most, tuple(sorted({int(n) for n in np.linspace(0, most, 5).round()}))),
+        colors=Colors(0, most),
         keys=(Key(VERMILION, "line", "chosen"),),
     )
 

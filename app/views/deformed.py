@@ -39,7 +39,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing | None:
     outlines, ghosts = ghosts_of(scene, factor)
     return Drawing(
         bodies=QuadMesh(mesh.quads, moved, field.stress / np.float32(unit), _box(scene, reach)),
-        colors=Colors(low, high, (low, 0.5 * (low + high), high), name),
+        colors=Colors(low, high, name),
         keys=(
             Key(GREY, "bare", scene.look.stress),
             Key(GREY, "bare", f"displacement × {factor:g}"),

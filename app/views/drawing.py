@@ -164,11 +164,10 @@ class Axis:
 
 @dataclass(frozen=True)
 class Colors:
-    """Values at both ends of a colour map, the marks beside it, and their unit."""
+    """Values at both ends of a colour map, and their unit."""
 
     low: float
     high: float
-    ticks: tuple[float, ...]
     title: str | None = None
 
 

@@ -72,7 +72,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing:
             artist.box(acts, reach_of(scene), sizes_of(scene)),
             portrait.mesh.nodes[portrait.mesh.quads, 0].mean(axis=1),
         ),
-        colors=Colors(0, max(last, 1), ()),
+        colors=Colors(0, max(last, 1)),
         curves=[*strokes, *slips],
         words=words,
         contacts=artist.contacts(scene.run.stand.interfaces),

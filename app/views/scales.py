@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from app.views.drawing import Axis, Curve
-from solver.settings import Settings
 
 FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
 
@@ -90,11 +89,6 @@ def _rules(places: ArrayLike, axis: Axis, *, upright: bool, **style: Any) -> Cur
     one = np.repeat(np.asarray(places, dtype=np.float64), 3)
     other = np.tile([axis.low, axis.high, np.nan], len(one) // 3)
     return Curve(one, other, **style) if upright else Curve(other, one, **style)
-
-
-def length_of(settings: Settings) -> float:
-    """Give the length of a scene, m, which all axes along it show from end to end."""
-    return settings.length
 
 
 def spanned(low: float, high: float, **options: Any) -> Axis:

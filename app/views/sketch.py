@@ -53,11 +53,11 @@ def hatched(edge: Array, depth: float, behind: float = -1.0) -> Array:
     return np.concatenate([edge, BREAK, np.stack(strokes, axis=1).reshape(-1, 2)])
 
 
-def rollers(first: Array, last: Array, radius: float, count: int = 4) -> Array:
-    """Give circles along a line."""
+def rollers(first: Array, last: Array, radius: float) -> Array:
+    """Give four circles along a line."""
     angle = np.linspace(0.0, 2.0 * np.pi, 17)
     circle = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    centres = first + np.linspace(0.0, 1.0, count)[:, None] * (last - first)
+    centres = first + np.linspace(0.0, 1.0, 4)[:, None] * (last - first)
     return joined(centre + circle for centre in centres)
 
 

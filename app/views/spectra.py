@@ -44,13 +44,12 @@ def draw(scene: Scene, _kept: None) -> Drawing:
             Key(GREY, "cross", "its field"),
         )
     low, _ = decades([*scaled.ravel(), *more], FLOOR)
-    ticks = sorted({int(mark) for mark in np.linspace(1, total, min(total, 5)).round()})
     return Drawing(
         spanned(0.5, round_up(max(width, len(more))) + 0.5),
         in_decades(low, 2.0),
         curves,
         marks,
-        colors=Colors(1, max(total, 2), tuple(ticks)),
+        colors=Colors(1, max(total, 2)),
         keys=keys,
     )
 

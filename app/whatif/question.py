@@ -169,13 +169,13 @@ def askable(settings: Settings) -> dict[str, Quantity]:
     }
 
 
-def usual_span(definition: Parameter, name: str, count: int = VALUES) -> Span:
+def usual_span(definition: Parameter, name: str) -> Span:
     """Give the values that are proposed for a setting: what its slider shows, or all its names."""
     if not isinstance(definition, param.Number):
         return Span(name, spacing=LISTED, listed=",".join(names_of(definition)))
     low, high = shown_range(definition)
     is_log = about(definition).logarithmic and low > 0
-    return Span(name, f"{low:g}", f"{high:g}", str(count), DECADES if is_log else EVEN)
+    return Span(name, f"{low:g}", f"{high:g}", str(VALUES), DECADES if is_log else EVEN)
 
 
 def shown_range(definition: Parameter) -> tuple[float, float]:
@@ -225,11 +225,6 @@ def bathtub(settings: Settings) -> Question:
     return _over_k(settings, "acceleration")
 
 
-def bathtubs(settings: Settings) -> Question:
-    """Ask for the iterations over the search direction, for several numbers of substructures."""
-    return _over_k(settings, "substructures")
-
-
 def design_chart(settings: Settings) -> Question | None:
     """Ask for the energy dissipated over friction and load, where a number says the load."""
     definitions = offered(settings)
@@ -251,7 +246,7 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
     ),
     "The bathtub over substructures": (
         "Iterations over the factor on k, for several numbers of substructures.",
-        bathtubs,
+        lambda settings: _over_k(settings, "substructures"),
     ),
     "The design chart": ("Energy dissipated over friction and load.", design_chart),
 }

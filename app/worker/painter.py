@@ -104,7 +104,6 @@ def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
         found.update(_bodies(drawing.bodies))
     if drawing.colors is not None:
         found["colors"] = {"low": drawing.colors.low, "high": drawing.colors.high}
-        found["scale"] = {"ticks": list(drawing.colors.ticks)}
         if drawing.colors.title is not None:
             found["color-bar"] = {"title": drawing.colors.title}
     return {f"{view.slug}.{name}": attributes for name, attributes in found.items()}

@@ -8,15 +8,13 @@ from html import escape
 from typing import Literal, NamedTuple
 
 from app.picture.glossary import explained
-from app.picture.labels import FEW, changes_of, label_of
+from app.picture.labels import FEW, changes_of, in_titles, label_of
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import has_reference
 from app.views.drawing import Scene
-from solver.definitions import about
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost
-from solver.settings import Settings
 
 ENDINGS = {
     Ending.CONVERGED: "✓ converged",
@@ -100,18 +98,10 @@ def status_line(
     more += [start_line(run)] if run.is_warm else []
     if run.status is not None:
         advice = NOTHING_ACTS if run.stand.is_idle else run.status.advice
-        more.append(_in_titles(run.settings, escape(advice)))
+        more.append(in_titles(run.settings, escape(advice), "<i>{}</i>"))
     elif state == "paused":
         more.append(PAUSED)
     return explained(f"{line}<br>{' '.join(more)}" if more else line, COUNTED)
-
-
-def _in_titles(settings: Settings, advice: str) -> str:
-    """Call settings in an advice what the sidebar calls them (HTML)."""
-    for name, definition in settings.definitions().items():
-        if "_" in name:
-            advice = advice.replace(name, f"<i>{escape(about(definition).title)}</i>")
-    return advice
 
 
 def start_line(run: Recording) -> str:
