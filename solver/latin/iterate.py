@@ -236,8 +236,9 @@ class Iterate:
         moved, force = self.local_displacement, self.boundary_local_force
         slip = law.slip(moved, force)
         apart = np.abs(slip - law.slip(self.boundary_displacement, self.boundary_force))
+        far = np.abs(slip)
         if law.normal is not None:
             touches = law.by_point(force[law.normal.component.above]) > 0.0
-            slip, apart = slip[touches], apart[touches]
-        still = min(apart.max(initial=0.0), creep * np.abs(slip).max(initial=0.0))
-        return law.status(moved, force, float(still))
+            far, apart = far[touches], apart[touches]
+        still = min(apart.max(initial=0.0), creep * far.max(initial=0.0))
+        return law.status_of(slip, moved, force, float(still))

@@ -163,13 +163,18 @@ class Contact(Pairs):
         still
             Slip up to which a point counts as stuck, beside what is rounding, scaled.
         """
-        total = self.slip(displacement, force)
+        return self.status_of(self.slip(displacement, force), displacement, force, still)
+
+    def status_of(
+        self, slip: Array, displacement: Array, force: Array | None, still: float
+    ) -> NDArray[np.int8]:
+        """Give the contact status, as `status`, where the slip is known."""
         largest = max(np.abs(displacement[rows]).max(initial=0.0) for rows in self.tangent.sides)
         if self.normal is not None and force is not None:
             # A stuck contact moves by rounding alone; but a scaled structure's compliance is 1.
             largest = max(np.abs(displacement).max(), np.abs(force).max())
-        total[np.abs(total) <= max(NO_SLIP * largest, still)] = 0.0
-        found = np.sign(total).astype(np.int8)
+        found = np.sign(slip).astype(np.int8)
+        found[np.abs(slip) <= max(NO_SLIP * largest, still)] = 0
         if self.normal is not None and force is not None:
             found[self.by_point(force[self.normal.component.above]) <= 0.0] = OPEN
         return found

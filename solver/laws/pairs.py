@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -57,9 +58,17 @@ class Pairs(Interface):
 
     def by_point(self, values: Array) -> Array:
         """Add up values of the pairs, shape (n_pairs, ...), at every point, (n_points, ...)."""
+        once, again = self._first_pairs
         found = np.zeros((len(self.positions), *values.shape[1:]))
-        np.add.at(found, self.points, values)
+        found[self.points[once]] = values[once]
+        np.add.at(found, self.points[again], values[again])
         return found
+
+    @cached_property
+    def _first_pairs(self) -> tuple[Indices, Indices]:
+        """The first pair of every point, and those of points that have had one."""
+        _, once = np.unique(self.points, return_index=True)
+        return once, np.setdiff1d(np.arange(len(self.points)), once)
 
     def mean_by_point(self, values: Array) -> Array:
         """Give the mean of the pairs of every point, shape (n_points, ...)."""

@@ -50,7 +50,7 @@ class AssembledRods:
         found = self._least(self._movable * (force - self.band.product(given)), status, gone)
         if found is not None:
             found.increment[self._fixed] = moved
-            slip = (gone + np.abs(given))[self._fixed]
+            slip = gone[self._fixed] + np.abs(moved)
             found.pull[self._fixed] = self._bounds.at(slip, self._fixed) * np.sign(moved)
         return found
 

@@ -11,6 +11,7 @@ points pass the slip length within the instant is found by trial; their bound is
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.linalg import LinAlgError
@@ -41,7 +42,7 @@ class Bounds:
     last: Array
     length: Array
 
-    @property
+    @cached_property
     def stay(self) -> bool:
         """Whether slip changes nothing."""
         return bool(np.array_equal(self.first, self.last))
@@ -53,6 +54,8 @@ class Bounds:
 
     def at(self, gone: Array, some: Indices) -> Array:
         """Give the bounds of some after slip, both of shape (n,)."""
+        if self.stay:
+            return self.first[some]
         share = np.minimum(gone / self.length[some], 1.0)
         return np.asarray(self.first[some] + (self.last - self.first)[some] * share)
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.discrete.problem import Problem
+from solver.latin.local.slide import slide_of
 from solver.reference.choice import is_alone
 from solver.reference.contact import jumps_in
 
@@ -28,6 +29,8 @@ PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
 CALLS, OF_ITERATION = 1e-4, 5e-4
 """Seconds of a dense system, and of an iteration, that no size makes less (measured)."""
+SHIFT = 8e-6
+"""Seconds that an iteration takes an instant to shift a body that slides as a whole (measured)."""
 BAND, BAND_CALLS = 6e-8, 3e-5
 """Seconds a number of a system with a band matrix, and those that no size makes less (measured)."""
 
@@ -84,7 +87,8 @@ def costs_of(problem: Problem) -> Costs:
     products = sum(2.0 * len(part.rows) ** 2 for part in problem.substructures)
     products = min(products, 200.0 * problem.n_rows)
     passes = products / DENSE + PASSES * PASS * problem.n_rows
-    iteration = OF_ITERATION + problem.n_instants * passes
+    shift = 0.0 if slide_of(problem) is None else SHIFT
+    iteration = OF_ITERATION + problem.n_instants * (passes + shift)
     if is_alone(problem):
         return Costs(0.0, BAND_CALLS + BAND * n_jumps, iteration, problem.n_instants)
     for part in problem.substructures:
