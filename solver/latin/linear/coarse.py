@@ -143,23 +143,37 @@ def _local_basis(basis: sparse.csr_array, rows: Indices) -> tuple[Indices, Array
     """
     counts = np.diff(basis.indptr)[rows]
     own = np.flatnonzero(counts.any(axis=1))
-    whole = sparse.csr_array(basis[rows[own].ravel(order="F")].T)
+    stacked = sparse.csr_array(basis[rows[own].ravel(order="F")])
+    whole = sparse.csr_array(stacked.T)
     if counts.max() == 1:
         return own, np.eye(len(own)), whole
-    members = [basis[rows[own, member]].tocoo() for member in range(rows.shape[1])]
-    seen = []
-    for member in members:
-        # In the order in which the rows meet them, which the members share if anything.
-        column, at = np.unique(member.coords[1], return_index=True)
-        seen.append(column[np.argsort(member.coords[0][at], kind="stable")])
-    local = members[0].toarray()[:, seen[0]]
-    for member, column in zip(members, seen, strict=True):
-        if len(column) != len(seen[0]) or not np.array_equal(member.toarray()[:, column], local):
+    chosen, local = [], np.zeros((0, 0))
+    for first in range(0, stacked.shape[0], len(own)):
+        seen, found = _seen(stacked, slice(first, first + len(own)))
+        chosen.append(seen)
+        if first == 0:
+            local = found
+        elif not np.array_equal(found, local):
             return own, np.eye(len(own)), whole
-    chosen = np.concatenate(seen)
-    shape = (basis.shape[1], len(chosen))
-    ones = np.ones(len(chosen))
-    return own, local, sparse.csr_array((ones, (chosen, np.arange(len(chosen)))), shape=shape)
+    columns = np.concatenate(chosen)
+    shape = (basis.shape[1], len(columns))
+    ones = np.ones(len(columns))
+    return own, local, sparse.csr_array((ones, (columns, np.arange(len(columns)))), shape=shape)
+
+
+def _seen(basis: sparse.csr_array, rows: slice) -> tuple[Indices, Array]:
+    """Find the columns that some rows have entries in, shape (n,), and the basis there, dense.
+
+    In the order in which the rows meet them, which members of a group share if anything.
+    """
+    starts = basis.indptr[rows.start : rows.stop + 1]
+    some = slice(starts[0], starts[-1])
+    row = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    columns, first, place = np.unique(basis.indices[some], return_index=True, return_inverse=True)
+    order = np.argsort(row[first], kind="stable")
+    found = np.zeros((len(starts) - 1, len(columns)))
+    found[row, place] = basis.data[some]
+    return columns[order], found[:, order]
 
 
 def _diagonal(blocks: list[Array]) -> sparse.csr_array:

@@ -11,7 +11,6 @@ from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.laws import Contact
-from solver.reference.assembly import assembled_stiffness
 
 BoolArray = NDArray[np.bool_]
 
@@ -66,8 +65,11 @@ def _bodies(problem: Problem) -> Indices:
     """Give the number of the body that every degree of freedom belongs to, from 0 on."""
     if all(law.is_on_support for law in problem.rubbing.values()):
         return np.zeros(problem.n_dofs, dtype=np.intp)
-    links = sparse.csr_array(abs(assembled_stiffness(problem)) > 0.0)
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
+    parts, n_dofs = problem.substructures, problem.n_dofs
+    dofs = np.concatenate([part.dofs for part in parts])
+    number = n_dofs + np.repeat(np.arange(len(parts)), [len(part.dofs) for part in parts])
+    links = sparse.csr_array((np.ones(len(dofs)), (dofs, number)), shape=(n_dofs + len(parts),) * 2)
+    return np.asarray(connected_components(links, directed=False)[1][:n_dofs], dtype=np.intp)
 
 
 def _apart(problem: Problem, bodies: Indices) -> Array:
