@@ -44,7 +44,6 @@ LONGEST_FIRST = (
     "test_page_on_a_phone",
     "test_figures_command",
     "test_container_steps",
-    "test_page_scenes",
     "test_engine_reaches_the_reference",
     "test_page_shows_the_bases",
     "test_lessons_hold",

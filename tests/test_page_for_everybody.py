@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browser import Chrome, Server
-from pages import ENDLESS, Visit, card, comes_true, press, slider, status, visits
+from pages import Visit, card, comes_true, press, slider, status, visits
 from playwright.sync_api import Locator, Page, expect
 
 SERIOUS = ("serious", "critical")
@@ -18,11 +18,6 @@ EXCEPTIONS = {
     "aria-prohibited-attr": "its handle for the sidebar, and what its lists say when pointed at",
 }
 """Of Panel's components, which take no other attributes."""
-SEEN = """(name) => {
-  const range = Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)
-  return [range.start, range.end]
-}"""
-
 AT_REST = """() => {
   const roots = [document]
   for (const root of roots) {
@@ -150,41 +145,11 @@ def test_a_projector_has_one_row_without_controls_and_its_address_leads_back(
 
 
 def test_a_frame_of_a_course_page_has_plots_alone(open_page: Visit) -> None:
-    page = open_page("?view=embed&plots=Luck", width=800, height=500)
-    expect(page.get_by_text('plots = "Luck" is refused; allowed: Scene').first).to_be_visible()
-    expect(page.locator(".card")).to_have_count(3)
-    expect(status(page)).to_be_hidden()
-    expect(page.get_by_role("button", name="Run or pause")).to_be_hidden()
-    address = page.url.partition("?")[0]
-    page.goto(f"{address}?view=embed&plots=Convergence,Load path")
+    page = open_page("?view=embed&plots=Convergence,Load path", width=800, height=500)
     expect(page.get_by_role("figure", name="Load path")).to_be_visible()
     expect(page.locator(".card")).to_have_count(2)
-
-
-def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_goes_on(
-    open_page: Visit,
-) -> None:
-    page = open_page(f"?{ENDLESS}&pace=20")
-    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
-    plot = card(page, "Friction force")
-    plot.hover()
-    expect(page.get_by_text(re.compile(r"^[0-9.]+ m, .* kN/m$"))).to_be_visible()
-    all_seen = page.evaluate(SEEN, "friction-force.x")
-    page.keyboard.press("f")
-    box = plot.bounding_box()
-    assert box is not None
-    assert (box["x"], box["width"], box["height"]) == (0, 1280, 720)
-    page.mouse.move(640, 360)
-    page.mouse.wheel(0, -100)
-    comes_true(page, f"(all) => ({SEEN})('friction-force.x')[1] < all[1]", arg=all_seen)
-    zoomed = page.evaluate(SEEN, "friction-force.x")
-    shown = status(page).inner_text()
-    expect(status(page)).not_to_have_text(shown)
-    assert page.evaluate(SEEN, "friction-force.x") == zoomed
-    page.keyboard.press("0")
-    assert page.evaluate(SEEN, "friction-force.x") == all_seen
-    page.keyboard.press("Escape")
-    expect(page.locator(".card.alone")).to_have_count(0)
+    expect(status(page)).to_be_hidden()
+    expect(page.get_by_role("button", name="Run or pause")).to_be_hidden()
 
 
 def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_choice(

@@ -3,16 +3,47 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
-from pages import ENDLESS, Visit, bodies_drawn, iteration, open_report, slider, status
-from playwright.sync_api import expect
+import pytest
+from browser import Chrome, Server
+from pages import ENDLESS, bodies_drawn, card, choose, comes_true, iteration, slider, status, visits
+from playwright.sync_api import Page, expect
+
+from app.session.uploads import saved
+from solver.scenes import CATALOGUE
+
+FOREVER: dict[str, Any] = {"method": "paper", "max_iterations": 100_000, "tolerance": 1e-30}
+SCENES = [("Parallel wires", 18, 0), ("Block on an inclined", 8, 1)]
+"""Title, substructures, and whether there are bodies with stresses; each has several interfaces."""
+SEEN = """(name) => {
+  const range = Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)
+  return [range.start, range.end]
+}"""
+
+
+@pytest.fixture(scope="module")
+def page(server: Server, chrome: Chrome) -> Iterator[Page]:
+    """Give one page; every test begins with settings of its own."""
+    with visits(server, chrome) as visit:
+        opened = visit(f"?{ENDLESS}&pace=20")
+        expect(status(opened)).to_contain_text("running")
+        yield opened
+
+
+def take(page: Page, scene: str = "bar", **changes: Any) -> None:
+    """Have the page open a file of settings."""
+    text = saved(CATALOGUE[scene].settings.checked(changes), was_warm=False)
+    file = {"name": "settings.toml", "mimeType": "text/plain", "buffer": text.encode()}
+    page.locator("input[type=file]").set_input_files(file)
 
 
 def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_reset(
-    open_page: Visit,
+    page: Page,
 ) -> None:
-    page = open_page(f"?{ENDLESS}&pace=20")
+    take(page, **FOREVER)
     expect(status(page)).to_contain_text("running")
     expect(status(page)).to_contain_text("10 substructures, multiscale")
     expect(page.locator(".card")).to_have_count(8)
@@ -31,16 +62,18 @@ def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_rese
     expect(status(page)).to_contain_text("paused at iteration 2")
     page.get_by_role("button", name="Run or pause").click()
     expect(status(page)).to_contain_text("running")
-    page.get_by_role("checkbox", name="Singular values").click()
-    expect(page.locator(".card")).to_have_count(7)
+    for number in (7, 8):
+        page.get_by_role("checkbox", name="Singular values").click()
+        expect(page.locator(".card")).to_have_count(number)
 
 
 def test_a_run_that_has_converged_stays_beside_the_next_one_which_may_start_from_it(
-    open_page: Visit,
+    page: Page,
 ) -> None:
-    page = open_page("?finish=none")
+    take(page, finish="none")
     expect(status(page)).to_contain_text("✓ converged")
-    page.get_by_role("switch", name="Start from the run before").click()
+    warm = page.get_by_role("switch", name="Start from the run before")
+    warm.click()
     slider(page, "Peak load").press("ArrowRight")
     expect(status(page)).to_contain_text("Started from the run before:")
     expect(status(page)).to_contain_text("from coarser meshes")
@@ -49,22 +82,21 @@ def test_a_run_that_has_converged_stays_beside_the_next_one_which_may_start_from
     expect(status(page)).not_to_contain_text("Started from")
     slider(page, "Substructures").press("ArrowRight")
     expect(status(page)).to_contain_text("11 substructures")
+    warm.click()
 
 
-def test_an_address_carries_settings_and_load_points_are_edited_in_a_drawing_and_a_table(
-    open_page: Visit,
-) -> None:
-    page = open_page(f"?substructures=1&load=[[0,0],[0.5,600],[1,0]]&{ENDLESS}")
+def test_load_points_are_edited_in_a_drawing_and_a_table(page: Page) -> None:
+    take(page, substructures=1, load=[[0, 0], [0.5, 600], [1, 0]], **FOREVER)
     expect(status(page)).to_contain_text("one substructure")
     cells = page.locator("table input")
     expect(cells).to_have_count(6)
     expect(page.get_by_text("Multiscale (coarse problem)")).not_to_be_visible()
     expect(slider(page, "Seed")).not_to_be_visible()
     drawn = page.locator("svg.path").first
+    drawn.locator("circle").nth(1).hover()
     box = drawn.locator("circle").nth(1).bounding_box()
     assert box is not None
     x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
-    page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 30.0, y + 20.0, steps=4)
     page.mouse.up()
@@ -86,19 +118,8 @@ def test_an_address_carries_settings_and_load_points_are_edited_in_a_drawing_and
     assert 240.0 < float(cells.nth(3).input_value()) < 260.0
 
 
-def test_a_narrow_window_sees_the_run_first_and_has_all_tabs_in_reach(open_page: Visit) -> None:
-    page = open_page("?scene=block&method=paper&max_iterations=5", width=390, height=844)
-    bodies_drawn(page, "> 1000")
-    expect(page.get_by_text("Deformed bodies").first).to_be_visible()
-    expect(page.get_by_text("Friction coefficient").first).not_to_be_visible()
-    open_report(page, "Stability")
-    box = page.get_by_role("button", name="Study", exact=True).bounding_box()
-    assert box is not None
-    assert 0.0 <= box["x"] <= 390.0 - box["width"]
-
-
-def test_settings_are_saved_opened_and_brought_back(open_page: Visit, tmp_path: Path) -> None:
-    page = open_page(f"?substructures=5&{ENDLESS}")
+def test_settings_are_saved_opened_and_brought_back(page: Page, tmp_path: Path) -> None:
+    take(page, substructures=5, **FOREVER)
     expect(status(page)).to_contain_text("5 substructures")
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save", exact=True).click()
@@ -113,3 +134,67 @@ def test_settings_are_saved_opened_and_brought_back(open_page: Visit, tmp_path: 
     file.write_bytes(b"\xff\xfe\0")
     page.locator("input[type=file]").set_input_files(file)
     expect(page.get_by_text("The file is not text")).to_be_visible()
+
+
+def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_goes_on(
+    page: Page,
+) -> None:
+    take(page, substructures=6, **FOREVER)
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d\b.* 6 substructures"))
+    plot = card(page, "Friction force")
+    plot.hover()
+    expect(page.get_by_text(re.compile(r"^[0-9.]+ m, .* kN/m$"))).to_be_visible()
+    all_seen = page.evaluate(SEEN, "friction-force.x")
+    page.keyboard.press("f")
+    box = plot.bounding_box()
+    assert box is not None
+    assert (box["x"], box["width"], box["height"]) == (0, 1280, 720)
+    page.mouse.move(640, 360)
+    page.mouse.wheel(0, -100)
+    comes_true(page, f"(all) => ({SEEN})('friction-force.x')[1] < all[1]", arg=all_seen)
+    zoomed = page.evaluate(SEEN, "friction-force.x")
+    shown = status(page).inner_text()
+    expect(status(page)).not_to_have_text(shown)
+    assert page.evaluate(SEEN, "friction-force.x") == zoomed
+    page.keyboard.press("0")
+    assert page.evaluate(SEEN, "friction-force.x") == all_seen
+    page.keyboard.press("Escape")
+    expect(page.locator(".card.alone")).to_have_count(0)
+
+
+def test_scenes_are_chosen_and_keep_their_settings(page: Page) -> None:
+    take(page, substructures=5)
+    box = {
+        name: page.get_by_role("combobox", name=name) for name in ("Scene", "Interface", "Stress")
+    }
+    expect(status(page)).to_contain_text("5 substructures")
+    expect(slider(page, "Substructures")).to_be_visible()
+    for title, parts, bodies in SCENES:
+        choose(box["Scene"], title)
+        expect(status(page)).to_contain_text(f"{parts} substructures")
+        expect(status(page)).to_contain_text("friction force error")
+        expect(page.locator(".card")).to_have_count(9)
+        expect(page.get_by_text("Friction coefficient").first).to_be_visible()
+        expect(box["Interface"]).to_have_count(1)
+        expect(box["Stress"]).to_have_count(bodies)
+    choose(box["Scene"], "Clamped bar")
+    expect(status(page)).to_contain_text("5 substructures")
+    expect(page.locator(".figures")).not_to_contain_text("before")
+
+
+def test_bodies_are_drawn_in_the_browser_and_looked_at_otherwise(page: Page) -> None:
+    take(page, "layers", elements=16, method="paper", max_iterations=30)
+    field = page.get_by_role("textbox", name=re.compile("^Layers"))
+    field.fill("3")
+    field.press("Enter")
+    bodies_drawn(page, f"=== {3 * 16 * 2}")
+    expect(page.get_by_text("displacement ×").first).to_be_visible()
+    slider(page, "Magnification").fill("7")
+    expect(page.get_by_text("displacement × 100").first).to_be_visible()
+    choose(page.get_by_role("combobox", name="Stress"), "stress xx")
+    expect(page.locator(".title").filter(has_text="Deformed")).to_contain_text("xx")
+    interface = page.get_by_role("combobox", name="Interface")
+    choose(interface, "contact 2-3")
+    expect(interface).to_contain_text("contact 2-3")
+    slider(page, "Instant").fill("20")
+    expect(status(page)).to_contain_text(re.compile("iteration|after"))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 
-from pages import ENDLESS, Visit, card, choose, slider, status
+from pages import ENDLESS, Visit, at_rest, card, choose, slider, status
 from playwright.sync_api import Page, expect
+from test_the_scene_is_pictured_in_a_browser import MIDDLE
 
 VIEWS = ("PGD space modes", "PGD time functions", "PGD basis size")
 
@@ -53,3 +54,6 @@ def test_views_of_the_bases_come_and_go_and_are_of_the_substructure_and_iteratio
     slider(page, "Substructure").fill("3")
     expect(modes).to_contain_text("substructure 3")
     expect(status(page)).to_contain_text("showing iteration 7")
+    # Arrows end at its bodies: who does not drag them taps on these.
+    page.mouse.click(*at_rest(page, MIDDLE))
+    expect(slider(page, "Substructure")).to_have_value("2")

@@ -85,9 +85,9 @@ def test_a_term_in_the_plural_has_its_line_too() -> None:
 
 @pytest.fixture(scope="module")
 def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give a page whose run has ended."""
+    """Give a page whose run has ended, on a device with a mouse and a screen to touch."""
     with visits(server, chrome) as visit:
-        opened = visit("?elements=20&substructures=2&instants=11")
+        opened = visit("?elements=20&substructures=2&instants=11", has_touch=True)
         expect(status(opened)).to_contain_text("✓ converged")
         yield opened
 
@@ -110,9 +110,7 @@ def test_what_is_explained_follows_a_mouse_from_word_to_word(page: Page) -> None
     expect(note).to_be_hidden()
 
 
-def test_what_is_explained_follows_a_finger_from_word_to_word(open_page: Visit) -> None:
-    page = open_page("?elements=20&substructures=2&instants=11", has_touch=True)
-    expect(status(page)).to_contain_text("✓ converged")
+def test_what_is_explained_follows_a_finger_from_word_to_word(page: Page) -> None:
     note = page.get_by_role("tooltip")
     for word in words_in_sight(page):
         word.tap()
@@ -142,7 +140,7 @@ def test_all_words_are_in_a_list(page: Page) -> None:
 
 
 def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
-    page = open_page(f"?elements=20&substructures=2&instants=11&{ENDLESS}")
+    page = open_page(f"?elements=20&substructures=2&instants=11&{ENDLESS}&plots=Scene")
     expect(status(page)).to_contain_text("running")
     page.locator(".figures abbr", has_text="Run time").focus()
     before = iteration(page)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Chrome, Server
-from pages import Visit, at_rest, card, comes_true, status, visits
+from pages import Visit, at_rest, bodies_drawn, card, comes_true, open_report, press, status, visits
 from playwright.sync_api import Page, expect
 from processes import PATIENCE
 
@@ -122,17 +122,20 @@ def test_the_load_arrow_is_dragged_and_the_run_follows(page: Page) -> None:
     comes_true(page, f"() => {{{words}.includes('F = −{value / 1e3:.3g} kN')}}")
 
 
-def test_a_tap_on_the_picture_chooses_the_substructure(open_page: Visit) -> None:
-    page = open_page("?linear_stage=pgd&elements=20&substructures=4&pressure=0")
-    expect(status(page)).to_contain_text("✓ converged")
-    expect(card(page, "Scene").locator("canvas").first).to_be_visible()
-    page.mouse.click(*at_rest(page, MIDDLE))
-    expect(page.get_by_role("slider", name="Substructure", exact=True)).to_have_value("2")
-
-
-def test_no_word_of_a_picture_is_cut_in_front_of_a_class(open_page: Visit) -> None:
-    page = open_page("?scene=block&view=present")
-    expect(status(page)).to_contain_text("converged")
+def test_a_narrow_window_sees_the_run_first_with_all_tabs_and_no_word_is_cut_before_a_class(
+    open_page: Visit,
+) -> None:
+    page = open_page("?scene=block&method=paper&max_iterations=5", width=390, height=844)
+    bodies_drawn(page, "> 1000")
+    expect(page.get_by_text("Deformed bodies").first).to_be_visible()
+    expect(page.get_by_text("Friction coefficient").first).not_to_be_visible()
+    open_report(page, "Stability")
+    box = page.get_by_role("button", name="Study", exact=True).bounding_box()
+    assert box is not None
+    assert 0.0 <= box["x"] <= 390.0 - box["width"]
+    press(page, "Live")
+    page.set_viewport_size({"width": 1280, "height": 720})
+    page.locator("body").press("p")
     comes_true(
         page,
         f"() => {{{MODEL}"
