@@ -6,7 +6,9 @@ from itertools import islice
 
 import numpy as np
 
-from solver.latin import iterations
+from solver.latin import iterations, solve
+from solver.reference.distance import distance_to
+from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -30,6 +32,13 @@ def table(forces):
 def sample(chosen, number):
     """Give the iterate of some number."""
     return next(islice(iterations(discretise(chosen), method_of(chosen)), number - 1, None))
+
+
+def measured(settings):
+    """Solve without a clock, beside the reference."""
+    problem = discretise(settings)
+    distance = distance_to(incremental(problem), problem)
+    return solve(problem, method_of(settings), distance=distance, watch=False)
 
 
 def relative(found, expected):

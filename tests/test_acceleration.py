@@ -6,15 +6,14 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from bars import measured
 
-from solver.latin import Ending, iterations, solve
+from solver.latin import Ending, iterations
 from solver.latin.acceleration.mixing import Mixing
 from solver.latin.direction.rules import sliding_share
 from solver.latin.start.prolong import prolong
 from solver.laws.around import FRICTION_FACTOR
 from solver.loads import PRESETS
-from solver.reference.distance import distance_to
-from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
@@ -26,34 +25,24 @@ def options(**changes: object) -> BarSettings:
     return BarSettings.checked({"method": "paper", **FAST, **changes})
 
 
-def run(settings: BarSettings):
-    problem = discretise(settings)
-    return solve(
-        problem,
-        method_of(settings),
-        distance=distance_to(incremental(problem), problem),
-        watch=False,
-    )
-
-
 def within(solution, level: float) -> int:
     return next(entry.iteration for entry in solution.records if entry.error_force <= level)
 
 
 @pytest.mark.parametrize("load", PRESETS)
 def test_all_together_reach_one_percent_of_friction_force_early(load):
-    assert within(run(options(load=load, max_iterations=30)), 0.01) <= 30
+    assert within(measured(options(load=load, max_iterations=30)), 0.01) <= 30
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_and_so_on_random_paths(seed):
-    assert within(run(options(load="random", seed=seed, max_iterations=30)), 0.01) <= 30
+    assert within(measured(options(load="random", seed=seed, max_iterations=30)), 0.01) <= 30
 
 
 @pytest.mark.parametrize("load", ["sine", "decaying"])
 @pytest.mark.parametrize("peak", [300.0, 1200.0, 2400.0])
 def test_and_at_every_peak(load, peak):
-    assert within(run(options(load=load, peak=peak, max_iterations=30)), 0.01) <= 30
+    assert within(measured(options(load=load, peak=peak, max_iterations=30)), 0.01) <= 30
 
 
 @pytest.mark.parametrize(
@@ -63,13 +52,13 @@ def test_and_at_every_peak(load, peak):
 )
 def test_iterations_to_one_percent_hardly_depend_on(setting, sizes, most):
     early = {"tolerance": 1e-20, "max_iterations": 60}
-    found = [within(run(options(**early, **{setting: size})), 0.01) for size in sizes]
+    found = [within(measured(options(**early, **{setting: size})), 0.01) for size in sizes]
     assert max(found) <= most * min(found)
 
 
 @pytest.mark.parametrize("change", [{}, {"load": "random"}], ids=str)
 def test_the_limit_is_the_same(change):
-    solution = run(options(tolerance=1e-24, max_iterations=3000, **change))
+    solution = measured(options(tolerance=1e-24, max_iterations=3000, **change))
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-8
     assert solution.records[-1].error_displacement < 1e-8
@@ -95,7 +84,7 @@ def test_the_limit_is_the_same(change):
     ids=str,
 )
 def test_on_every_kind_of_input_it_ends_well(change):
-    solution = run(options(max_iterations=300, tolerance=1e-14, **change))
+    solution = measured(options(max_iterations=300, tolerance=1e-14, **change))
     assert solution.status.ending is not Ending.DIVERGED
     assert np.isfinite(solution.iterate.friction_force).all()
     if change.get("linear_stage") != "pgd":

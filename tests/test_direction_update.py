@@ -6,8 +6,9 @@ from itertools import groupby, islice, pairwise, takewhile
 
 import numpy as np
 import pytest
+from bars import measured
 
-from solver.latin import Ending, iterations, solve
+from solver.latin import Ending, iterations
 from solver.latin.direction import update
 from solver.latin.direction.update import CALM, TRIAL
 from solver.loads import PRESETS
@@ -22,16 +23,6 @@ FAST = {"search_direction": "auto", "acceleration": "anderson", "start": "nested
 
 def options(**changes: object) -> BarSettings:
     return BarSettings.checked({"method": "paper", "k_update": "status", **changes})
-
-
-def run(settings: BarSettings):
-    problem = discretise(settings)
-    return solve(
-        problem,
-        method_of(settings),
-        distance=distance_to(incremental(problem), problem),
-        watch=False,
-    )
 
 
 def sample(settings: BarSettings, number: int):
@@ -61,7 +52,7 @@ def test_it_makes_the_plain_iteration_shorter(substructures):
     "change", [{"load": "random"}, {"multiscale": False, "substructures": 3}], ids=str
 )
 def test_the_limit_is_the_same(change):
-    solution = run(options(**FAST, tolerance=1e-24, max_iterations=3000, **change))
+    solution = measured(options(**FAST, tolerance=1e-24, max_iterations=3000, **change))
     assert solution.iterate.course.phase == "updated"
     assert solution.status.ending is Ending.CONVERGED
     assert solution.records[-1].error_force < 1e-8

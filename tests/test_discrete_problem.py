@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import importlib
-from itertools import islice
 
 import numpy as np
 import pytest
+from bars import relative, sample
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
-from solver.latin import iterations
 from solver.latin.indicators import latin_indicator
 from solver.latin.linear.coarse import CoarseProblem
 from solver.latin.linear.full import FullLinearStage
@@ -27,15 +26,6 @@ coarse = importlib.import_module("solver.latin.linear.coarse")
 
 def options(**values):
     return BarSettings.checked({"method": "paper", "instants": 31, **values})
-
-
-def sample(chosen, number):
-    """Give the iterate of some number."""
-    return next(islice(iterations(discretise(chosen), method_of(chosen)), number - 1, None))
-
-
-def relative(found, expected):
-    return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
 @st.composite

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
-from test_random_settings import RANDOM, RUNS, WRONG, values_of
+from test_random_settings import RANDOM, RUNS, WRONG, with_others
 
 from solver.definitions import SettingError
 from solver.latin import Ending, solve
@@ -47,18 +47,7 @@ def values(draw, scene, power):
         chosen["max_iterations"] = draw(st.integers(1, 60))
     else:
         chosen |= {"tolerance": 10.0 ** draw(power), **TIGHT}
-    others = sorted(set(definitions) - chosen.keys())
-    some = set(draw(st.permutations(others))[: draw(st.integers(0, len(others)))])
-    for name in ("length", "duration"):
-        if name in some:
-            chosen[name] = draw(values_of(name, definitions[name], {}))
-    extents = {
-        "position": chosen.get("length", definitions["length"].default),
-        "time": chosen.get("duration", definitions["duration"].default),
-    }
-    for name in sorted(some - chosen.keys()):
-        chosen[name] = draw(values_of(name, definitions[name], extents))
-    return chosen
+    return with_others(draw, definitions, chosen)
 
 
 @pytest.mark.parametrize("scene", SIZES)

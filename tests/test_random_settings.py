@@ -102,6 +102,22 @@ def values_of(name, definition, extents):
     return numbers(low, high)
 
 
+def with_others(draw, definitions, chosen):
+    """Give what is chosen, and any values in their ranges for some of the other settings."""
+    others = sorted(set(definitions) - chosen.keys())
+    some = set(draw(st.permutations(others))[: draw(st.integers(0, len(others)))])
+    for name in ("length", "duration"):
+        if name in some:
+            chosen[name] = draw(values_of(name, definitions[name], {}))
+    extents = {
+        "position": chosen.get("length", definitions["length"].default),
+        "time": chosen.get("duration", definitions["duration"].default),
+    }
+    for name in sorted(some - chosen.keys()):
+        chosen[name] = draw(values_of(name, definitions[name], extents))
+    return chosen
+
+
 @st.composite
 def values(draw):
     """Any values in their ranges, for few or for most of the settings; the rest keep defaults."""
@@ -111,18 +127,7 @@ def values(draw):
     }
     chosen["substructures"] = draw(st.integers(1, chosen["elements"]))
     chosen |= draw(st.sampled_from(METHODS))
-    others = sorted(set(DEFINITIONS) - chosen.keys())
-    some = set(draw(st.permutations(others))[: draw(st.integers(0, len(others)))])
-    for name in ("length", "duration"):
-        if name in some:
-            chosen[name] = draw(values_of(name, DEFINITIONS[name], {}))
-    extents = {
-        "position": chosen.get("length", DEFINITIONS["length"].default),
-        "time": chosen.get("duration", DEFINITIONS["duration"].default),
-    }
-    for name in sorted(some - chosen.keys()):
-        chosen[name] = draw(values_of(name, DEFINITIONS[name], extents))
-    return chosen
+    return with_others(draw, DEFINITIONS, chosen)
 
 
 def run(chosen):

@@ -152,7 +152,8 @@ class Tab:
 
     def __init__(self, session: Session, question: Question | None = None) -> None:
         self.session, self.shown = session, list[Settings]()
-        self.tab = WhatIf(session, self.shown.append, question)
+        session.question = question
+        self.tab = WhatIf(session, self.shown.append)
 
     def open(self) -> None:
         self.tab.view.visible = True
@@ -173,7 +174,7 @@ def test_a_ready_question_is_asked_by_one_click_and_a_point_opens_its_run(
     session: Session,
 ) -> None:
     page = Tab(session)
-    assert page.tab.question is None
+    assert session.question is None
     page.open()
     assert session.asked.inquiry.plan is None
     page.tab.hear("span", {"place": 0, "span": {"count": "3"}})
@@ -196,7 +197,7 @@ def test_a_question_of_the_address_is_asked_when_somebody_looks(session: Session
     assert session.asked.inquiry.plan is None
     page.open()
     assert session.asked.inquiry.plan is not None
-    assert page.tab.question == question
+    assert session.question == question
     page.settle()
     page.open()
     assert not session.asked.inquiry.is_busy
@@ -215,7 +216,7 @@ def test_a_scene_that_knows_nothing_of_the_question_is_proposed_another(session:
     page.settle()
     session.choose_scene("incline")
     page.tab.refresh()
-    assert page.tab.question == bathtub(session.wanted)
+    assert session.question == bathtub(session.wanted)
     assert page.asker.progress["moved"]
 
 

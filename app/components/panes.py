@@ -23,6 +23,11 @@ def column(*parts: Any, role: str, **options: Any) -> pn.Column:
     return pn.Column(*parts, **{"margin": 0, **looks(role), **options})
 
 
+def row(*parts: Any, **options: Any) -> pn.FlexBox:
+    """Put parts beside each other, as many as there is room for."""
+    return pn.FlexBox(*parts, flex_wrap="wrap", sizing_mode="stretch_width", **options)
+
+
 def text(html: str = "", *, role: str, **options: Any) -> pn.pane.HTML:
     """Show words; pictures find them by their tag, if they have one."""
     return pn.pane.HTML(html, **{"margin": (2, 10), **looks(role), **options})

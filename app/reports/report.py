@@ -20,7 +20,7 @@ import panel_material_ui as pmui
 
 from app.charts.filling import drawn
 from app.charts.keys import legend
-from app.components.panes import button, column, select, text
+from app.components.panes import button, column, row, select, text
 from app.picture.glossary import explained
 from app.session.report_job import Found, ReportJob
 from solver.study.page import Section
@@ -108,14 +108,14 @@ class Report:
         self._progress, self._older = _words(role="progress"), _words(role="progress")
         self._heading, self._sheet = _words(), column(role="paper")
         self._past = select("Shown", [], self._put, width=260, visible=False)
-        self._files = _row(margin=(0, 6, 8, 6))
+        self._files = row(margin=(0, 6, 8, 6))
         self._start = button("Start", "play_arrow", self._on_start, color="primary")
         self._cancel = button("Cancel", "stop", self._on_cancel, variant="outlined")
         again = button("Do it again", "replay", self._on_start, variant="outlined")
-        self._again = _row(self._older, again, align_items="center", visible=False)
+        self._again = row(self._older, again, align_items="center", visible=False, margin=(0, 6))
         words = _words(f"<h2>{escape(self.title)}</h2><p>{escape(self.words)}</p>")
         bar = self._start, self._cancel, *self._choices(), self._past
-        asked = words, _row(*bar, align_items="center"), self._progress
+        asked = words, row(*bar, align_items="center", margin=(0, 6)), self._progress
         parts = self._again, self._heading, self._sheet, self._files
         self._card = column(*parts, role="card paper", visible=False)
         return [column(*asked, role="card paper", margin=(0, 0, 12, 0)), self._card]
@@ -184,13 +184,6 @@ class Report:
 
 def _words(html: str = "", role: str = "report") -> pn.pane.HTML:
     return text(html, role=role, margin=(6, 14))
-
-
-def _row(*parts: Any, margin: Any = (0, 6), **options: Any) -> pn.FlexBox:
-    """Put parts beside each other, as many as there is room for."""
-    return pn.FlexBox(
-        *parts, flex_wrap="wrap", sizing_mode="stretch_width", margin=margin, **options
-    )
 
 
 def downloads(files: Mapping[str, bytes]) -> list[Any]:

@@ -35,7 +35,7 @@ NAMES: set[str] = set()
 """Of the pages that are open."""
 FULL = (
     "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
-    "This page tries again by itself.</p>"
+    "This page tries again by itself.</p><meta http-equiv=refresh content=20>"
 )
 NO_CLASS = (
     "<h2>There is no class {}</h2><p>It has ended, or a letter is wrong: ask for its code.</p>"
@@ -43,15 +43,13 @@ NO_CLASS = (
     "autocomplete=off autocapitalize=characters autofocus></label> <button>Follow</button></form>"
     "<p><a href='?'>Go on by myself</a></p>"
 )
-TRY_AGAIN = 20
-"""Seconds after which a page that found the server full asks again."""
 
 
 def open_page() -> Page:
     """Make the page of one session; its run starts when the browser is there."""
     _configure()
     if PAGES.is_full:
-        return _full()
+        return _said(FULL, "full")
     document = pn.state.curdoc
     assert document is not None
     query = pn.state.location.search if pn.state.location else ""
@@ -69,12 +67,12 @@ def open_page() -> Page:
     else:
         session.twin = twin
     session.set_pace(PACES[sight.pace])
-    session.watch(phase=sight.instant)
+    complaint = " ".join(filter(None, (complaint, more, refused)))
+    session.watch(phase=sight.instant, complaint=complaint)
+    session.question = question_from_query(query)
     dashboard = Dashboard(
         session,
-        complaint=" ".join(filter(None, (complaint, more, refused))),
         sight=sight,
-        question=question_from_query(query),
         on_phone=is_phone(pn.state.headers),
     )
     NAMES.add(dashboard.pulse.page)
@@ -113,12 +111,6 @@ def _end(dashboard: Dashboard, document: Document, _context: Any) -> None:
     NAMES.discard(dashboard.pulse.page)
     forget(document)
     pn.state.log(f"page closed, {len(PAGES)} left")
-
-
-def _full() -> Page:
-    """Say that no page can be opened now, and try again."""
-    again = f'<meta http-equiv="refresh" content="{TRY_AGAIN}">'
-    return _said(FULL + again, "full")
 
 
 def _said(html: str, role: str) -> Page:

@@ -29,7 +29,6 @@ from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
 from app.teaching.teaching import Teaching, name_of
 from app.views.catalogue import fitting
-from app.whatif.question import Question
 from app.whatif.whatif import WhatIf
 from solver.settings import Settings
 
@@ -44,12 +43,8 @@ class Dashboard:
     ----------
     session
         What the page shows.
-    complaint
-        What was refused in the page's address; it is shown until a setting changes.
     sight
         What is looked at first; instant and pace are the session's.
-    question
-        Of the address, over ranges.
     on_phone
         Whether the run comes first, with the settings out of the way and the tabs above it.
 
@@ -63,15 +58,12 @@ class Dashboard:
         self,
         session: Session,
         *,
-        complaint: str = "",
         sight: Sight | None = None,
-        question: Question | None = None,
         on_phone: bool = False,
     ) -> None:
         self.session = session
         self._loaded = False
         self._sight = sight or Sight()
-        session.watch(complaint=complaint)
         session.worker.wake = partial(session.turns.soon, self.hear)
         self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
         self._notes, self._log = Notes(session), RunLog(session)
@@ -84,7 +76,7 @@ class Dashboard:
         self._teaching = Teaching(session, self._sidebar)
         self._saver = Saver(session)
         self._live = self._make_live()
-        self._tabs = Tabs(session, self._live, WhatIf(session, self._open_run, question))
+        self._tabs = Tabs(session, self._live, WhatIf(session, self._open_run))
         self._delivery = Delivery(
             session, self.pulse, self._gallery, lambda: self._tabs.shows_the_run
         )

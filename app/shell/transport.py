@@ -7,9 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import panel as pn
-
-from app.components.panes import button, select
+from app.components.panes import button, row, select
 from app.components.scrubber import scrubber
 from app.session.session import Session
 from app.session.state import PACES
@@ -45,25 +43,10 @@ class Transport:
         self._next = session.turns.timer(self.play_on)
         self._make_buttons()
         self._make_sliders()
-        self._sliders = pn.FlexBox(
-            self._iteration,
-            self._instant,
-            flex_wrap="wrap",
-            min_width=320,
-            sizing_mode="stretch_width",
-            styles={"flex": "1 1 320px"},
-        )
-        self.view = pn.FlexBox(
-            self._run,
-            self._step,
-            self._reset,
-            self._pace,
-            self._sliders,
-            align_items="center",
-            flex_wrap="wrap",
-            sizing_mode="stretch_width",
-            css_classes=["transport"],
-        )
+        styles = {"flex": "1 1 320px"}
+        self._sliders = row(self._iteration, self._instant, min_width=320, styles=styles)
+        parts = self._run, self._step, self._reset, self._pace, self._sliders
+        self.view = row(*parts, align_items="center", css_classes=["transport"])
         watch = session.param.watch
         watch(lambda *events: self._show(), ["facts", "running", "look"])
         watch(lambda event: self._arrange(), "wanted")

@@ -10,16 +10,10 @@ from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import Limits, decimal_scale, held, spanned
 from solver.scenes import kind_of
-from solver.settings import Settings
 
 SHARED = 1.5
 """Times the tension: what neighbours take over from a wire between two others."""
 WIRE_COLORS = (BLUE, ORANGE, PURPLE, SKY, GREY)
-
-
-def applies(settings: Settings) -> bool:
-    """Tell whether there are wires."""
-    return kind_of(settings) == "wires"
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
@@ -67,4 +61,9 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
     return (*keys, *((Key(GREEN, "band", "closed form"),) if is_exact else ()))
 
 
-VIEW = View("Force in the wires", Plot(POSITION, "Axial force (N)"), draw, applies)
+VIEW = View(
+    "Force in the wires",
+    Plot(POSITION, "Axial force (N)"),
+    draw,
+    lambda settings: kind_of(settings) == "wires",
+)

@@ -8,15 +8,9 @@ from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, across, decimal_scale, held, spanned, upright
-from solver.settings import Settings
 
 ROOM = 1.25
 """What is seen of forces, over their bound."""
-
-
-def applies(settings: Settings) -> bool:
-    """Plane bodies have no bound that is known beforehand, and tractions instead."""
-    return not is_plane(settings)
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
@@ -63,4 +57,10 @@ def _limits(scene: Scene, bound: float, kept: Limits | None) -> Limits:
     return held(kept, -largest, largest)
 
 
-VIEW = View("Friction force", Plot(POSITION, "Friction force (N/m)"), draw, applies)
+VIEW = View(
+    "Friction force",
+    Plot(POSITION, "Friction force (N/m)"),
+    draw,
+    # Plane bodies have no bound that is known beforehand, and tractions instead.
+    lambda settings: not is_plane(settings),
+)

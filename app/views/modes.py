@@ -21,20 +21,9 @@ from app.views.drawing import (
 )
 from app.views.legend import Key
 from app.views.scales import decimal_scale, spanned, upright
-from solver.settings import Settings
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
 UP = Axis(-1.12, 1.12)
-
-
-def applies_in_space(settings: Settings) -> bool:
-    """Only separated bases have modes, and only those of wires are curves."""
-    return settings.applies("pgd_modes") and not is_plane(settings)
-
-
-def applies_in_time(settings: Settings) -> bool:
-    """Only separated bases have time functions, and one instant makes no function."""
-    return settings.applies("pgd_modes") and has_instants(settings)
 
 
 def draw_space(scene: Scene, _kept: None) -> Drawing | None:
@@ -92,11 +81,12 @@ SPACE_MODES = View(
     "PGD space modes",
     Plot(POSITION, "Displacement / largest"),
     draw_space,
-    applies_in_space,
+    # Those of plane bodies are no curves.
+    lambda settings: settings.applies("pgd_modes") and not is_plane(settings),
 )
 TIME_FUNCTIONS = View(
     "PGD time functions",
     Plot("Time t (s)", "Value / largest"),
     draw_time,
-    applies_in_time,
+    lambda settings: settings.applies("pgd_modes") and has_instants(settings),
 )

@@ -70,11 +70,10 @@ class WhatIf:
     Parameters
     ----------
     session
-        Has the sweep made, beside its run.
+        Has the sweep made, beside its run. A question that it has already, of the address, is asked
+        as soon as somebody looks; without one, one is proposed then.
     show
         Opens the run of some settings on the live tab.
-    question
-        Of the address, which is asked as soon as somebody looks; None proposes one.
 
     Attributes
     ----------
@@ -82,25 +81,14 @@ class WhatIf:
         What stands on the page; it is empty until `open`.
     """
 
-    def __init__(
-        self,
-        session: Session,
-        show: Callable[[Settings], None],
-        question: Question | None = None,
-    ) -> None:
+    def __init__(self, session: Session, show: Callable[[Settings], None]) -> None:
         self._session, self._show = session, show
-        self._asked, self._question = question, question
+        self._waits = session.question is not None
         self._asker: Asker | None = None
         self._drawn: Plan | None = None
         self._filling = Filling(session.turns.soon, self.put_drawn)
-        session.question = question
         self._scene = session.wanted.scene
         self.view = column(role="paper what-if", margin=(4, 10), visible=False)
-
-    @property
-    def question(self) -> Question | None:
-        """What the fields say; None before anybody has looked."""
-        return self._question
 
     def open(self) -> None:
         """Show the fields; a question that came with the address is asked."""
@@ -108,9 +96,9 @@ class WhatIf:
         if is_first:
             self._asker = Asker(sizing_mode="stretch_width")
             self._asker.on_msg(lambda message: self.hear(**message.data))
-            self._question = self._question or bathtub(self._session.wanted)
-        if self._asked is not None:
-            self._asked = None
+            self._session.question = self._session.question or bathtub(self._session.wanted)
+        if self._waits:
+            self._waits = False
             self.start()
         self._refresh()
         if is_first:
@@ -143,25 +131,25 @@ class WhatIf:
 
     def start(self) -> None:
         """Ask what the fields say; what is refused stands beside them."""
-        settings, question = self._session.wanted, self._question
+        settings, question = self._session.wanted, self._session.question
         if question is not None and not question.refusals(settings):
             self._session.asked.inquiry.ask(question.plan(settings))
 
     def _on_span(self, place: int, span: dict[str, str]) -> None:
         """Follow the fields of a setting; a second one without a name is none."""
-        assert self._question is not None
-        spans = [*self._question.spans, NO_SECOND][:2]
-        spans[place] = changed_span(self._session.wanted, spans[place], span)
+        session = self._session
+        spans = [*session.question.spans, NO_SECOND][:2]
+        spans[place] = changed_span(session.wanted, spans[place], span)
         chosen = tuple(one for one in spans if one.name)
-        self._question = Question(chosen, self._question.of)
+        session.question = Question(chosen, session.question.of)
 
     def _on_quantity(self, name: str, at: str) -> None:
-        assert self._question is not None
-        self._question = Question(self._question.spans, changed_quantity(name, at))
+        spans = self._session.question.spans
+        self._session.question = Question(spans, changed_quantity(name, at))
 
     def _on_ready(self, title: str) -> None:
         _, make = READY[title]
-        self._question = make(self._session.wanted) or self._question
+        self._session.question = make(self._session.wanted) or self._session.question
         self.start()
 
     def _on_run(self, number: int) -> None:
@@ -182,7 +170,7 @@ class WhatIf:
             self._asker.file = [csv_of(inquiry.plan, rows), FILE, count]
 
     def _refresh(self) -> None:
-        if self._asker is None or self._question is None:
+        if self._asker is None:
             return
         inquiry, settings = self._session.asked.inquiry, self._session.wanted
         plan = inquiry.plan
@@ -194,17 +182,16 @@ class WhatIf:
                 self._label()
             chart = chart_of(plan, inquiry.rows)
             self._filling.show(chart, self._ghost(plan), stands(plan, chart, settings))
-        form, progress = form_of(self._question, settings), self._progress()
+        form, progress = form_of(self._session.question, settings), self._progress()
         self._asker.param.update(form=form, progress=progress)
-        self._session.question = self._question
 
     def _keep_to(self, settings: Settings) -> None:
         """Propose something else where another scene knows nothing of what is asked."""
-        assert self._question is not None
+        session = self._session
         if settings.scene != self._scene:
             self._scene = settings.scene
-            if not all(span.name in settings.definitions() for span in self._question.spans):
-                self._question = bathtub(settings)
+            if not all(one.name in settings.definitions() for one in session.question.spans):
+                session.question = bathtub(settings)
 
     def _ghost(self, plan: Plan) -> Chart | None:
         before = self._session.asked.inquiry.before

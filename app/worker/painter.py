@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -124,22 +124,19 @@ def _curves(drawing: Drawing) -> Attributes:
     return {
         "xs": [np.asarray(curve.x) for curve in curves],
         "ys": [np.asarray(curve.y) for curve in curves],
-        "color": [curve.color for curve in curves],
-        "width": [curve.width for curve in curves],
-        "alpha": [curve.alpha for curve in curves],
-        "dash": [curve.dash for curve in curves],
-        "name": [curve.name for curve in curves],
+        **_columns(curves, "color", "width", "alpha", "dash", "name"),
     }
 
 
+def _columns(marks: Sequence[Any], *names: str) -> Attributes:
+    return {name: [getattr(mark, name) for mark in marks] for name in names}
+
+
 def _words(drawing: Drawing) -> Attributes:
-    words = drawing.words
+    places = _columns(drawing.words, "x", "y")
     return {
-        "x": np.array([word.x for word in words], float),
-        "y": np.array([word.y for word in words], float),
-        "text": [word.text for word in words],
-        "across": [word.across for word in words],
-        "up": [word.up for word in words],
+        **{name: np.array(values, float) for name, values in places.items()},
+        **_columns(drawing.words, "text", "across", "up"),
     }
 
 
@@ -147,8 +144,7 @@ def _handles(drawing: Drawing) -> Attributes:
     handles = drawing.handles
     return {
         "ends": np.array([one.ends for one in handles], float).ravel(),
-        "setting": [one.setting for one in handles],
-        "value": [one.value for one in handles],
+        **_columns(handles, "setting", "value"),
         "rate": [float(f"{one.rate:.6g}") for one in handles],
     }
 
