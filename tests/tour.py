@@ -21,13 +21,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
 }
 """Of every scene, so small that hundreds of runs take seconds."""
-NEVER = {
-    "bar": set[str](),
-    "strand": set[str](),
-    "block": {"start"},
-    "layers": {"start"},
-    "incline": {"start"},
-}
+NEVER = {scene: {"start"} for scene in ("block", "layers", "incline")}
 """Settings of a scene that nothing makes apply."""
 HALVINGS = 8
 Reach = Callable[[Settings, str], list[Any]]
@@ -64,7 +58,7 @@ def small(scene: str) -> Settings:
 
 
 def never_apply(scene: str) -> set[str]:
-    return NEVER[scene]
+    return NEVER.get(scene, set())
 
 
 def has_choice(definition: Parameter) -> bool:

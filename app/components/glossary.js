@@ -15,17 +15,8 @@ function glossary(terms) {
   const written = (term) => term.textContent.toLowerCase()
   const line = (term) => lines.get(written(term)) ?? lines.get(written(term).replace(/s$/, ""))
   const said = (one) => (one.tagName === "ABBR" ? line(one) : one.title) ?? ""
-  const around = (one) => one ? [one, ...around(one.parentNode ?? one.host)] : []
   const among = (path) => path.find((one) => one.tagName === "ABBR") ?? null
-  const inside = (root, find) => {
-    const one = find(root)
-    return one?.shadowRoot ? inside(one.shadowRoot, find) ?? one : one
-  }
-  const active = () => inside(document, (root) => root.activeElement)
-  const beneath = () => inside(document, (root) => {
-    const one = root.elementFromPoint(...place)
-    return one === root.host ? null : one
-  })
+  const active = () => innermost(document, (root) => root.activeElement)
   const put = () => {
     const one = pointed ?? focused, text = one ? said(one) : ""
     if (text !== dismissed) { dismissed = "" }
@@ -40,7 +31,7 @@ function glossary(terms) {
   }
   // A picture that comes writes its words anew: pointer and focus go on to what stands there now.
   const renew = () => {
-    if (pointed && !pointed.isConnected) { pointed = among(around(beneath())) }
+    if (pointed && !pointed.isConnected) { pointed = among(around(beneath(...place))) }
     if (!focused || focused.isConnected) { return }
     const was = written(focused)
     focused = [...home.querySelectorAll("abbr")].find((one) => written(one) === was) ?? null

@@ -21,20 +21,14 @@ export function render({model}) {
   const button = make("button", {title: "Keys and words (?).", ariaLabel: "Keys and words",
     onclick: open}, "?")
   // Whoever has no mouse comes to the run without passing all settings.
-  const inside = (node, wanted) => {
-    for (const one of node.querySelectorAll("*")) {
-      const found = one.matches(wanted) ? one : one.shadowRoot && inside(one.shadowRoot, wanted)
-      if (found) { return found }
-    }
-    return null
-  }
   const skip = make("a", {href: "#", style: SKIP}, "Go to the run")
   skip.onfocus = () => { skip.style.top = "8px" }
   skip.onblur = () => { skip.style.top = "-99px" }
   skip.onclick = (event) => {
     event.preventDefault()
-    const row = inside(document, ".transport"), first = row && inside(row.shadowRoot ?? row, "button")
-    const run = first?.checkVisibility() ? first : inside(document, ".card")
+    const [row] = within(document, ".transport")
+    const [first] = row ? within(row.shadowRoot ?? row, "button") : []
+    const run = first?.checkVisibility() ? first : within(document, ".card")[0]
     run?.focus()
   }
   document.body.prepend(skip)

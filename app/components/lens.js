@@ -73,17 +73,7 @@ export function render({model}) {
       one.addEventListener("scroll", moved, {capture: true, passive: true})
     }
   }
-  const under = () => {
-    let one = document.elementFromPoint(pointer.clientX, pointer.clientY)
-    while (one?.shadowRoot?.elementFromPoint(pointer.clientX, pointer.clientY) ?? null) {
-      const inner = one.shadowRoot.elementFromPoint(pointer.clientX, pointer.clientY)
-      if (inner === one) { break }
-      one = inner
-    }
-    const path = []
-    for (; one; one = one.parentNode ?? one.host) { path.push(one) }
-    return path
-  }
+  const under = () => around(beneath(pointer.clientX, pointer.clientY))
   const moved = () => { if (pointer) { see_soon(under) } }
   const focus = (event) => {
     const path = event.composedPath()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from app.components.innards import Plain
+from app.components.panes import script
 
 STYLE = """
 div { position: fixed; z-index: 1310; display: flex; align-items: center; gap: 6px; }
@@ -21,5 +22,5 @@ button { width: 26px; height: 24px; padding: 0; cursor: pointer;
 class Lens(Plain):
     """Shows the values under the pointer, and a button on the card that one looks at."""
 
-    _esm = "lens.js"
+    _esm = script("components/within.js", "components/lens.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]

@@ -6,11 +6,9 @@ export function render({model, view}) {
     button.setAttribute("aria-expanded", is)
     view.el.nextElementSibling?.classList.toggle("unfolded", is)
   }
-  const found = (root) => [...root.querySelectorAll("*")].flatMap((one) =>
-    one.classList.contains(model.keeps) ? [one] : one.shadowRoot ? found(one.shadowRoot) : [])
   // The one that is looked at: the first of which more than half is below the header.
   const keep = () => {
-    const seen = found(document).find((one) => {
+    const seen = within(document, `.${model.keeps}`).find((one) => {
       const {top, bottom} = one.getBoundingClientRect()
       return top + bottom > 112
     })

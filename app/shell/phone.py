@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import param
 
 from app.components.innards import Plain
-from app.components.panes import column
+from app.components.panes import column, script
 from app.shell.tabs import Tabs
 
 ROOM = {"height": "100dvh", "& .main-content": {"paddingBottom": "50dvh"}}
@@ -37,7 +37,7 @@ class Fold(Plain):
     label = param.String()
     keeps = param.String()
 
-    _esm = "fold.js"
+    _esm = script("components/within.js", "shell/fold.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 
