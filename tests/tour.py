@@ -8,7 +8,7 @@ from typing import Any
 
 import param
 
-from app.components.form import item_of
+from app.controls.refusals import last_that_holds
 from solver.definitions import CurveParameter, Parameter, SettingError
 from solver.scenes import CATALOGUE, points_of
 from solver.settings import Settings
@@ -23,7 +23,6 @@ SIZES: dict[str, dict[str, Any]] = {
 """Of every scene, so small that hundreds of runs take seconds."""
 NEVER = {scene: {"start"} for scene in ("block", "layers", "incline")}
 """Settings of a scene that nothing makes apply."""
-HALVINGS = 8
 Reach = Callable[[Settings, str], list[Any]]
 
 
@@ -91,28 +90,6 @@ def one_end(settings: Settings, name: str) -> list[Any]:
     return [other if chosen == getattr(settings, name) else chosen]
 
 
-def farthest(settings: Settings, name: str, end: Any) -> Any:
-    """Give the value nearest to an end that is refused, as a slider has it, that is taken."""
-    near, far = getattr(settings, name), end
-    item = item_of(name, settings.definitions()[name])
-    assert item is not None
-    step = item["step"]
-
-    def shown(value: float) -> float:
-        if item["whole"]:
-            return round(value)
-        return float(f"{value:.4g}" if item["log"] else f"{round(value / step) * step:.12g}")
-
-    for _ in range(HALVINGS):
-        middle = shown(0.5 * (near + far))
-        try:
-            settings.with_change(name, middle)
-            near = middle
-        except SettingError:
-            far = middle
-    return near
-
-
 def tour(base: Settings, reach: Reach) -> Iterator[Move]:
     """Move every control that applies, or can be made to, through its reach and back.
 
@@ -128,7 +105,9 @@ def tour(base: Settings, reach: Reach) -> Iterator[Move]:
             for value in reach(there, name):
                 now = yield from _step(now, name, value)
                 if getattr(now, name) != value and isinstance(value, int | float):
-                    now = yield from _step(now, name, farthest(now, name, value))
+                    nearest = last_that_holds(now, name, value)
+                    if nearest is not None:
+                        now = yield from _step(now, name, nearest)
             yield from back(now, there)
         yield from back(there, base)
 

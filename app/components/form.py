@@ -72,13 +72,7 @@ class Form(Plain):
     shown = param.Dict(default={})
     file = param.List(default=[])
 
-    _esm = script(
-        "components/elements.js",
-        "components/values.js",
-        "components/points.js",
-        "components/controls.js",
-        "components/form.js",
-    )
+    _esm = script("elements.js", "values.js", "points.js", "controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

@@ -71,10 +71,5 @@ class Keys(Plain):
     hears = param.Boolean(default=False)
     presents = param.Boolean(default=False)
 
-    _esm = script(
-        "components/elements.js",
-        "components/within.js",
-        "components/glossary.js",
-        "components/keys.js",
-    )
+    _esm = script("elements.js", "within.js", "glossary.js", "keys.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]

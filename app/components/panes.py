@@ -50,8 +50,12 @@ def select(
 
 
 def script(*names: str) -> str:
-    """Give the program of a component, of these files of `app/` one after the other."""
-    return "\n".join((APP / name).read_text(encoding="utf-8") for name in names)
+    """Give the program of a component: these files one after the other.
+
+    Of a name without a folder the folder is that of the components.
+    """
+    files = (APP / name if "/" in name else APP / "components" / name for name in names)
+    return "\n".join(file.read_text(encoding="utf-8") for file in files)
 
 
 def page(sidebar: list[Any], header: Any, main: Any) -> Page:

@@ -35,9 +35,7 @@ def refused(refusal: SettingError, settings: Settings, moved: str = "", value: A
     if name not in definitions:
         return f"{written(refusal.value)}: {remedy}. Allowed: {refusal.allowed}."
     definition, title = definitions[name], about(definitions[name]).title
-    limits = refusal.allowed
-    limits = allowed_here(definition) if limits == allowed(definition) else limits
-    limits = in_titles(settings, limits)
+    limits = in_titles(settings, _limits(refusal, definition))
     if name == moved or moved not in definitions:
         return f"{title} cannot be {written(refusal.value)}: {remedy}. Allowed: {limits}."
     own = f"{about(definitions[moved]).title} cannot be {written(value)}"
@@ -54,10 +52,13 @@ def refused_by_name(refusal: RefusedError, settings: Settings) -> str:
     if kind is None:
         return str(refusal)
     definition = kind.definitions()[refusal.name]
-    limits = refusal.allowed
-    limits = allowed_here(definition) if limits == allowed(definition) else limits
     title, value = title_and_name(refusal.name, definition), written(refusal.value)
+    limits = _limits(refusal, definition)
     return f"{title} cannot be {value}: {refusal.remedy}. Allowed: {limits}."
+
+
+def _limits(refusal: RefusedError, definition: Parameter) -> str:
+    return allowed_here(definition) if refusal.allowed == allowed(definition) else refusal.allowed
 
 
 def title_and_name(name: str, definition: Parameter) -> str:

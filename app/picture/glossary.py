@@ -88,9 +88,3 @@ def explained(html: str, plain: tuple[str, ...] = ()) -> str:
     parts = _TEXT.split(html)
     parts[::2] = [_TERM.sub(marked, text) for text in parts[::2]]
     return "".join(parts)
-
-
-def line_of(term: str) -> str:
-    """Say what a term means, however it is spelt; empty for one that is none."""
-    known = {one.lower(): line for every, line in TERMS.items() for one in every}
-    return known.get(term.lower()) or known.get(term.lower().removesuffix("s"), "")

@@ -54,7 +54,7 @@ class Gallery(Plain):
     said = param.List(default=[])
     caption = param.String(default="")
 
-    _esm = script("components/values.js", "shell/handles.js", "shell/gallery.js")
+    _esm = script("values.js", "shell/handles.js", "shell/gallery.js")
 
     def offer(self, views: Sequence[View]) -> None:
         """Show these views and no others."""

@@ -37,7 +37,7 @@ class Fold(Plain):
     label = param.String()
     keeps = param.String()
 
-    _esm = script("components/within.js", "shell/fold.js")
+    _esm = script("within.js", "shell/fold.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

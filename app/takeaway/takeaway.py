@@ -50,12 +50,7 @@ class TakeAway(Plain):
     caption = param.String(default="")
     shot = param.Integer(default=0)
 
-    _esm = script(
-        "components/elements.js",
-        "takeaway/gif.js",
-        "components/exports.js",
-        "takeaway/takeaway.js",
-    )
+    _esm = script("elements.js", "takeaway/gif.js", "exports.js", "takeaway/takeaway.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

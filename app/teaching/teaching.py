@@ -100,13 +100,7 @@ class LessonPane(Plain):
     is_strip = param.Boolean(default=False)
     recalls = param.Boolean(default=False)
 
-    _esm = script(
-        "components/elements.js",
-        "components/values.js",
-        "components/points.js",
-        "components/controls.js",
-        "teaching/lesson.js",
-    )
+    _esm = script("elements.js", "values.js", "points.js", "controls.js", "teaching/lesson.js")
     _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
 
 

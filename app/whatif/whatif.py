@@ -58,9 +58,7 @@ class Asker(Plain):
     chart = param.Dict(default={})
     file = param.List(default=[])
 
-    _esm = script(
-        "components/elements.js", "components/exports.js", "whatif/chart.js", "whatif/whatif.js"
-    )
+    _esm = script("elements.js", "exports.js", "whatif/chart.js", "whatif/whatif.js")
     _stylesheets: ClassVar[list[str]] = [(STATIC / "whatif.css").read_text(encoding="utf-8")]
 
 
