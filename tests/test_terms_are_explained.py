@@ -16,7 +16,7 @@ from shown_pages import SMALL, Shown, keys
 
 from app.picture.glossary import TERMS, explained
 from app.views.catalogue import fitting
-from app.worker.words import HEADS
+from app.worker.words import FIGURES
 from solver.scenes.bar import BarSettings
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -64,7 +64,7 @@ def line_of(term: str) -> str:
 
 
 def test_every_key_figure_has_a_line() -> None:
-    assert all(line_of(head) for head in HEADS)
+    assert all(line_of(head) for head in FIGURES)
 
 
 def test_every_term_stands_on_the_page() -> None:

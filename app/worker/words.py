@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from typing import Literal, NamedTuple
 
@@ -35,16 +35,7 @@ PAUSED = "Run goes on, Step does one iteration."
 NONE_YET = "no iteration done by then"
 REPLAYED = "The run had ended, and begins anew."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
-HEADS = (
-    "Iteration",
-    "LATIN indicator η",
-    "k-free indicator",
-    "Estimated force error",
-    "Displacement error",
-    "Friction force error",
-    "Run time",
-    "Iterations to 1 %",
-)
+UNKNOWN = "–"
 ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
 CHIEF, ESTIMATE = "Friction force error", "Estimated force error"
 """What is left where all is folded to a line, with a reference and without one."""
@@ -129,13 +120,9 @@ def key_figures(scene: Scene) -> str:
     elif before is not None:
         name = f"run before ({escape(before.title)})"
         rows.append(_Row(name, _cells(before, before.iteration)))
-    shown = [
-        place
-        for place, text in enumerate(HEADS)
-        if has_reference(run.settings) or text not in ERRORS
-    ]
-    chief = CHIEF if CHIEF in (HEADS[place] for place in shown) else ESTIMATE
-    head = "".join(f"<th{_mark(place, chief)}>{explained(HEADS[place])}</th>" for place in shown)
+    shown = [name for name in FIGURES if has_reference(run.settings) or name not in ERRORS]
+    chief = CHIEF if CHIEF in shown else ESTIMATE
+    head = "".join(f"<th{_mark(name, chief)}>{explained(name)}</th>" for name in shown)
     body = "".join(
         f'<tr><th title="{row.whole or row.name}" aria-label="{row.whole or row.name}">{row.name}'
         f"</th>{_row(row.cells, shown, chief)}</tr>"
@@ -144,21 +131,21 @@ def key_figures(scene: Scene) -> str:
     return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def _row(cells: Sequence[str], shown: Sequence[int], chief: str) -> str:
+def _row(cells: Mapping[str, str], shown: Sequence[str], chief: str) -> str:
     if not cells:
         return f'<td class="chief" colspan="{len(shown)}">{NONE_YET}</td>'
-    return "".join(f"<td{_mark(place, chief)}>{cells[place]}</td>" for place in shown)
+    return "".join(f"<td{_mark(name, chief)}>{cells[name]}</td>" for name in shown)
 
 
-def _mark(place: int, chief: str) -> str:
-    return ' class="chief"' if HEADS[place] == chief else ""
+def _mark(name: str, chief: str) -> str:
+    return ' class="chief"' if name == chief else ""
 
 
 class _Row(NamedTuple):
     """A run's name (HTML) and figures; its whole name, where that is longer than there is room."""
 
     name: str
-    cells: Sequence[str]
+    cells: Mapping[str, str]
     whole: str = ""
 
 
@@ -190,24 +177,12 @@ def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> _Row:
         name, slower, done = "B at A's run time", run, run.last_within(last["seconds"])
     else:
         name, slower, done = "A at B's run time", twin, twin.last_within(now["seconds"])
-    return _Row(name, _cells(slower, done) if done else ())
+    return _Row(name, _cells(slower, done) if done else {})
 
 
-def _cells(run: Recording, iteration: int) -> Sequence[str]:
+def _cells(run: Recording, iteration: int) -> dict[str, str]:
     found = run.figures_of(iteration)
-    if found is None:
-        return ("–",) * len(HEADS)
-    within = run.first_within(0.01)
-    return (
-        str(iteration),
-        number(found["indicator"]),
-        number(found["behaviour"]),
-        percent(found["estimated_error"]),
-        percent(found["error_displacement"]),
-        percent(found["error_force"]),
-        f"{1e3 * found['seconds']:.1f} ms",
-        str(within) if within else "–",
-    )
+    return {name: write(found, run) if found else UNKNOWN for name, write in FIGURES.items()}
 
 
 def per_iteration(run: Recording) -> float:
@@ -221,7 +196,7 @@ def per_iteration(run: Recording) -> float:
 def number(value: float) -> str:
     """Write a positive number over many decades."""
     if not math.isfinite(value):
-        return "–"
+        return UNKNOWN
     if value == 0.0:
         return "0"
     if 1e-3 <= value < 1e3:
@@ -233,7 +208,20 @@ def number(value: float) -> str:
 def percent(value: float) -> str:
     """Write a relative error."""
     if not math.isfinite(value):
-        return "–"
+        return UNKNOWN
     if value >= 1.0:
         return f"{100.0 * value:.0f} %" if value < 100.0 else f"{number(100.0 * value)} %"
     return f"{100.0 * value:.2g} %" if value >= 1e-4 else f"{number(100.0 * value)} %"
+
+
+FIGURES: dict[str, Callable[[Mapping[str, float], Recording], str]] = {
+    "Iteration": lambda now, run: f"{now['iteration']:.0f}",
+    "LATIN indicator η": lambda now, run: number(now["indicator"]),
+    "k-free indicator": lambda now, run: number(now["behaviour"]),
+    ESTIMATE: lambda now, run: percent(now["estimated_error"]),
+    "Displacement error": lambda now, run: percent(now["error_displacement"]),
+    CHIEF: lambda now, run: percent(now["error_force"]),
+    "Run time": lambda now, run: f"{1e3 * now['seconds']:.1f} ms",
+    "Iterations to 1 %": lambda now, run: str(run.first_within(0.01) or UNKNOWN),
+}
+"""What is told of an iteration of a run."""
