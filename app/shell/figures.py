@@ -19,6 +19,7 @@ from bokeh.models import (
     LogAxis,
     LogScale,
     MultiLine,
+    NoOverlap,
     Plot,
     Range1d,
     Scatter,
@@ -127,7 +128,7 @@ def _axis(name: str, label: str, view: View) -> Axis:
     }
     if name in look.logarithmic:
         style["ticker"] = FixedTicker(ticks=[], name=f"{view.slug}.{name}-ticks")
-        return LogAxis(**style)
+        return LogAxis(major_label_policy=NoOverlap(), **style)
     # Labels are half of what a browser paints.
     least = 1 if name in look.whole else 0
     return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
@@ -182,6 +183,7 @@ def _add_colors(made: Plot, view: View) -> None:
     if plot.scale:
         bar = ColorBar(
             ticker=BasicTicker(desired_num_ticks=4, min_interval=0 if plot.equal else 1),
+            major_label_policy=NoOverlap(),
             color_mapper=mapper,
             title=plot.scale,
             title_text_font=FONT,
