@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import csv
+import pickle
 import re
-from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
-from report_jobs import until_idle
 
 from app.picture.glossary import explained
 from app.reports.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
-from app.session.report_executor import ReportExecutor
-from app.session.report_folder import ReportFolder, files
+from app.session.report_folder import SECTIONS, ReportFolder, files, said
 from app.session.report_job import Found, ReportJob
 from app.session.session import Session
 from app.session.studies import stability_of, study_of
@@ -27,21 +25,18 @@ from solver.study.audit.cases import Case
 from solver.study.audit.stability import stability_report
 from solver.study.page import PlotSection
 
-TINY = {"elements": 8, "substructures": 2, "instants": 5}
+TINY = {"elements": 4, "substructures": 2, "instants": 5}
 
 
-def test_a_study_gives_the_files_of_the_command_line(executor: ReportExecutor) -> None:
-    job = ReportJob(executor)
-    job.ask("tiny", partial(study_of, "bar", TINY, 1, False))
-    until_idle(job)
-    assert job.last is not None, job.notice
-    found = job.last.files
+def test_a_study_gives_the_files_of_the_command_line(tmp_path: Path) -> None:
+    study_of("bar", TINY, 1, False, tmp_path)
+    found, sections = files(tmp_path), pickle.loads(said(tmp_path, SECTIONS))
     assert set(found) == {"curves.csv", "levels.csv", "study.html"}
     rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
     assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
-    assert sum(isinstance(section, PlotSection) for section in job.last.sections) == 1
+    assert sum(isinstance(section, PlotSection) for section in sections) == 1
     page = found["study.html"].decode()
-    for section in job.last.sections:
+    for section in sections:
         assert isinstance(section, PlotSection) or section in page
     assert "Scene: bar (" in page
     assert all(f"{name} = {value}" in page for name, value in TINY.items())

@@ -16,6 +16,7 @@ from sweeps import TINY, Here, rows_of, tiny
 from solver import sweep_command
 from solver.cli import main
 from solver.study.chart import Chart, Map, Panel, PanelCurve
+from solver.study.page import write_page
 from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of, charts, ordered
 from solver.study.sweep.point import Row
@@ -25,7 +26,8 @@ SMALL = [part for name, value in TINY.items() for part in ("--set", f"{name}={va
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
-    """Run sweeps of the command in this process."""
+    """Run sweeps of the command in this process, and draw no page."""
+    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
     pool = Here()
 
     class Opened:
@@ -66,7 +68,8 @@ def test_the_table_holds_what_varies_what_is_asked_and_what_is_fixed(
 
 
 @pytest.mark.usefixtures("here")
-def test_the_page_needs_nothing_beside_it(tmp_path: Path) -> None:
+def test_the_page_needs_nothing_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sweep_command, "write_page", write_page)
     assert command(tmp_path, "--vary", "friction=0.2,0.3,0.4") == 0
     page = (tmp_path / "sweep.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 2
@@ -195,8 +198,6 @@ def test_parquet_is_written_where_it_can_be(
     arrow, parquet = ModuleType("pyarrow"), ModuleType("pyarrow.parquet")
     arrow.__dict__.update(table=Table, parquet=parquet)
     parquet.__dict__.update(write_table=lambda table, file: written.update({file: table}))
-    # What draws charts would take it for the real one.
-    monkeypatch.setattr(sweep_command, "write_page", lambda *given: "")
     monkeypatch.setitem(sys.modules, "pyarrow", arrow)
     monkeypatch.setitem(sys.modules, "pyarrow.parquet", parquet)
     assert command(tmp_path) == 0
