@@ -111,6 +111,7 @@ def test_a_sweep_waits_for_workers_and_a_scheduler_that_is_gone_is_told(
     journal = tmp_path / "out" / "sweep.jsonl"
     asked = [sys.executable, "-m", "solver", "sweep", "bar", "--vary", "peak=300:900:2000"]
     asked += ["--of", "iterations", "--on", doomed.on, "--out", str(journal.parent)]
+    asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
     try:
         with opened(doomed.on) as pool:
             running = sweep(tiny(["peak=300,900"], ["iterations"]), pool)

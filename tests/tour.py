@@ -16,7 +16,7 @@ from solver.settings import Settings
 SIZES: dict[str, dict[str, Any]] = {
     "bar": {"elements": 12, "instants": 11, "substructures": 4},
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
-    "block": {"elements": 12, "elements_up": 4, "instants": 11},
+    "block": {"elements": 8, "elements_up": 3, "instants": 6},
     "layers": {"elements": 12, "instants": 11, "layers": 2, "substructures": 2},
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
 }
