@@ -9,6 +9,7 @@ import signal
 import time
 import urllib.request
 from pathlib import Path
+from typing import Any
 
 from browser import Server
 from processes import wait_for
@@ -33,9 +34,15 @@ def share(server: Server, seconds: float = 2.0) -> float:
     return (taken() - before) / (time.monotonic() - began)
 
 
-def pages(server: Server) -> int:
+def told(server: Server) -> dict[str, Any]:
+    """Give what a server says of itself."""
     with urllib.request.urlopen(server.health) as answer:
-        return int(json.load(answer)["pages"])
+        found: dict[str, Any] = json.load(answer)
+    return found
+
+
+def pages(server: Server) -> int:
+    return int(told(server)["pages"])
 
 
 def end_with_pages(server: Server, number: signal.Signals) -> None:
@@ -60,7 +67,7 @@ def end_with_pages(server: Server, number: signal.Signals) -> None:
         assert word not in server.log[said_before:], server.log
 
 
-def test_a_page_at_rest_takes_next_to_nothing_and_one_asked_for_or_closed_nothing(
+def test_a_page_at_rest_is_told_of_and_takes_next_to_nothing_and_one_asked_for_or_closed_nothing(
     tmp_path: Path,
 ) -> None:
     """The first page of a server, without a browser: what is done once only, is done for it."""
@@ -72,6 +79,10 @@ def test_a_page_at_rest_takes_next_to_nothing_and_one_asked_for_or_closed_nothin
         await until(lambda: page.times)
         await asyncio.to_thread(until_at_rest, page)
         assert await asyncio.to_thread(share, server) < AT_REST
+        facts = await asyncio.to_thread(told, server)
+        assert facts["/liveness"] is True
+        assert facts["pages"] == facts["workers"] == 1
+        assert facts["lateness"]["most"] >= facts["lateness"]["95%"] >= 0.0
         page.close()
         await life
 

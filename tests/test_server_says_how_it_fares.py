@@ -5,21 +5,16 @@ from __future__ import annotations
 import asyncio
 import gc
 import inspect
-import json
 import logging
-import urllib.request
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from bokeh.document import Document
 from bokeh.server.views import ws
-from browser import Server
 from lone_link import LoneLink
-from pages import Visit, status
 from panel.io import document as panel_document
 from panel.io.state import set_curdoc
-from playwright.sync_api import expect
 from tornado.websocket import WebSocketClosedError
 from web_pages import run_apart
 
@@ -64,16 +59,6 @@ def test_the_loop_is_watched(monkeypatch: pytest.MonkeyPatch) -> None:
 
     run_apart(watch())
     assert min(noted) >= 0.0
-
-
-def test_liveness_tells_pages_workers_and_lateness(server: Server, open_page: Visit) -> None:
-    page = open_page()
-    expect(status(page)).to_contain_text("iteration")
-    with urllib.request.urlopen(server.health) as answer:
-        told = json.load(answer)
-    assert told["/liveness"] is True
-    assert told["pages"] >= told["workers"] >= 1
-    assert told["lateness"]["most"] >= told["lateness"]["95%"] >= 0.0
 
 
 def test_nothing_is_said_of_what_a_closed_socket_did_not_take(
