@@ -38,6 +38,13 @@ FLAGS = [
 ]
 
 
+def free_port() -> int:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        number: int = free.getsockname()[1]
+    return number
+
+
 def chromium() -> str:
     """Find the system's Chromium."""
     for name in ("chromium", "chromium-browser", "google-chrome"):
@@ -101,9 +108,7 @@ class Server:
         serves: Sequence[str] = (),
         place: Path = ROOT,
     ) -> None:
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = port or free.getsockname()[1]
+        port = port or free_port()
         self.port = port
         self.address = f"http://localhost:{port}/app"
         self.health = f"http://localhost:{port}/liveness"

@@ -11,11 +11,12 @@ from contextlib import ExitStack, closing
 
 import hypothesis.internal.conjecture.providers as draws
 import pytest
-from browser import Chrome, Server
+from browser import Chrome, Server, free_port
 from hypothesis.internal.constants_ast import Constants
 from pages import Visit, visits
 from playwright.sync_api import expect, sync_playwright
 from processes import PATIENCE
+from proxy import Proxy
 from worker_line import Line
 
 from app.session.report_executor import ReportExecutor
@@ -81,9 +82,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    # Pages also come to it by proxies of the tests.
-    made = Server(tmp_path_factory.mktemp("server") / "log", 0, "--allow-websocket-origin", "*")
+def proxy() -> Iterator[Proxy]:
+    """Give a network by which a page may come to the server too."""
+    with closing(Proxy()) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[Server]:
+    port = free_port()
+    origins = [f"--allow-websocket-origin=localhost:{one}" for one in (port, proxy.port)]
+    made = Server(tmp_path_factory.mktemp("server") / "log", port, *origins)
     made.wait()
     yield made
     made.stop()

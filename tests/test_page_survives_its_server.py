@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import signal
 from collections.abc import Iterator
-from contextlib import ExitStack, closing
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -22,8 +22,8 @@ SMALL = "scene=strand&wires=5&elements=12&instants=11&plots=Scene"
 class Network:
     """A page, and its server behind a network that can be cut."""
 
-    def __init__(self, folder: Path, chrome: Chrome, ends: ExitStack) -> None:
-        self.proxy = ends.enter_context(closing(Proxy()))
+    def __init__(self, folder: Path, proxy: Proxy, chrome: Chrome, ends: ExitStack) -> None:
+        self.proxy = proxy
         origin = ("--allow-websocket-origin", f"localhost:{self.proxy.port}")
         self.server = Server(folder / "log", 0, *origin)
         ends.callback(self.server.stop)
@@ -36,9 +36,11 @@ class Network:
 
 
 @pytest.fixture(scope="module")
-def network(tmp_path_factory: pytest.TempPathFactory, chrome: Chrome) -> Iterator[Network]:
+def network(
+    tmp_path_factory: pytest.TempPathFactory, proxy: Proxy, chrome: Chrome
+) -> Iterator[Network]:
     with ExitStack() as ends:
-        yield Network(tmp_path_factory.mktemp("servers"), chrome, ends)
+        yield Network(tmp_path_factory.mktemp("servers"), proxy, chrome, ends)
 
 
 def keys_heard(page: Page) -> int:
