@@ -109,8 +109,9 @@ def test_figures_drawn_before_and_after_are_dark_in_the_dark_theme_say_values_an
             (one) => Math.max(...rgb(one.background_fill_color)) < 80)
         }}""",
     )
-    if (cancel := page.get_by_role("button", name="Cancel").locator("visible=true")).count():
-        cancel.click()
+    # If there is still something to cancel.
+    cancel = page.get_by_role("button", name="Cancel").locator("visible=true")
+    cancel.evaluate_all("(all) => all.forEach((one) => one.click())")
     place = at_rest(
         page,
         """() => {
