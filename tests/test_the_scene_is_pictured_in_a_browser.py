@@ -134,6 +134,8 @@ def test_a_narrow_window_sees_the_run_first_with_all_tabs_and_no_word_is_cut_bef
     assert box is not None
     assert 0.0 <= box["x"] <= 390.0 - box["width"]
     press(page, "Live")
+    # Keys are heard where the run is seen.
+    expect(status(page)).to_be_visible()
     page.set_viewport_size({"width": 1280, "height": 720})
     page.locator("body").press("p")
     comes_true(
