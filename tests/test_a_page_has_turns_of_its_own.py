@@ -10,6 +10,7 @@ import pytest
 from bokeh.document import Document
 from lone_link import lone_session
 from panel.io.state import set_curdoc
+from web_pages import run_apart
 
 from app.session.turns import Act, Turns
 from app.shell.dashboard import Dashboard
@@ -43,7 +44,7 @@ def test_nothing_has_a_turn_before_the_browser_has_built_the_page() -> None:
             await rest()
             return before, done
 
-    before, after = asyncio.run(open_page())
+    before, after = run_apart(open_page())
     assert before == []
     assert after == ["news", "timer", "more"]
 
@@ -66,7 +67,7 @@ def test_what_another_page_asks_for_is_not_done_with_its_document(way: str) -> N
         await asyncio.sleep(MOMENT)
         return seen
 
-    assert asyncio.run(ask()) == [None]
+    assert run_apart(ask()) == [None]
 
 
 def test_a_page_that_is_closed_has_no_more_turns() -> None:
@@ -80,4 +81,4 @@ def test_a_page_that_is_closed_has_no_more_turns() -> None:
         await rest()
         return done
 
-    assert asyncio.run(close()) == []
+    assert run_apart(close()) == []
