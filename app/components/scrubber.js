@@ -1,3 +1,6 @@
+// Milliseconds that it stays where keys have moved it: what is shown meanwhile answers earlier ones.
+const REST = 500
+
 export function render({model}) {
   const text = make("output"), label = make("label", {}, make("span"), text)
   const range = make("input", {type: "range"})
@@ -13,14 +16,22 @@ export function render({model}) {
     text.textContent = range.ariaValueText = model.text
     range.min = model.start
     range.max = model.end
-    if (!held) { range.value = model.shown }
+    follow()
   }
-  let held = false
+  const follow = () => { if (!held && !rests) { range.value = model.shown } }
+  let held = false, rests = 0
   range.addEventListener("pointerdown", () => {
     held = true
     window.addEventListener("pointerup", () => { held = false }, {once: true})
   })
-  range.addEventListener("input", () => model.send_msg(Number(range.value)))
+  range.addEventListener("input", () => {
+    clearTimeout(rests)
+    rests = setTimeout(() => {
+      rests = 0
+      follow()
+    }, REST)
+    model.send_msg(Number(range.value))
+  })
   for (const name of ["label", "text", "start", "end", "shown", "playing"]) { model.on(name, show) }
   show()
   return root
