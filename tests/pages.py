@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import pytest
 from browser import Chrome, Server
 from playwright.sync_api import ConsoleMessage, Error, Locator, Page, expect
 
@@ -54,6 +55,19 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     assert not complaints, complaints
     said = server.log[said_before:]
     assert not OURS.search(said), said
+
+
+def one_page(query: str, said: str, **device: Any) -> Any:
+    """Make a fixture: one page for all tests of a file, given once its status says something."""
+
+    @pytest.fixture(scope="module", name="page")
+    def opened(server: Server, chrome: Chrome) -> Iterator[Page]:
+        with visits(server, chrome) as visit:
+            page = visit(query, **device)
+            expect(status(page)).to_contain_text(said)
+            yield page
+
+    return opened
 
 
 def status(page: Page) -> Locator:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
-import pytest
 from axe_playwright_python.sync_playwright import Axe
-from browser import Chrome, Server
-from pages import Visit, card, comes_true, press, slider, status, visits
+from pages import Visit, card, comes_true, one_page, press, slider, status
 from playwright.sync_api import Locator, Page, expect
 
 SERIOUS = ("serious", "critical")
@@ -42,14 +39,8 @@ def violations(page: Page) -> list[Any]:
     ]
 
 
-@pytest.fixture(scope="module")
-def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give a page whose run has ended, which every test leaves as it found it."""
-    with visits(server, chrome) as visit:
-        opened = visit("?elements=20&substructures=2&instants=11")
-        expect(status(opened)).to_contain_text("✓ converged")
-        expect(opened.locator(".card").nth(3)).to_be_attached()
-        yield opened
+page = one_page("?elements=20&substructures=2&instants=11", "✓ converged")
+"""A page whose run has ended, which every test leaves as it found it."""
 
 
 def test_whoever_has_no_mouse_is_soon_at_the_run_and_is_told_what_plots_show(
@@ -162,6 +153,7 @@ def test_a_frame_of_a_course_page_has_plots_alone(open_page: Visit) -> None:
 def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_choice(
     page: Page,
 ) -> None:
+    expect(page.locator(".card").nth(3)).to_be_attached()
     for scheme in ("dark", "light"):
         page.emulate_media(color_scheme=scheme)
         expect(page.locator(f".mui-{scheme}").first).to_be_visible()

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
-from browser import Chrome, Server
-from pages import ENDLESS, bodies_drawn, card, choose, comes_true, iteration, slider, status, visits
+from pages import (
+    ENDLESS,
+    bodies_drawn,
+    card,
+    choose,
+    comes_true,
+    iteration,
+    one_page,
+    slider,
+    status,
+)
 from playwright.sync_api import Page, expect
 
 from app.session.uploads import saved
@@ -24,13 +31,8 @@ SEEN = """(name) => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give one page; every test begins with settings of its own."""
-    with visits(server, chrome) as visit:
-        opened = visit(f"?{ENDLESS}&pace=20")
-        expect(status(opened)).to_contain_text("running")
-        yield opened
+page = one_page(f"?{ENDLESS}&pace=20", "running")
+"""One page; every test begins with settings of its own."""
 
 
 def take(page: Page, scene: str = "bar", **changes: Any) -> None:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
-import pytest
-from browser import Chrome, Server
-from pages import Visit, card, slider, status, visits
+from pages import Visit, card, one_page, slider, status
 from PIL import Image
 from playwright.sync_api import Page, expect
 
@@ -25,13 +22,8 @@ CLIPBOARD = """(answer) => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give a page that is taken away from, and stays as it is."""
-    with visits(server, chrome) as visit:
-        opened = visit(f"?{SMALL}")
-        expect(status(opened)).to_contain_text("after 12 iterations")
-        yield opened
+page = one_page(f"?{SMALL}", "after 12 iterations")
+"""A page that is taken away from, and stays as it is."""
 
 
 def saved(page: Page, button: str) -> Path:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 
-import pytest
-from browser import Chrome, Server
-from pages import at_rest, choose, comes_true, open_report, press, status, visits
+from pages import at_rest, choose, comes_true, one_page, open_report, press
 from playwright.sync_api import Page, expect
 
 TINY = "?elements=4&substructures=2&instants=5"
@@ -16,13 +13,8 @@ DRAWN = """[...Bokeh.documents[0].all_models].filter((one) => one.type === "Figu
 """Figures that are seen: those of other tabs are not, and some that have gone are not forgotten."""
 
 
-@pytest.fixture(scope="module")
-def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give one page: every test below has a tab of its own on it."""
-    with visits(server, chrome) as visit:
-        opened = visit(TINY)
-        expect(status(opened)).to_contain_text("iteration")
-        yield opened
+page = one_page(TINY, "iteration")
+"""One page: every test below has a tab of its own on it."""
 
 
 def test_browsers_translate_no_program_of_the_page(page: Page) -> None:

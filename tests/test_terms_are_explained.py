@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Chrome, Server
-from pages import ENDLESS, Visit, iteration, slider, status, visits
+from pages import ENDLESS, Visit, iteration, one_page, slider, status
 from playwright.sync_api import Locator, Page, expect
 from shown_pages import SMALL, Shown, keys
 
@@ -84,13 +82,8 @@ def test_a_term_is_marked_where_it_first_stands_and_nowhere_inside_another_or_a_
     assert TERM.sub(r"\1", explained(text)) == text
 
 
-@pytest.fixture(scope="module")
-def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give a page whose run has ended, on a device with a mouse and a screen to touch."""
-    with visits(server, chrome) as visit:
-        opened = visit("?elements=20&substructures=2&instants=11", has_touch=True)
-        expect(status(opened)).to_contain_text("✓ converged")
-        yield opened
+page = one_page("?elements=20&substructures=2&instants=11", "✓ converged", has_touch=True)
+"""A page whose run has ended, on a device with a mouse and a screen to touch."""
 
 
 def words_in_sight(page: Page) -> list[Locator]:

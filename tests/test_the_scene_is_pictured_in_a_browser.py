@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import pytest
-from browser import Chrome, Server
-from pages import Visit, at_rest, bodies_drawn, card, comes_true, open_report, press, status, visits
+from pages import (
+    Visit,
+    at_rest,
+    bodies_drawn,
+    card,
+    comes_true,
+    one_page,
+    open_report,
+    press,
+    status,
+)
 from playwright.sync_api import Page, expect
 from processes import PATIENCE
 
@@ -14,13 +20,8 @@ MODEL = """const model = (name) =>
   Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)"""
 
 
-@pytest.fixture(scope="module")
-def page(server: Server, chrome: Chrome) -> Iterator[Page]:
-    """Give a page with a bar whose run has ended; the last test pulls it by another load."""
-    with visits(server, chrome) as visit:
-        opened = visit("?elements=20&substructures=4&instants=21")
-        expect(status(opened)).to_contain_text("✓ converged")
-        yield opened
+page = one_page("?elements=20&substructures=4&instants=21", "✓ converged")
+"""A page with a bar whose run has ended; the last test pulls it by another load."""
 
 
 def place(page: Page, name: str, share: float) -> tuple[float, float]:
