@@ -17,6 +17,8 @@ from solver.study.audit.report import HEAD, line, prepare
 from solver.study.audit.stability import cases_of, stability_report, trials_of
 from solver.study.audit.survey import draws, survey_report
 from solver.study.audit.units import SCENE, invariance, is_same
+from solver.study.benchmarks.ahead_problems import GROUPS, chosen_problems
+from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.error_against_time import error_against_time
@@ -33,10 +35,17 @@ REFUSED = 2
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
     cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
-    cost.add_argument("--repeats", type=int, default=7, help="runs whose median is taken")
-    cost.add_argument(
+    cost.add_argument("--repeats", type=int, help="whose median is taken; 7, of --ahead 3")
+    kinds = cost.add_mutually_exclusive_group()
+    kinds.add_argument(
         "--whole", action="store_true", help="what runs take against what they say before, instead"
     )
+    kinds.add_argument(
+        "--ahead", action="store_true", help="LATIN beside the incremental solver, instead"
+    )
+    cost.add_argument("--only", choices=GROUPS, help="of --ahead: these problems alone")
+    cost.add_argument("--large", action="store_true", help="of --ahead: those of minutes too")
+    cost.add_argument("--out", type=Path, metavar="DIR", help="of --ahead: write ahead.csv there")
     cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
     figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
@@ -84,12 +93,28 @@ def writing(folder: Path) -> Iterator[None]:
 
 
 def _benchmark(chosen: argparse.Namespace) -> int:
+    chosen.repeats = (3 if chosen.ahead else 7) if chosen.repeats is None else chosen.repeats
     _check_repeats(chosen)
+    if chosen.ahead:
+        return _ahead(chosen)
+    for name in ("only", "large", "out"):
+        if value := getattr(chosen, name):
+            raise SettingError(f"--{name}", str(value), "only with --ahead", "leave it out")
     if chosen.whole:
         print_whole_cost()
         return 0
     print_iteration_cost(chosen.repeats)
     print_overheads(chosen.repeats)
+    return 0
+
+
+def _ahead(chosen: argparse.Namespace) -> int:
+    problems = chosen_problems(chosen.only, with_large=chosen.large)
+    if chosen.out is None:
+        print_ahead(problems, chosen.repeats)
+        return 0
+    with writing(chosen.out):
+        write_ahead(print_ahead(problems, chosen.repeats), chosen.out / "ahead.csv")
     return 0
 
 

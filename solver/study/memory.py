@@ -7,16 +7,13 @@ resident memory then is subtracted from the highest value at the end.
 
 from __future__ import annotations
 
-import json
 import math
-import os
 import re
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
+from typing import Any
 
-from solver.running.processes import ONE_THREAD
+from solver.running.alone import alone
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.finished import finished_run
@@ -27,22 +24,14 @@ TINY: dict[str, dict[str, object]] = {
     "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
 }
 """Runs that go before: to bring in code is no part of a run's memory, nor of its time."""
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def memory_of(settings: Settings) -> float:
     """Run a scene once more for the memory that it takes, B; NaN where none is told (not Linux)."""
     if not STATUS.exists():
         return math.nan
-    done = subprocess.run(
-        [sys.executable, "-c", f"from {__name__} import main; main()"],
-        input=json.dumps({"scene": settings.scene, "changed": settings.changed()}),
-        env=os.environ | ONE_THREAD | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return float(done.stdout)
+    asked = {"scene": settings.scene, "changed": settings.changed()}
+    return float(alone(__name__, asked))
 
 
 @cache
@@ -52,14 +41,13 @@ def settle() -> None:
         finished_run(CATALOGUE[scene].settings.checked(tiny))
 
 
-def main() -> None:
-    """Run what is asked for on the standard input, and print the memory that it took, B."""
-    asked = json.load(sys.stdin)
+def answer(asked: dict[str, Any]) -> int:
+    """Run what is asked for, and give the memory that it took, B."""
     settings = CATALOGUE[asked["scene"]].settings.checked(asked["changed"])
     settle()
     before = resident("VmRSS")
     finished_run(settings, errors=False, indicators=False)
-    print(resident("VmHWM") - before)
+    return resident("VmHWM") - before
 
 
 def resident(name: str) -> int:
