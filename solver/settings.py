@@ -206,7 +206,6 @@ class Settings(Checked):
         "iterate.",
         group="Method",
         title="Finish",
-        applies=_on_fields,
     )
     accuracy = quantity(
         0.01,
@@ -262,11 +261,6 @@ class Settings(Checked):
     def n_jumps(self) -> int:
         """Components of all contacts, none on a rigid support of known bound."""
         return 0
-
-    @property
-    def may_finish(self) -> bool:
-        """Whether a status step may end the run."""
-        return bool(self.finish == "status") and self.applies("finish")
 
     @property
     def loop_is_over_displacement(self) -> bool:

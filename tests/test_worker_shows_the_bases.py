@@ -112,6 +112,22 @@ def test_modes_are_together_as_large_as_the_field_that_they_hold_once_it_has_con
     assert np.linalg.norm(own) == pytest.approx(np.linalg.norm(wanted), rel=1e-3)
 
 
+def test_a_certified_solution_stands_beside_the_modes_of_its_search() -> None:
+    shown = told({**SMALL, "finish": "status", "pgd_modes": 3})
+    last = bases_of(shown)
+    assert last.is_left
+    assert "those of the search" in shown.page["pgd-space-modes.title"]["text"]
+    shown.obey(Seek(1, shown.recording.iteration - 1))
+    before = bases_of(shown)
+    assert not before.is_left
+    assert np.array_equal(last.modes.space_modes, before.modes.space_modes)
+    assert not last.modes.born.any()
+    # The field that the modes would have to hold is the solution's, the sizes are their own.
+    own, wanted = last.values
+    assert own / own[0] == pytest.approx(before.values[0] / before.values[0][0])
+    assert np.linalg.norm(wanted[3:]) > 0.0
+
+
 def test_numbers_of_modes_are_kept_for_a_screenful_of_substructures() -> None:
     shown = told({**SMALL, "elements": 200, "substructures": 200, "max_iterations": 3})
     assert {len(row) for row in shown.recording.sizes} == {MOST_SIZES}

@@ -51,6 +51,11 @@ class Bases:
         """Modes of the largest basis."""
         return max(modes.n_modes for modes in self.found.modes)
 
+    @property
+    def is_left(self) -> bool:
+        """Whether they are those of the search, and the iterate the solution that goes beyond."""
+        return self.iterate.residual is not None
+
     @cached_property
     def modes(self) -> ShownModes:
         """The modes of the chosen substructure."""

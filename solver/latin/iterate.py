@@ -107,7 +107,8 @@ class Iterate:
     local_incoming
         W - F/k that the local stage read, which is its own W^ - F^/k.
     reduction
-        The separated bases that hold the linear stage, if any do.
+        The separated bases that hold the linear stage, if any do; of a certified solution those of
+        the search that led to it, which hold less than it is.
     history, memory, course
         Of an acceleration and of the update of k, as in `Checkpoint`.
     residual
@@ -148,7 +149,7 @@ class Iterate:
             self.number,
             self.seconds,
             self.outgoing,
-            self.reduction,
+            self.reduction if self.residual is None else None,
             self.history,
             self.memory,
             self.course,
@@ -156,7 +157,7 @@ class Iterate:
 
     @property
     def bases(self) -> tuple[Modes, ...]:
-        """Modes of every substructure; none when the linear stage is full."""
+        """Modes of every substructure, as `reduction`; none when the linear stage is full."""
         return self.reduction.modes if self.reduction else ()
 
     @property

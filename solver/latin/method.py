@@ -46,8 +46,7 @@ class Latin:
         `Nested`, or None: zero, and of a body that only contact holds the place where it comes to
         rest.
     finish
-        `StatusStep`, which ends a run with a certified solution, or None. Runs on separated bases
-        go on.
+        `StatusStep`, which ends a run with a certified solution, or None.
     stop
         When a run ends: criteria that combine by `&` and `|`.
     threads

@@ -14,7 +14,7 @@ from solver.latin.criteria.estimate import LAST
 from solver.latin.criteria.judged_numbers import Numbers
 from solver.latin.criteria.status import Ending, Status
 from solver.latin.finish.certified import finished
-from solver.latin.finish.status_step import Certificate, StatusStep
+from solver.latin.finish.status_step import Certificate
 from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Iterate
 from solver.latin.method import Latin
@@ -33,6 +33,10 @@ USUAL_ACCURACY = 0.01
 _CERTIFIED = (
     "Certified: equilibrium and all contact laws hold up to rounding, so no iteration can better "
     "this solution on this mesh"
+)
+_SEARCHED = (
+    " A status step found it from an iterate on separated bases, whose contact force was {:g} % "
+    "wrong; the modes are those of that iterate."
 )
 
 JUMPS = (
@@ -69,10 +73,19 @@ class Decision:
     finished: Iterate | None = None
 
 
-def proven(finish: Iterate, certificate: Certificate | None, seconds: float) -> Decision:
-    """Say of an iterate that is a certified solution that the run ends with it."""
+def proven(
+    finish: Iterate, certificate: Certificate | None, seconds: float, found: float = math.nan
+) -> Decision:
+    """Say of an iterate that is a certified solution that the run ends with it.
+
+    Separated bases that it shows are those of the search, and `found` is the error of the contact
+    force that was found on them.
+    """
     residual = finish.residual or 0.0
-    status = Status(Ending.CONVERGED, f"{_CERTIFIED} (residual {residual:.0e}).")
+    advice = f"{_CERTIFIED} (residual {residual:.0e})."
+    if finish.reduction is not None:
+        advice += _SEARCHED.format(float(f"{100.0 * found:.2g}"))
+    status = Status(Ending.CONVERGED, advice)
     return Decision(seconds, math.nan, math.nan, residual, status, certificate)
 
 
@@ -97,11 +110,12 @@ class StopRules:
 
     def __init__(self, latin: Latin, spent: float = 0.0) -> None:
         self._latin, self._criterion = latin, latin.stop.at_work()
-        self._may_finish = latin.linear.ending(latin.finish) is not None
+        self._may_finish = latin.finish is not None
         asked = latin.stop.accuracy
         self._estimate = latin.linear.estimate(asked if math.isfinite(asked) else USUAL_ACCURACY)
         self._stall = Stall(latin)
         self._is_first = True
+        self._found = math.nan
         self.seconds = spent
 
     def judge(self, iterate: Iterate) -> Decision:
@@ -118,15 +132,16 @@ class StopRules:
             estimated = numbers.known("estimated_error")
             return Decision(seconds, indicator, behaviour, estimated, status, certificate)
         began = time.perf_counter()
-        estimated = certificate.distance.of_friction_force(iterate)
-        number, spent = iterate.number + 1, iterate.seconds
-        finish = finished(iterate.problem, iterate.k, certificate, number, spent)
+        self._found = estimated = certificate.distance.of_friction_force(iterate)
+        number, spent, searched = iterate.number + 1, iterate.seconds, iterate.reduction
+        finish = finished(iterate.problem, iterate.k, certificate, number, spent, searched)
         self._billed(iterate, began)
         return Decision(seconds, indicator, behaviour, estimated, None, certificate, finish)
 
     def close(self, finish: Iterate) -> Decision:
         """Judge the certified solution that ends a run."""
-        verdict = proven(finish, self._estimate.certificate, finish.seconds + self.seconds)
+        seconds = finish.seconds + self.seconds
+        verdict = proven(finish, self._estimate.certificate, seconds, self._found)
         behaviour = behaviour_indicator(finish)
         return replace(verdict, indicator=latin_indicator(finish), behaviour=behaviour)
 
@@ -165,7 +180,7 @@ class StopRules:
     def _exhausted_advice(self, numbers: Numbers) -> str:
         why = self._criterion.lacks(numbers) or "The run has come to its limit"
         remedy = "Raise max_iterations, or try another k_scale."
-        return f"{why}. {self._latin.linear.remedy or remedy}"
+        return f"{why}. {of_bases(self._latin) or remedy}"
 
 
 class Stall:
@@ -197,7 +212,7 @@ class Stall:
         return None
 
     def _advice(self, numbers: Numbers) -> str:
-        tolerance = self._latin.stop.tolerance
+        tolerance, modes = self._latin.stop.tolerance, of_bases(self._latin)
         if self._best < LOWEST and agrees(numbers, tolerance):
             return "The LATIN indicator is down to rounding: more iterations change nothing."
         if self._best < LOWEST:
@@ -207,6 +222,11 @@ class Stall:
                 "the stiffness, for more digits. Bring friction, the load and k_scale nearer to "
                 "each other."
             )
+        if self._best <= tolerance and modes:
+            return (
+                "The LATIN indicator is below its tolerance, yet the contact force is not known to "
+                f"be accurate enough. {modes}"
+            )
         if self._best <= tolerance:
             return (
                 "The LATIN indicator is below its tolerance, yet the k-free indicator shows that "
@@ -215,14 +235,19 @@ class Stall:
             )
         if self._latin.relaxation > 0.9:
             return "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
-        remedy = self._latin.linear.remedy or self._remedy("Accept a larger tolerance, or try")
+        remedy = modes or self._remedy("Accept a larger tolerance, or try")
         return f"The LATIN indicator has stopped falling. {remedy}"
 
     def _remedy(self, begin: str) -> str:
         """Say what helps; a status step needs neither k nor the digits of W + F/k."""
-        latin = self._latin
-        could_finish = latin.finish is None and latin.linear.ending(StatusStep()) is not None
-        return f"{begin} another k_scale{', or finish=status' if could_finish else ''}."
+        also = ", or finish=status" if self._latin.finish is None else ""
+        return f"{begin} another k_scale{also}."
+
+
+def of_bases(latin: Latin) -> str:
+    """Say what helps a run on separated bases, in a sentence; empty for full fields."""
+    remedy, also = latin.linear.remedy, ", or set finish=status" if latin.finish is None else ""
+    return f"{remedy}{also}." if remedy else ""
 
 
 def _diverged(iteration: int) -> Status:

@@ -206,6 +206,11 @@ class ReductionRecord:
     enriched: float
     dropped: float
 
+    @classmethod
+    def idle(cls, modes: int) -> ReductionRecord:
+        """Give that of an iteration which did nothing to so many modes."""
+        return cls(modes, 0, 1.0, 0.0, 0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
@@ -219,6 +224,12 @@ class Reduction:
 
     modes: tuple[Modes, ...]
     records: tuple[ReductionRecord, ...]
+
+    @property
+    def at_rest(self) -> Reduction:
+        """The same bases, after an iteration that did nothing to them."""
+        idle = (ReductionRecord.idle(own.n_modes) for own in self.modes)
+        return Reduction(self.modes, tuple(idle))
 
     @property
     def stored(self) -> int:

@@ -34,7 +34,7 @@ def method_of(settings: Settings) -> Latin:
         relaxation=settings.relaxation,
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
         start=Nested(partial(coarser_problems, settings)) if settings.start == "nested" else None,
-        finish=StatusStep() if settings.may_finish else None,
+        finish=StatusStep() if settings.finish == "status" else None,
         stop=goal | Iterations(settings.max_iterations),
         threads=settings.threads,
     )

@@ -162,7 +162,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
 
     It counts only if it finds the one solution of the discrete problem, which does not depend on
     the start. Iterations of the method in between better no states that are as near as these
-    (solver/study/README.md, 7).
+    (solver/study/README.md, 7). A run on separated bases is its own, as it is asked for these too.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
-    if not settings.may_finish or not fits:
+    if settings.finish != "status" or settings.linear_stage == "pgd" or not fits:
         return None
     costs = costs_of(problem)
     if not costs.afford(ALONE):

@@ -10,6 +10,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.finish.status_step import Certificate
 from solver.latin.iterate import Iterate
+from solver.reduction.basis import Reduction
 
 ENOUGH = 1e-14
 """Share of the largest force at which the forces on rows are in balance, up to rounding."""
@@ -18,7 +19,12 @@ MOST_STEPS = 60
 
 
 def finished(
-    problem: Problem, k: Array, certificate: Certificate, number: int = 1, seconds: float = 0.0
+    problem: Problem,
+    k: Array,
+    certificate: Certificate,
+    number: int = 1,
+    seconds: float = 0.0,
+    searched: Reduction | None = None,
 ) -> Iterate:
     """Give the iterate that a certified solution is.
 
@@ -32,6 +38,8 @@ def finished(
         Search direction of the rows, shape (n_rows,), scaled, read-only.
     number, seconds
         As in `Iterate`.
+    searched
+        The separated bases of the search, if it had any, which the solution goes beyond.
     """
     scales = problem.scales
     deformation = certificate.deformation / scales.displacement
@@ -49,6 +57,7 @@ def finished(
         incoming=incoming,
         local_displacement=local,
         local_incoming=incoming,
+        reduction=searched and searched.at_rest,
         residual=certificate.residual,
         force=force,
     )

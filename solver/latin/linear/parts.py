@@ -9,7 +9,6 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks
 from solver.latin.criteria.estimate import ErrorEstimate, EstimateByProof
-from solver.latin.finish.status_step import StatusStep
 from solver.latin.linear.full import FullLinearStage
 from solver.latin.linear.separated import ReducedLinearStage
 from solver.reduction.enrichment import Enrichment
@@ -23,7 +22,7 @@ class Full:
     Attributes
     ----------
     remedy
-        What helps a run that does not converge, in a sentence; nothing that it knows of.
+        What helps a run that does not converge, to begin a sentence with; nothing it knows of.
     """
 
     remedy: ClassVar[str] = ""
@@ -48,10 +47,6 @@ class Full:
         """Begin to estimate the error of a run, of which this accuracy is asked."""
         return ErrorEstimate(accuracy)
 
-    def ending(self, step: StatusStep | None) -> StatusStep | None:
-        """Give the step that ends a run on such fields."""
-        return step
-
 
 @dataclass(frozen=True)
 class PGD:
@@ -73,10 +68,10 @@ class PGD:
         Equal substructures use the same modes if these miss at most this share of each one's field;
         0: each has modes of its own.
     remedy
-        What helps a run that does not converge, in a sentence.
+        What helps a run that does not converge, to begin a sentence with.
     """
 
-    remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance."
+    remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
 
     modes: int = 10
     tolerance: float = 1e-4
@@ -100,7 +95,3 @@ class PGD:
     def estimate(self, accuracy: float) -> ErrorEstimate:
         """Begin to estimate the error, as `Full.estimate`."""
         return EstimateByProof(accuracy)
-
-    def ending(self, step: StatusStep | None) -> StatusStep | None:
-        """Give none: a run on separated bases goes on."""
-        return None

@@ -258,7 +258,7 @@ class ReducedGroup(Group[list[Family]]):
         family.incoming_modes = self._incoming(basis)
 
     def _family(self, members: list[int], basis: SeparatedBasis) -> Family:
-        record = ReductionRecord(basis.n_modes, 0, 1.0, 0.0, 0.0)
+        record = ReductionRecord.idle(basis.n_modes)
         return Family(members, basis, self._incoming(basis), record)
 
     def _basis_of(self, columns: Array, n_members: int) -> SeparatedBasis:
