@@ -10,6 +10,7 @@ import os
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -26,12 +27,13 @@ from solver.files import (
     settings_from_command,
     summary,
 )
-from solver.latin import Ending, Solution, solve
+from solver.latin import Ending, Seconds, Solution, solve
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
+from solver.reference.solution import Interrupted
 from solver.refusal import RefusedError
 from solver.report_commands import REFUSED, add_reports
 from solver.scenes import CATALOGUE, discretise
@@ -83,6 +85,12 @@ def _parser() -> argparse.ArgumentParser:
         dest="reference",
         help="do without errors, and without the time of the incremental solver",
     )
+    run.add_argument(
+        "--limit",
+        type=float,
+        metavar="SECONDS",
+        help="end after so long with what there is by then; the reference is given up likewise",
+    )
     run.set_defaults(command=_run)
     scenes = commands.add_parser("scenes", help="list the scenes")
     scenes.set_defaults(command=_scenes)
@@ -102,6 +110,7 @@ def _run(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
     if chosen.out is not None:
         _check_file(chosen.out)
+    limit = _limit(chosen)
     for remark in remarks(settings, chosen.changes):
         print(f"slipfront: {remark}", file=sys.stderr)
     began = time.perf_counter()
@@ -110,8 +119,10 @@ def _run(chosen: argparse.Namespace) -> int:
     if nothing_acts(problem):
         print("slipfront: nothing acts on the structure: all loads are zero", file=sys.stderr)
     method = method_of(settings)
-    _announce(run_cost(problem, method, settings.max_iterations, with_reference=chosen.reference))
-    distance = _distance(problem) if chosen.reference else None
+    method = replace(method, stop=method.stop | limit) if limit else method
+    most, beside = settings.max_iterations, chosen.reference
+    _announce(run_cost(problem, method, most, with_reference=beside), limit)
+    distance = _distance(problem, limit) if chosen.reference else None
     solution = solve(problem, method, distance=distance, watch=chosen.reference, spent=spent)
     if chosen.out is not None:
         try:
@@ -130,7 +141,15 @@ def _run(chosen: argparse.Namespace) -> int:
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
-def _announce(cost: RunCost) -> None:
+def _limit(chosen: argparse.Namespace) -> Seconds | None:
+    if chosen.limit is None:
+        return None
+    if not 0.0 < chosen.limit < math.inf:
+        raise SettingError("--limit", chosen.limit, "seconds above 0", "give more, or leave it out")
+    return Seconds(chosen.limit)
+
+
+def _announce(cost: RunCost, limit: Seconds | None) -> None:
     """Say what a long or large run will take, before it begins."""
     if not cost.is_large:
         return
@@ -138,6 +157,8 @@ def _announce(cost: RunCost) -> None:
     if cost.reference > 0.2 * cost.seconds:
         share = round(100.0 * cost.reference / cost.seconds)
         line += f", {share} % of the time for the reference, which --no-reference leaves out"
+    if limit and limit.most < cost.seconds:
+        line += f"; --limit ends it after {limit.most:g} s"
     print(line, file=sys.stderr, flush=True)
 
 
@@ -167,10 +188,14 @@ def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> Non
             print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
 
 
-def _distance(problem: Problem) -> Distance | None:
-    """Give the distance to the reference, or None where there is none."""
+def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:
+    """Give the distance to the reference, or None where there is none in time."""
+    end = time.perf_counter() + limit.most if limit else math.inf
     try:
-        reference = reference_of(problem)
+        reference = reference_of(problem, lambda: time.perf_counter() > end)
+    except Interrupted:
+        print("slipfront: no errors are known: the reference takes longer", file=sys.stderr)
+        return None
     except NoReferenceError as refusal:
         print(f"slipfront: no errors are known: {refusal}", file=sys.stderr)
         return None

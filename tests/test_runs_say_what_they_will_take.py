@@ -81,6 +81,17 @@ def test_the_paper_s_method_takes_several_times_as_many_iterations() -> None:
     assert paper.seconds > 3.0 * fast.seconds
 
 
+def test_the_command_says_that_its_limit_comes_first(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(costs, "LONG", 0.0)
+    small = ["--set", "elements=24", "--set", "instants=5", "--no-reference"]
+    main(["run", "layers", *small, "--limit", "1e-3"])
+    assert "; --limit ends it after 0.001 s" in capsys.readouterr().err
+    main(["run", "layers", *small, "--limit", "1000"])
+    assert "--limit" not in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("options", [[], ["--no-reference"]])
 def test_the_command_says_it_in_one_line(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, options: list[str]

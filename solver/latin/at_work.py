@@ -11,6 +11,9 @@ from solver.latin.cycle import Cycle, read_only
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.method import Latin
 
+STARTING = 0.5
+"""Share of the time that a run may take which its start may take."""
+
 
 class AtWork:
     """The method at work on a problem.
@@ -116,4 +119,4 @@ def _own_start(problem: Problem, latin: Latin, k: Array) -> Checkpoint | None:
     """Give the start of the method's own choice; None is zero fields."""
     if problem.rest is not None:
         return Checkpoint(0, 0.0, problem.rest[problem.row_dofs])
-    return latin.start.at_work(problem, k) if latin.start else None
+    return latin.start.at_work(problem, k, STARTING * latin.stop.seconds) if latin.start else None

@@ -121,6 +121,8 @@ class StopRules:
     def judge(self, iterate: Iterate) -> Decision:
         """Say whether the run ends after an iterate, and how."""
         began = time.perf_counter()
+        billed = iterate.seconds + self.seconds
+        self._estimate.deadline = began + self._latin.stop.seconds - billed
         if not math.isfinite(float(np.vdot(iterate.incoming.T, iterate.incoming.T))):
             seconds = self._billed(iterate, began)
             return Decision(seconds, math.nan, math.nan, math.nan, _diverged(iterate.number))
@@ -169,7 +171,7 @@ class StopRules:
         if self._estimate.jumps:
             return numbers, Status(Ending.STALLED, JUMPS)
         if status is not None and status.ending is Ending.EXHAUSTED:
-            return numbers, replace(status, advice=self._exhausted_advice(numbers))
+            return numbers, replace(status, advice=self._exhausted_advice(numbers, status))
         return numbers, status
 
     def _try_at_last(self, iterate: Iterate) -> None:
@@ -177,10 +179,10 @@ class StopRules:
         if self._may_finish and self._estimate.certificate is None:
             self._estimate.try_step(iterate, LAST)
 
-    def _exhausted_advice(self, numbers: Numbers) -> str:
+    def _exhausted_advice(self, numbers: Numbers, status: Status) -> str:
         why = self._criterion.lacks(numbers) or "The run has come to its limit"
-        remedy = "Raise max_iterations, or try another k_scale."
-        return f"{why}. {of_bases(self._latin) or remedy}"
+        remedy = of_bases(self._latin) or "Raise max_iterations, or try another k_scale."
+        return f"{why}. {status.advice or remedy}"
 
 
 class Stall:

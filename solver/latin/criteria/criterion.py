@@ -69,6 +69,11 @@ class Criterion(ABC):
         """Value of the LATIN indicator that is low enough; infinite where it is not asked about."""
         return math.inf
 
+    @property
+    def seconds(self) -> float:
+        """Seconds after which the run ends in any case; infinite without such a limit."""
+        return math.inf
+
     @abstractmethod
     def at_work(self) -> Judge:
         """Begin a run."""
@@ -94,6 +99,11 @@ class Combined(Criterion):
 @dataclass(frozen=True)
 class All(Combined):
     """All parts hold; they are looked at in order, as long as they do."""
+
+    @property
+    def seconds(self) -> float:
+        """The longest of the parts."""
+        return max(part.seconds for part in self.parts)
 
     def at_work(self) -> Judge:
         """Begin a run."""
@@ -127,6 +137,11 @@ class _AllJudge(Judge):
 @dataclass(frozen=True)
 class Either(Combined):
     """Any part holds."""
+
+    @property
+    def seconds(self) -> float:
+        """The shortest of the parts."""
+        return min(part.seconds for part in self.parts)
 
     def at_work(self) -> Judge:
         """Begin a run."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import time
 
 from solver.latin.criteria.changes import ForceChanges
 from solver.latin.finish.cost import Costs, costs_of
 from solver.latin.finish.status_step import Certificate, StatusSolver, states_of
 from solver.latin.iterate import Iterate
 from solver.reference.condensation import NoReferenceError
+from solver.reference.solution import Interrupted
 
 SETTLED = 0.04
 """Relative change of the whole contact force at which the status step is worth its first trial:
@@ -43,6 +45,9 @@ class ErrorEstimate:
     ----------
     certificate
         The solution, once it is known.
+    deadline
+        When a status step is given up, and before which none begins that would take longer, by
+        `time.perf_counter`.
     """
 
     def __init__(self, accuracy: float) -> None:
@@ -53,6 +58,7 @@ class ErrorEstimate:
         self._costs: Costs | None = None
         self._has_solver = True
         self.certificate: Certificate | None = None
+        self.deadline = math.inf
 
     def __call__(self, iterate: Iterate, indicator: float) -> float:
         """Give the estimate; NaN while there is none.
@@ -119,7 +125,7 @@ class ErrorEstimate:
         least
             Seconds that it may cost in any case.
         """
-        if not self._has_solver:
+        if not self._has_solver or not self._is_in_time(iterate):
             return False
         return self._costs_of(iterate).afford(patience * iterate.number, least)
 
@@ -132,9 +138,13 @@ class ErrorEstimate:
         self._step = self._step or StatusSolver(iterate.problem)
         try:
             systems = self._costs_of(iterate).systems(patience * iterate.number)
-            found = self._step(states_of(iterate), systems)
+            found = self._step(
+                states_of(iterate), systems, lambda: time.perf_counter() > self.deadline
+            )
         except NoReferenceError:
             self._has_solver = False
+            return False
+        except Interrupted:
             return False
         if found is None or found.residual > self._accuracy:
             return False
@@ -148,6 +158,9 @@ class ErrorEstimate:
         """
         is_long = iterate.number >= max(LONG, 2 * self._last_trial)
         return is_long or self._costs_of(iterate).are_small(iterate.number)
+
+    def _is_in_time(self, iterate: Iterate) -> bool:
+        return self._costs_of(iterate).step <= self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
         if self._costs is None:
@@ -167,4 +180,4 @@ class EstimateByProof(ErrorEstimate):
 
     def can_be_proven(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         """Try a status step whatever it costs, where there is one."""
-        return self._has_solver
+        return self._has_solver and self._is_in_time(iterate)

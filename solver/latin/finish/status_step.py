@@ -9,6 +9,7 @@ called certified (solver/README.md, 7). LATIN finds the fronts, the step finishe
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -81,7 +82,9 @@ class StatusSolver:
         self._problem = problem
         self.jumps = False
 
-    def __call__(self, states: States, most: int) -> Certificate | None:
+    def __call__(
+        self, states: States, most: int, stop: Callable[[], bool] | None = None
+    ) -> Certificate | None:
         """Try to certify states, mended; None where they are too far from right.
 
         Parameters
@@ -90,13 +93,17 @@ class StatusSolver:
             To begin with, as `states_of` gives those of an iterate.
         most
             Linear systems that it may solve.
+        stop
+            Called once per instant.
 
         Raises
         ------
+        Interrupted
+            As soon as `stop` gives True.
         NoReferenceError
             If the problem has no incremental solver, or none that is worth its size.
         """
-        found = self._solver.march(guess=states, most=most)
+        found = self._solver.march(guess=states, most=most, stop=stop)
         self.jumps = found.jumps
         if not found.converged.all():
             return None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -41,13 +43,19 @@ class Nested:
 
     coarser: Sequence[Problem] | Callable[[], Sequence[Problem]]
 
-    def at_work(self, problem: Problem, k: Array) -> Checkpoint | None:
-        """Give where a problem starts with a search direction; None if there is no coarser mesh."""
+    def at_work(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
+        """Give where a problem starts with a search direction; None if there is no coarser mesh.
+
+        After so many seconds every mesh that is left has one iteration.
+        """
+        deadline = time.perf_counter() + seconds
         coarser = self.coarser() if callable(self.coarser) else self.coarser
-        return nested_start(list(coarser), problem, k)
+        return nested_start(list(coarser), problem, k, deadline)
 
 
-def nested_start(coarser: list[Problem], problem: Problem, k: Array) -> Checkpoint | None:
+def nested_start(
+    coarser: list[Problem], problem: Problem, k: Array, deadline: float = math.inf
+) -> Checkpoint | None:
     """Iterate on the coarsest mesh, carry the result over to the next finer one, and so on.
 
     The coarse meshes are uncut, on the automatic search direction, with Anderson acceleration,
@@ -59,6 +67,8 @@ def nested_start(coarser: list[Problem], problem: Problem, k: Array) -> Checkpoi
         The same structure on coarser meshes, the finest first.
     problem, k
         Where the run starts, and its search direction.
+    deadline
+        After which every mesh has one iteration, by `time.perf_counter`.
 
     Returns
     -------
@@ -77,7 +87,7 @@ def nested_start(coarser: list[Problem], problem: Problem, k: Array) -> Checkpoi
         for _ in range(MOST):
             cycle.local_stage()
             cycle.linear_stage()
-            if mix.relative_residual <= enough:
+            if mix.relative_residual <= enough or time.perf_counter() > deadline:
                 break
         outgoing, incoming = cycle.outgoing, cycle.incoming
         displacement = 0.5 * (outgoing + incoming)
