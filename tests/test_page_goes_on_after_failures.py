@@ -72,6 +72,24 @@ def test_the_button_starts_a_broken_run_again(
     assert transport._run.label == "Pause"
 
 
+def test_a_run_that_has_to_be_agreed_to_begins_by_the_button_alone(
+    session: Session, lone: LoneLink
+) -> None:
+    transport = Transport(session)
+    asks: list[Report] = [Picture(1, Facts(is_broken=True, asks=True), b"")]
+    hear(session, lone, asks)
+    assert transport._run.label == "Run anyway"
+    assert len(runs(lone)) == 1
+    transport.toggle()
+    assert [run.is_agreed for run in runs(lone)] == [False, True]
+    hear(session, lone, [Died()])
+    assert runs(lone)[-1].is_agreed
+    hear(session, lone, [Picture(2, Facts(), b"")])
+    session.change("peak", 500.0)
+    assert runs(lone)[-1].ticket == 3
+    assert not runs(lone)[-1].is_agreed
+
+
 @pytest.mark.parametrize("reports", BROKEN)
 def test_a_step_starts_a_broken_run_again_and_waits(
     session: Session, lone: LoneLink, reports: list[Report]

@@ -127,6 +127,25 @@ def test_the_page_says_it_until_the_first_picture_comes(monkeypatch: pytest.Monk
     assert len(shown.said) == 1
 
 
+@pytest.mark.parametrize("limit", ["VERY_LONG", "VERY_LARGE"])
+def test_a_page_does_not_begin_what_is_very_long_or_large_until_that_is_agreed_to(
+    monkeypatch: pytest.MonkeyPatch, limit: str
+) -> None:
+    shown = Shown()
+    shown.run(1, "bar", SMALL["bar"])
+    monkeypatch.setattr(costs, limit, 0.0)
+    others = {**SMALL["bar"], "peak": 600.0}
+    for ticket, follows_hand in ((2, True), (3, False)):
+        shown.run(ticket, "bar", others, follows_hand=follows_hand)
+        assert shown.pictures[-1].ticket == ticket
+        assert shown.pictures[-1].facts.asks
+        assert "Run anyway" in shown.words
+        assert shown.runs.rest() is None
+    shown.run(4, "bar", others, is_agreed=True)
+    assert not shown.pictures[-1].facts.asks
+    assert "converged" in shown.words
+
+
 def test_times_are_written_with_the_one_digit_that_they_have() -> None:
     texts = [str(RunCost(seconds, 2.34e9, 0.0)) for seconds in (4.4, 34.0, 81.0, 99.0, 7400.0)]
     assert texts == [

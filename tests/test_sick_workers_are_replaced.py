@@ -67,6 +67,8 @@ def test_a_run_without_memory_is_told_and_the_next_goes_on(page: Page, log: Path
     session = page.session
     page.until(lambda: session.is_over)
     session.adopt(session.settings.replace(elements=TOO_LARGE, instants=1201))
+    page.until(lambda: session.facts is not None and session.facts.asks)
+    session.go()
     page.until(lambda: session.facts is not None and session.facts.is_broken)
     assert "MemoryError" in page.words[-1]
     assert "lower the numbers of elements" in page.words[-1]

@@ -26,6 +26,7 @@ from solver.scenes.bar import BarSettings, bar
 
 SLOW_TO_SET_UP = {"elements": 5000, "instants": 2001, "substructures": 500}
 LONG_REFERENCE = {"elements": 300, "instants": 4000, "load": "random"}
+OTHER = {**SHORT, "friction": 0.31}
 
 
 def same(found: History, expected: list[Record]) -> bool:
@@ -145,7 +146,7 @@ def test_history_grows_and_is_thinned_from_end_to_end() -> None:
 def test_a_run_that_takes_long_gives_way_to_the_next(line: Line, values: dict[str, Any]) -> None:
     line.send(run_of(1, "bar", SHORT))
     line.until(lambda picture: picture.facts.is_over)
-    line.send(run_of(2, "bar", values), run_of(3, "bar", {**SHORT, "friction": 0.31}))
+    line.send(run_of(2, "bar", values, is_agreed=True), run_of(3, "bar", OTHER))
     picture = line.until(lambda picture: picture.ticket == 3 and picture.facts.is_over)
     assert not picture.facts.is_broken
 
@@ -155,7 +156,7 @@ def test_a_process_ends_with_its_pipe_whatever_it_does(line: Line, busy: bool) -
     line.send(run_of(1, "bar", SHORT))
     line.until(lambda picture: picture.facts.is_over)
     if busy:
-        line.send(run_of(2, "bar", SLOW_TO_SET_UP))
+        line.send(run_of(2, "bar", SLOW_TO_SET_UP, is_agreed=True))
     line.connection.close()
     line.process.join(PATIENCE)
     assert line.process.exitcode == 0

@@ -85,6 +85,7 @@ class Session(State):
         self._left: dict[str, Settings] = {}
         self._label = ""
         self._due: Settings | None = None
+        self._agreed: Settings | None = None
         self._by_hand = False
         self._pages = pages
         pages.add(self)
@@ -266,6 +267,8 @@ class Session(State):
         self.facts = None
 
     def _replay(self) -> None:
+        if self.facts is not None and self.facts.asks:
+            self._agreed = self.settings
         self.start(notice=REPLAYED if self.facts and self.facts.is_over else "")
 
     def _keep_pace(self) -> None:
@@ -286,6 +289,7 @@ class Session(State):
                 pace=None if self.follows_hand else self.pace,
                 pause_after=None if self._is_free else 1,
                 is_held=self.is_held,
+                is_agreed=self.settings is self._agreed,
                 **how,
                 follows_hand=self.follows_hand,
                 twin=self.twin,

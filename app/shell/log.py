@@ -28,7 +28,9 @@ class RunLog:
         session = self._session
         if session.facts is None or session.follows_hand:
             return
-        came_to = "broke" if session.facts.is_broken else "ended" if session.is_over else "started"
+        facts = session.facts
+        came_to = "ended" if facts.is_over else "broke" if facts.is_broken else "started"
+        came_to = "waits to be agreed to" if facts.asks else came_to
         if (session.ticket, came_to) != self._told:
             self._told = session.ticket, came_to
             pn.state.log(f"run {session.ticket} of {session.settings.scene} {came_to}")

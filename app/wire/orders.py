@@ -27,6 +27,8 @@ class Run:
     follows_hand
         Whether a slider moves: then the run hurries to its end before it is shown, and nothing is
         compared with it afterwards.
+    is_agreed
+        Whether it begins however long or large it is.
     is_alone
         Whether it is nothing to compare with those before.
     twin
@@ -42,6 +44,7 @@ class Run:
     is_held: bool = False
     warm: bool = False
     follows_hand: bool = False
+    is_agreed: bool = False
     is_alone: bool = False
     twin: Settings | None = None
 

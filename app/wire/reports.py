@@ -20,7 +20,9 @@ class Facts:
     is_over
         Whether the run has ended: only another one can go on.
     is_broken
-        Whether it broke, or was refused; then nothing else holds.
+        Whether it broke, was refused, or has not begun; then nothing else holds.
+    asks
+        Whether it is so long or large that it has not begun, until that is agreed to.
     was_warm
         Whether it started from the run before.
     """
@@ -35,6 +37,7 @@ class Facts:
     interfaces: tuple[str, ...] = ()
     is_over: bool = False
     is_broken: bool = False
+    asks: bool = False
     was_warm: bool = False
 
 

@@ -20,7 +20,7 @@ from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
 from app.worker.tables import table
 from app.worker.twin import Twin
-from app.worker.words import before_a_run, key_figures, status_line
+from app.worker.words import before_a_run, before_it_is_agreed, key_figures, status_line
 from solver.latin import Iterate
 from solver.refusal import RefusedError
 
@@ -108,7 +108,13 @@ class PageRuns:
 
     def _begin(self, order: Run) -> None:
         previous = self._last if order.warm else None
-        self._run = WorkerRun(order, self._look, self._urgent, self._references, previous)
+        run = WorkerRun(order, self._look, self._urgent, self._references, previous)
+        if run.cost.is_to_be_agreed and not order.is_agreed:
+            words = before_it_is_agreed(run.cost, has_run=self._before is not None)
+            block = self._painter.say({"status": words})
+            self._send(Picture(order.ticket, Facts(is_broken=True, asks=True), block))
+            return
+        self._run = run
         if self._run.cost.is_large and not order.follows_hand:
             self._send(File(self._painter.say({"status": before_a_run(self._run.cost)})))
         self._pair(order)

@@ -46,6 +46,15 @@ def before_a_run(cost: RunCost) -> str:
     return f"<b>starting</b>: this will take about {cost}"
 
 
+def before_it_is_agreed(cost: RunCost, *, has_run: bool) -> str:
+    """Say that a run has not begun, and how it does (HTML)."""
+    beside = " Until then all plots and numbers are of the run before." if has_run else ""
+    return (
+        f"<b>not begun</b>: this would take about {cost}.<br><b>Run anyway</b>, or choose fewer "
+        f"elements, instants or bodies.{beside}"
+    )
+
+
 def status_line(
     run: Recording,
     frame: Frame,
