@@ -24,8 +24,7 @@ LABELS = {
 RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
 FIXED = 5
 """Buttons, pace and sliders, which always stand there."""
-NARROW, WIDE = 104, 150
-"""Width of the first button, px: the others keep their places while it says a word or another."""
+PLAIN = {"whiteSpace": "nowrap"}
 PLAYED_IN, SOONEST = 8.0, 0.025
 """Seconds in which one plays through time, and least between two instants that are shown."""
 
@@ -160,14 +159,19 @@ class Transport:
         elif facts is not None and facts.asks:
             label, icon = "Run anyway", "warning_amber"
         if self._run.icon != icon:
-            width = WIDE if len(label) > len("Replay") else NARROW
-            self._run.param.update(label=label, icon=icon, description=does, width=width)
+            self._run.param.update(label=label, icon=icon, description=does)
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)
 
     def _make_buttons(self) -> None:
         self._run = button(
-            "Pause", "pause", self.toggle, width=NARROW, color="primary", description=RUNS
+            "Pause",
+            "pause",
+            self.toggle,
+            min_width=104,
+            sx=PLAIN,
+            color="primary",
+            description=RUNS,
         )
         does = "Do one iteration and wait (s)."
         self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
