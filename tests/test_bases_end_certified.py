@@ -79,7 +79,7 @@ def test_files_hold_the_bases_of_the_search(bar: Solution) -> None:
 
 def test_a_run_goes_on_from_the_solution_and_not_from_the_bases(bar: Solution) -> None:
     iterate = bar.iterate
-    generous = options(pgd_modes=40, pgd_tolerance=1e-12, pgd_enrichment=0.0)
+    generous = options(pgd_modes=40, pgd_tolerance=1e-12)
     problem = iterate.problem
     method = replace(method_of(generous), finish=None)
     first = next(iterations(problem, method, iterate.checkpoint))

@@ -84,6 +84,6 @@ def test_iterations_to_one_percent_hardly_grow_from_four_to_sixty_four_substruct
 def test_a_generous_basis_iterates_like_the_full_stage(scene):
     common = {"acceleration": "none", "relaxation": 0.8}
     full = errors(scene, 25, **common)
-    generous = {"pgd_modes": 100, "pgd_tolerance": 1e-10, "pgd_enrichment": 0.0, "pgd_pairs": 40}
+    generous = {"pgd_modes": 100, "pgd_tolerance": 1e-10, "pgd_pairs": 40}
     reduced = errors(scene, 25, linear_stage="pgd", **generous, **common)
     assert reduced[-1] < 1.1 * full[-1] + 1e-3

@@ -27,7 +27,7 @@ def test_both_stages_give_the_same_on_the_half_plane():
     target = np.asfortranarray(generator.normal(size=(40, 12)))
     found = []
     full = FullLinearStage(problem, k, multiscale=True)
-    every = Enrichment(threshold=0.0, tolerance=1e-14, pairs=40, largest=40)
+    every = Enrichment(tolerance=1e-14, pairs=40, largest=40)
     reduced = ReducedLinearStage(problem, k, every, multiscale=True)
     for stage in (full, reduced):
         state = stage.start(start)

@@ -59,7 +59,7 @@ def test_a_saved_file_takes_changes_from_the_command_line(tmp_path):
 def test_a_file_of_an_earlier_version_is_read_as_far_as_it_still_holds(scene):
     kind = CATALOGUE[scene].settings
     usual = kind.checked({})
-    old = 'local_stage = "full"\nlocal_points = 0.5\nlocal_instants = 0.5\n'
+    old = 'local_stage = "full"\nlocal_points = 0.5\npgd_enrichment = 0.1\n'
     assert settings_from_toml(f"{dump(usual)}{old}").values() == usual.values()
     with pytest.raises(SettingError, match=r"local_stage.*leave it out"):
         kind.checked({"local_stage": "reduced"})

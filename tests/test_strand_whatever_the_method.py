@@ -23,7 +23,7 @@ from solver.scenes.strand import StrandSettings, strand
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 PLAIN = {"method": "paper"}
 TIGHT = {"tolerance": 1e-16, "max_iterations": 4000}
-PGD = {"linear_stage": "pgd", "pgd_enrichment": 0.0}
+PGD = {"linear_stage": "pgd"}
 FAST = {"search_direction": "auto", "acceleration": "anderson"}
 
 

@@ -22,8 +22,6 @@ class Enrichment:
 
     Attributes
     ----------
-    threshold
-        Share of the residual, in norm, that may be left without a new pair.
     tolerance
         Share of the field, in norm, below which a residual is left alone.
     pairs
@@ -34,7 +32,6 @@ class Enrichment:
         Share of a field that the modes of another may miss to be used instead; 0 is never.
     """
 
-    threshold: float
     tolerance: float
     pairs: int
     largest: int

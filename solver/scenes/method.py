@@ -52,7 +52,6 @@ def _modes(settings: Settings) -> PGD:
     return PGD(
         modes=settings.pgd_modes,
         tolerance=settings.pgd_tolerance,
-        enrichment=settings.pgd_enrichment,
         pairs=settings.pgd_pairs,
         sharing=settings.pgd_sharing,
     )

@@ -211,7 +211,7 @@ class ReducedGroup(Group[list[Family]]):
         if left < NOTHING_LEFT * whole:
             left = 0.0
         residual = left + updated
-        enough = max(rule.threshold**2 * residual, rule.tolerance**2 * whole)
+        enough = rule.tolerance**2 * whole
         found, added, dropped = 0.0, 0, 0.0
         if left > enough:
             rest = target - basis.modes @ wanted
