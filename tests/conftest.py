@@ -6,6 +6,8 @@ from __future__ import annotations
 import one_thread  # noqa: F401  # before NumPy, which asks but once
 # isort: on
 
+import os
+import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, closing
 
@@ -24,27 +26,27 @@ from app.session.report_job import ReportJob
 from solver.study.paper_runs import PaperRuns
 
 LONGEST_FIRST = (
-    "test_page_tabs",
-    "test_a_class_in_a_browser",
     "test_page_fits_its_window",
+    "test_page_tabs",
     "test_page_asks_what_if",
+    "test_a_class_in_a_browser",
     "test_page_for_everybody",
-    "test_page_survives_its_server",
     "test_page_in_a_browser",
-    "test_terms_are_explained",
-    "test_page_teaches",
-    "test_page_is_taken_away",
     "test_sweep_on_a_cluster",
-    "test_every_setting_can_be_moved",
+    "test_terms_are_explained",
     "test_wheel_has_all_that_the_page_needs",
-    "test_converged_means_it",
-    "test_page_paper_figures",
+    "test_every_setting_can_be_moved",
+    "test_page_survives_its_server",
     "test_page_on_a_phone",
-    "test_the_scene_is_pictured_in_a_browser",
+    "test_page_is_taken_away",
+    "test_page_teaches",
     "test_figures_command",
-    "test_sweep_command",
+    "test_converged_means_it",
+    "test_the_scene_is_pictured_in_a_browser",
+    "test_page_paper_figures",
     "test_container_steps",
     "test_engine_reaches_the_reference",
+    "test_sweep_command",
     "test_page_shows_the_bases",
     "test_page_controls",
     "test_survey_judges_random_runs",
@@ -66,9 +68,16 @@ LONGEST_FIRST = (
     "test_worker_shows_the_bases",
     "test_quantities_of_a_run",
     "test_random_scenes",
+    "test_page_is_light",
+    "test_charts_are_drawn",
+    "test_sweep_goes_on",
 )
-"""Files of some seven seconds of a processor or more. A worker has a file to itself, so whoever
+"""Files of some four seconds of a processor or more. A worker has a file to itself, so whoever
 came to one of these last would work on alone."""
+
+# What the first process compiles is there for the hundreds after it, servers and commands too
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # Hypothesis also draws numbers that stand in our modules, those that happen to be loaded: which
 # examples a test sees would depend on the tests that ran before it in the same process

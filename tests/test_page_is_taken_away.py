@@ -13,6 +13,7 @@ from pages import Visit, card, one_page, slider, status
 from PIL import Image
 from playwright.sync_api import Page, expect
 
+PLOTS = "plots=Friction+force,Load+path"
 SMALL = "elements=20&instants=13&substructures=4&method=paper&max_iterations=12"
 CLIPBOARD = """(answer) => {
   navigator.clipboard.writeText = async (text) => {
@@ -22,7 +23,7 @@ CLIPBOARD = """(answer) => {
 }"""
 
 
-page = one_page(f"?{SMALL}", "after 12 iterations")
+page = one_page(f"?{SMALL}&{PLOTS}", "after 12 iterations")
 """A page that is taken away from, and stays as it is."""
 
 
@@ -74,7 +75,7 @@ def test_a_table_and_a_program_are_saved(page: Page) -> None:
 
 
 def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -> None:
-    page = open_page("?elements=20&instants=21&max_iterations=60")
+    page = open_page("?elements=20&instants=21&max_iterations=60&plots=Friction+force")
     expect(status(page)).to_contain_text("✓ converged")
     compared = page.get_by_role("combobox", name="Compare with")
     compared.select_option("monoscale | multiscale")

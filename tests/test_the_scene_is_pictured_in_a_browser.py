@@ -126,7 +126,11 @@ def test_the_load_arrow_is_dragged_and_the_run_follows(page: Page) -> None:
 def test_a_narrow_window_sees_the_run_first_with_all_tabs_and_no_word_is_cut_before_a_class(
     open_page: Visit,
 ) -> None:
-    page = open_page("?scene=block&method=paper&max_iterations=5", width=390, height=844)
+    page = open_page(
+        "?scene=block&method=paper&max_iterations=5&plots=Scene,Deformed+bodies",
+        width=390,
+        height=844,
+    )
     bodies_drawn(page, "> 1000")
     expect(page.get_by_text("Deformed bodies").first).to_be_visible()
     expect(page.get_by_text("Friction coefficient").first).not_to_be_visible()
