@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.reference.choice import reference_of
-from solver.reference.condensation import jumps
+from solver.reference.glued import jumps
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 

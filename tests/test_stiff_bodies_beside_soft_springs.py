@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of
-from solver.reference.condensation import jumps
 from solver.reference.distance import distance_to, held_instants
+from solver.reference.glued import jumps
 from solver.reference.self_stress import base_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.incline import InclineSettings

@@ -1,13 +1,14 @@
 """A structure seen from its contacts: stiffness and load between the jumps of all pairs.
 
 With J the jumps of the displacement (above minus below), the structure answers to contact forces
-f by K u = F + J' f. A body that only contact holds makes K singular, so springs rho join the
-pairs first and the laws take them out again: with K_r = K + J' rho J and C = J K_r^-1 J',
+f by K u = F + J' f. Its displacement is u = T j + Z a (`solver.reference.glued`): with jumps j, and
+a of the structure glued at its contacts, which is in equilibrium whatever they are. So
 
-    S jump = f + q,    S = C^-1 - rho,    q = C^-1 J K_r^-1 F,
+    S jump = f + q,    S = T' K T - T' K Z (Z' K Z)^-1 Z' K T,
+    q = T' (F - K Z (Z' K Z)^-1 Z' F),
 
-which holds for every rho > 0 and needs no more than that the structure, glued at its contacts,
-is held. Jumps and forces are stacked as `Problem.sum_of_contact` says.
+which needs no more than that the structure, glued at its contacts, is held. Jumps and forces are
+stacked as `Problem.sum_of_contact` says.
 
 Three things are kept apart, as they may differ by any number of digits:
 
@@ -27,12 +28,13 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import lapack, solve_triangular
-from scipy.sparse.linalg import splu
+from scipy.linalg import solve_triangular
+from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.glued import from_jumps, jumps
 from solver.reference.self_stress import base_of, self_stresses
 from solver.reference.states import rules_of
 
@@ -79,7 +81,7 @@ class Condensation:
     load
         q of it, shape (n_base, n_instants), scaled.
     springs
-        rho of each, shape (n_base,), scaled.
+        Stiffness of a pair by what is next to it, of each, shape (n_base,), scaled.
     motions, gauge
         Rigid motions that no support holds, shape (n_dofs, n_motions), and the jumps Q of the base
         that they make, shape (n_base, n_motions).
@@ -110,10 +112,11 @@ class Condensation:
         own, rigid = own[self.base], rigid[self.base]
         self.motions, self.gauge = _gauged(problem, self._jumps[self.moving[self.base]])
         self.stresses: Array = self_stresses(own, rigid)
+        self._rings = np.flatnonzero(self.stresses.any(axis=1))
         self._condense(own)
 
     def _condense(self, own: sparse.csr_array) -> None:
-        """Factor once, and solve for the jumps and all instants together."""
+        """Factor the glued structure once, and take it out for all jumps and instants together."""
         free = self._free
         stiffness = self._whole[free]
         load = self._force[free] - stiffness[:, self._fixed] @ self._prescribed
@@ -121,21 +124,41 @@ class Condensation:
         diagonal = stiffness.diagonal()
         diagonal = np.maximum(diagonal, SOFTEST * diagonal.max(initial=0.0))
         self.springs: Array = 1.0 / (abs(own) @ (1.0 / diagonal))
-        held = stiffness + own.T @ sparse.diags_array(self.springs) @ own
-        n_own = len(self.base)
-        patterns, course = _separated(load)
-        sides = np.empty((len(free), n_own + patterns.shape[1]), order="F")
-        sides[:, :n_own], sides[:, n_own:] = own.T.toarray(order="F"), patterns
-        solved = _solve(sparse.csc_array(held), sides)
-        self._answers, self._alone = solved[:, :n_own], solved[:, n_own:] @ course
-        compliance, alone = own @ self._answers, own @ self._alone
         self.tie = TIE * float(self.springs.max(initial=0.0))
-        compliance += self.stresses @ self.stresses.T / (self.tie or 1.0)
-        inverse = _inverse(0.5 * (compliance + compliance.T))
-        self.stiffness: Array = inverse - np.diag(self.springs)
-        self.load: Array = inverse @ alone + self.stiffness @ self._given_of_base
+        self._jumped, self._glued = from_jumps(own)
+        strained = sparse.csr_array(stiffness @ self._jumped)
+        self._pulled = sparse.csr_array(self._glued.T @ strained)
+        self._factor = _factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
+        patterns, course = _separated(load)
+        self._alone = self._solved(self._glued.T @ patterns) @ course
+        load = self._jumped.T @ load - self._pulled.T @ self._alone
+        whole = (self._jumped.T @ strained).toarray(order="C")
+        whole -= self._pulled.T @ self._solved(self._pulled.toarray(order="F"))
+        whole += whole.T
+        whole *= 0.5
+        self._tie(whole)
+        self.stiffness: Array = whole
+        self.load: Array = self._balanced(load) + whole @ self._given_of_base
         if self.gauge.size:
             self._set_motions_apart()
+
+    def _solved(self, sides: Array) -> Array:
+        """Give how the glued structure moves under forces on it, shape (n_glued, ...)."""
+        return np.asarray(self._factor.solve(sides)) if len(sides) else sides
+
+    def _balanced(self, forces: Array) -> Array:
+        """Take from forces, or from jumps, of the base what moves nothing."""
+        rings, own = self._rings, self.stresses[self._rings]
+        found = forces.copy()
+        found[rings] -= own @ (own.T @ forces[rings])
+        return found
+
+    def _tie(self, stiffness: Array) -> None:
+        """Tie jumps of the base that depend on others to them, in S."""
+        rings, own = self._rings, self.stresses[self._rings]
+        stiffness[rings] -= own @ (own.T @ stiffness[rings])
+        stiffness[:, rings] -= (stiffness[:, rings] @ own) @ own.T
+        stiffness[np.ix_(rings, rings)] += self.tie * own @ own.T
 
     def _set_motions_apart(self) -> None:
         """Take from S what rounding makes rigid motions cost, and from q what it adds to loads."""
@@ -156,20 +179,19 @@ class Condensation:
         """What prescribed displacements add to jumps beyond the base's, (n_moving, n_instants)."""
         return np.asarray(self.given[self.moving] - self.ties @ self._given_of_base)
 
-    def deformation(self, strained: Array, force: Array) -> Array:
+    def deformation(self, strained: Array) -> Array:
         """Give all displacements but for rigid motions, shape (n_dofs, n_instants), scaled.
 
         Parameters
         ----------
         strained
             Jumps y of the base, shape (n_base, n_instants), scaled.
-        force
-            Of the unknown jumps, shape (n_moving, n_instants), scaled.
         """
         found = np.empty_like(self._force)
         found[self._fixed] = self._prescribed
-        springs = self.springs[:, None] * (strained - self._given_of_base)
-        found[self._free] = self._alone + self._answers @ (self.ties.T @ force + springs)
+        jumped = self._balanced(strained - self._given_of_base)
+        glued = self._alone - self._solved(self._pulled @ jumped)
+        found[self._free] = self._jumped @ jumped + self._glued @ glued
         return found
 
     def jump(self, displacement: Array) -> Array:
@@ -233,21 +255,6 @@ def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:
     return motions, np.asarray(base @ motions)
 
 
-def jumps(problem: Problem) -> sparse.csr_array:
-    """Give J, the jumps of all pairs, shape (n_forces, n_dofs)."""
-    rows, columns, values, first = [], [], [], 0
-    for law in problem.rubbing.values():
-        points, pairs = np.unique(law.points, return_index=True)
-        for component in law.components:
-            for side, value in zip(component.sides, (1.0, -1.0), strict=False):
-                rows.append(first + points)
-                columns.append(problem.row_dofs[side[pairs]])
-                values.append(np.full(len(points), value))
-            first += len(law.positions)
-    entries = np.concatenate(rows), np.concatenate(columns)
-    return sparse.csr_array((np.concatenate(values), entries), shape=(first, problem.n_dofs))
-
-
 def _separated(load: Array) -> tuple[Array, Array]:
     """Write loads, (n, n_instants), as patterns (n, rank) times courses, exact up to rounding.
 
@@ -267,7 +274,7 @@ def _separated(load: Array) -> tuple[Array, Array]:
     return load, np.eye(load.shape[1])
 
 
-def _solve(matrix: sparse.csc_array, sides: Array) -> Array:
+def _factored(matrix: sparse.csc_array) -> SuperLU:
     try:
         factor = splu(
             matrix,
@@ -280,18 +287,10 @@ def _solve(matrix: sparse.csc_array, sides: Array) -> Array:
     pivots = factor.U.diagonal()
     if np.any(pivots <= LOOSE * matrix.diagonal()[np.argsort(factor.perm_c)]):
         raise NotHeldError(_NOT_HELD)
-    return np.asarray(factor.solve(sides))
+    return factor
 
 
 _NOT_HELD = (
     "The structure can move as a whole even where all its contacts are closed and stick: "
     "prescribe displacements on a side, or add a support."
 )
-
-
-def _inverse(compliance: Array) -> Array:
-    factor, trouble = lapack.dpotrf(compliance)
-    if trouble:
-        raise NotHeldError(_NOT_HELD)
-    upper = np.triu(lapack.dpotri(factor)[0])
-    return np.asarray(upper + np.triu(upper, 1).T)

@@ -12,7 +12,7 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.condensation import jumps
+from solver.reference.glued import jumps
 from solver.reference.self_stress import self_stresses
 from solver.reference.states import rules_of
 

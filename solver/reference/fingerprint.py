@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.condensation import jumps
+from solver.reference.glued import jumps
 from solver.reference.states import rules_of
 
 

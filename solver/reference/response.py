@@ -17,6 +17,8 @@ from solver.reference.states import HELD, Increment, Sides, States
 
 LOOSE = 1e-14
 """Pivot, as a share of the largest stiffness of all jumps, below which a motion is free."""
+FEW = 4
+"""Rows of S at most, one in so many, that are gathered sooner than all of S is read."""
 
 
 class Response:
@@ -77,7 +79,9 @@ class Response:
         n_base, n_free, n_rows = len(self._base), len(self._free), len(rows)
         unknown = np.zeros((len(self._of_unknowns), sides.load.shape[1]))
         unknown[kept] = sides.held[self._base[kept]]
-        force = self._forces(unknown, sides.load)
+        stays = self._forces(unknown, kept)
+        stays[self._base_rows] -= sides.load
+        force = stays
         given = -self._way * sides.bound[rows]
         right = given - force[rows] - self._slope * force[self._under]
         if not self._is_plain:
@@ -91,7 +95,9 @@ class Response:
         unknown[self._free], unknown[n_base:] = found[:n_free], found[n_free:n_rows]
         if len(motion):
             unknown[kept] -= self._gauge_kept @ motion
-        force = self._forces(unknown, sides.load)
+            stays = self._forces(unknown, kept)
+            stays[self._base_rows] -= sides.load
+        force = stays + self._forces(unknown, self._unknowns, self._own)
         carried = given - self._slope * force[self._under]
         carried[sprung] = force[rows[sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))
@@ -99,11 +105,27 @@ class Response:
         strained = unknown[:n_base]
         return Increment(self._ends(strained, motion, force, sides.held), force, strained, motion)
 
-    def _forces(self, unknown: Array, load: Array) -> Array:
-        """Give the forces of all jumps."""
-        found = np.asarray(self._of_unknowns @ unknown)
-        found[self._base_rows] -= load
-        return found
+    def _forces(self, unknown: Array, places: Indices, rows: Array | None = None) -> Array:
+        """Give the forces of all jumps that the unknowns at some places make.
+
+        Most of what is held comes to nothing, and few jumps slip at a time: so S, which is
+        symmetric, is read at the rows of what does.
+
+        Parameters
+        ----------
+        unknown
+            Shape (n_unknowns, ...).
+        places, rows
+            Of it, and S at these if that is at hand.
+        """
+        if rows is None:
+            places = places[unknown[places].any(axis=1)]
+            if self._ties is not None or len(places) * FEW > len(unknown):
+                some = np.zeros_like(unknown)
+                some[places] = unknown[places]
+                return np.asarray(self._of_unknowns @ some)
+            rows = self._stiffness[places]
+        return np.asarray(rows.T @ unknown[places])
 
     def _jump(self, strained: Array, motion: Array) -> Array:
         if len(motion):
@@ -145,27 +167,29 @@ class Response:
         slope = way * self._friction[rows]
         self._under: Indices = self._partner[rows]
         self._way, self._slope = way[:, None], slope[:, None]
-        forces = self._of_unknowns[rows]
+        others = np.arange(len(self._base), len(self._of_unknowns))
+        unknowns = self._unknowns = np.concatenate([self._free, others])
+        is_few = self._ties is None and len(rows) * FEW <= len(self._stiffness)
+        self._own = self._stiffness.take(rows, axis=0) if is_few else None
+        matrix = self._of_unknowns[np.ix_(rows, unknowns)]
         tied = np.flatnonzero(slope)
         if len(tied):
-            forces[tied] += slope[tied, None] * self._of_unknowns[self._under[tied]]
-        n_base = len(self._base)
-        unknowns = np.concatenate([self._free, np.arange(n_base, len(self._of_unknowns))])
-        matrix = forces.take(unknowns, axis=1)
+            under = self._of_unknowns[np.ix_(self._under[tied], unknowns)]
+            matrix[tied] += slope[tied, None] * under
         if not self._is_plain:
-            matrix = self._with_motions(matrix, forces[:, :n_base])
+            matrix = self._with_motions(matrix)
         self._factors = Factors(matrix, scaled=not self._is_plain)
         self.turned = self._factors.turned
         least = 0.0 if self._factors.scaled else LOOSE * float(self.unit.max(initial=0.0))
         self.singular = self._factors.make_sure(least)
 
-    def _with_motions(self, forces: Array, strained: Array) -> Array:
+    def _with_motions(self, forces: Array) -> Array:
         """Let what is in series come to its end, and choose y: all equations.
 
         Parameters
         ----------
-        forces, strained
-            What the equations say of the unknowns, and of y of the base, shape (n_rows, ...).
+        forces
+            What the equations say of the unknowns, shape (n_rows, n_rows).
         """
         free, gauge, sprung = self._free, self._gauge, self._sprung
         kept = self._gauge_kept = gauge[self._kept]
@@ -173,7 +197,11 @@ class Response:
         self._held = np.concatenate([self._base[self._kept], own])
         matrix = np.zeros((n_rows + gauge.shape[1],) * 2)
         matrix[:n_rows, :n_rows] = forces
-        matrix[:n_rows, n_rows:] = strained[:, self._kept] @ -kept
+        if gauge.size:
+            shifts = np.zeros((len(self._of_unknowns), gauge.shape[1]))
+            shifts[self._kept] = -kept
+            pulls = self._forces(shifts, self._kept)
+            matrix[:n_rows, n_rows:] = pulls[self._rows] + self._slope * pulls[self._under]
         if len(sprung):
             come = self._come = self._jumps_of(own)
             soft, size = self._soft[own], (len(own), len(self._others))

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.sparse.linalg import splu
 
 from solver.arrays import Array, Indices
+from solver.reference.glued import graph_of, trees_of
 
 NONE = 1e-9
 """Eigenvalue of J J', whose entries are whole numbers, and share of a force that count as zero."""
@@ -48,7 +49,8 @@ def base_of(jumps: sparse.csr_array, rigid: NDArray[np.bool_]) -> tuple[Indices,
     what all jumps are of them, shape (n_jumps, n_base).
     """
     size = len(rigid)
-    edges, trees = _graph(jumps)
+    edges = graph_of(jumps)
+    trees, _ = trees_of(edges, jumps.shape[1])
     if rigid.all() or size + trees == jumps.shape[1] + 1:  # a forest: no ring
         return np.arange(size), sparse.csr_array(sparse.eye_array(size))
     dear = np.where(rigid, 1.0, 2.0)
@@ -77,19 +79,9 @@ def base_of(jumps: sparse.csr_array, rigid: NDArray[np.bool_]) -> tuple[Indices,
     return base, ties
 
 
-def _graph(jumps: sparse.csr_array) -> tuple[tuple[Indices, Indices], int]:
-    """Give the two points that every jump is between, the last of all the ground; and the trees."""
-    size, ground = jumps.shape
-    first = jumps.indices[jumps.indptr[:-1]]
-    last = np.where(np.diff(jumps.indptr) == 2, jumps.indices[jumps.indptr[1:] - 1], ground)
-    first, last = np.minimum(first, last), np.maximum(first, last)
-    edges = sparse.csr_array((np.ones(size), (first, last)), shape=(ground + 1, ground + 1))
-    return (first, last), int(connected_components(edges, directed=False)[0])
-
-
 def _of_rigid(jumps: sparse.csr_array) -> Array:
     size, ground = jumps.shape
-    _, trees = _graph(jumps)
+    trees, _ = trees_of(graph_of(jumps), ground)
     if size + trees == ground + 1:  # a forest: no ring
         return np.zeros((size, 0))
     products = sparse.csr_array(jumps @ jumps.T)

@@ -14,7 +14,7 @@ from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.latin import Iterate, Solution, record, solve
 from solver.latin.finish.certified import finished
-from solver.latin.finish.cost import costs_of
+from solver.latin.finish.cost import costs_of, moving_share
 from solver.latin.finish.status_step import StatusSolver, states_of
 from solver.latin.stop import proven
 from solver.reference.choice import reference_of
@@ -179,7 +179,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
     if settings.finish != "status" or settings.linear_stage == "pgd" or not fits:
         return None
-    costs = costs_of(problem)
+    costs = costs_of(problem, moving_share(states))
     if not costs.afford(ALONE):
         return None
     try:

@@ -6,7 +6,7 @@ import math
 import time
 
 from solver.latin.criteria.changes import ForceChanges
-from solver.latin.finish.cost import Costs, costs_of
+from solver.latin.finish.cost import Costs, costs_of, moving_share
 from solver.latin.finish.status_step import Certificate, StatusSolver, states_of
 from solver.latin.iterate import Iterate
 from solver.reference.condensation import NoReferenceError
@@ -56,6 +56,7 @@ class ErrorEstimate:
         self._last_trial, self._next_trial = 0, 1
         self._step: StatusSolver | None = None
         self._costs: Costs | None = None
+        self._costs_at = 0
         self._has_solver = True
         self.certificate: Certificate | None = None
         self.deadline = math.inf
@@ -163,8 +164,10 @@ class ErrorEstimate:
         return self._costs_of(iterate).step <= self.deadline - time.perf_counter()
 
     def _costs_of(self, iterate: Iterate) -> Costs:
-        if self._costs is None:
-            self._costs = costs_of(iterate.problem)
+        """Estimate the costs by the statuses that an iterate shows, now and then anew."""
+        if self._costs is None or iterate.number >= 2 * self._costs_at:
+            self._costs_at = iterate.number
+            self._costs = costs_of(iterate.problem, moving_share(states_of(iterate)))
         return self._costs
 
 

@@ -11,9 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.discrete.problem import Problem
+from solver.latin.direction.rules import sliding_share
 from solver.latin.local.slide import slide_of
 from solver.reference.choice import is_alone
 from solver.reference.contact import jumps_in
+from solver.reference.states import HELD, States
 
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""
@@ -23,11 +25,20 @@ iterations more, so that all trials together take as long as the iterations. Und
 friction an instant takes ten systems from any statuses, and from the exact force (measured)."""
 AFFORDABLE = 40
 """Iterations that a status step may cost in any case: about as many as it saves."""
-DENSE, SPARSE = 1e10, 2e9
-"""Operations a second of dense factors and products, and of sparse factors (measured)."""
+DENSE, FACTOR, SPARSE = 1e10, 2e10, 6e9
+"""Operations a second of dense products, of dense factors, and of sparse ones (measured)."""
+SQUARE = 5e-8
+"""Seconds a number of the condensed stiffness takes, all in all (measured)."""
+GATHER, READ = 8e-9, 1.5e-9
+"""Seconds a number takes that a system gathers from it, and that it only reads (measured)."""
+MOVING = 1.0 / 3.0
+"""Share of the jumps that move at an instant where contacts open or bodies bend (measured)."""
+NEXT = 2.0
+"""Interfaces that slide where a load passes from body to body: those beside what carries none. On
+strands of 3 to 20 wires and three loads it gives 1.6 to 3 times what moves (measured)."""
 PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
-CALLS, OF_ITERATION = 1e-4, 5e-4
+CALLS, OF_ITERATION = 2e-4, 5e-4
 """Seconds of a dense system, and of an iteration, that no size makes less (measured)."""
 SHIFT = 8e-6
 """Seconds that an iteration takes an instant to shift a body that slides as a whole (measured)."""
@@ -81,8 +92,29 @@ class Costs:
         return max(SYSTEMS * self.n_instants, int(worth / self.system))
 
 
-def costs_of(problem: Problem) -> Costs:
-    """Estimate the times of a problem."""
+def moving_share(states: States) -> float:
+    """Give the share of jumps that move, of states of shape (n_forces, n_instants)."""
+    return float(np.mean(states != HELD))
+
+
+def expected_share(problem: Problem) -> float:
+    """Estimate the share of jumps that move at an instant before any iterate tells it."""
+    laws = problem.rubbing.values()
+    if any(law.normal is not None for law in laws):
+        return MOVING
+    return min(MOVING, NEXT * sliding_share(problem) / len(laws))
+
+
+def costs_of(problem: Problem, moving: float | None = None) -> Costs:
+    """Estimate the times of a problem.
+
+    Parameters
+    ----------
+    problem
+        What is solved.
+    moving
+        Share of the jumps that move at an instant; None while no iterate tells it.
+    """
     n_jumps, entries = jumps_in(problem), 0.0
     products = sum(2.0 * len(part.rows) ** 2 for part in problem.substructures)
     products = min(products, 200.0 * problem.n_rows)
@@ -94,7 +126,8 @@ def costs_of(problem: Problem) -> Costs:
     for part in problem.substructures:
         stiffness = part.elasticity.stiffness
         entries += stiffness.size if isinstance(stiffness, np.ndarray) else stiffness.nnz
-    condensing = 4.0 * entries * n_jumps / SPARSE + 2.0 * n_jumps**3 / DENSE
-    # A third of the jumps moves at an instant, in the scenes at hand.
-    system = CALLS + (6.0 * n_jumps**2 + 2.0 / 3.0 * (n_jumps / 3.0) ** 3) / DENSE
+    condensing = 4.0 * entries * n_jumps / SPARSE + SQUARE * n_jumps**2
+    n_moving = (expected_share(problem) if moving is None else moving) * n_jumps
+    system = CALLS + 2.0 / 3.0 * n_moving**3 / FACTOR
+    system += (GATHER * n_moving + READ * n_jumps) * n_moving
     return Costs(condensing, system, iteration, problem.n_instants)

@@ -12,8 +12,8 @@ from scipy import sparse
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.condensation import jumps
 from solver.reference.distance import Fields, determinate_forces
+from solver.reference.glued import jumps
 from solver.reference.states import rules_of
 
 ELASTIC = 1e-4
