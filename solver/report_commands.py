@@ -21,6 +21,8 @@ from solver.study.benchmarks.ahead_problems import GROUPS, chosen_problems
 from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.benchmarks.whole_cost import print_whole_cost
+from solver.study.crossover import crossover
+from solver.study.crossover_report import crossover_notes, crossover_table
 from solver.study.error_against_time import error_against_time
 from solver.study.figure_page import write_figures
 from solver.study.growth import growth
@@ -57,6 +59,9 @@ def add_reports(commands: Any) -> None:
     study.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
     study.add_argument(
         "--no-growth", action="store_false", dest="growth", help="leave out other sizes"
+    )
+    study.add_argument(
+        "--large", action="store_true", help="sizes that take minutes too, on the map of the end"
     )
     study.set_defaults(command=_study)
     stable = commands.add_parser("stability", help="stiff and extreme cases, each with a verdict")
@@ -136,12 +141,14 @@ def _study(chosen: argparse.Namespace) -> int:
     with writing(chosen.out):
         found = error_against_time(settings, chosen.repeats)
         sizes = growth(settings) if chosen.growth else []
-        files, note = write_study(found, sizes, chosen.out)
+        who = crossover(settings, large=chosen.large)
+        files, note = write_study(found, sizes, who, chosen.out)
     print("\n".join(conditions(found)), end="\n\n")
     print(aligned(table(found)), end="\n\n")
     print(aligned(winners(found)))
     if sizes:
         print(f"\n{aligned(growth_table(sizes))}")
+    print("", aligned(crossover_table(who)), *crossover_notes(who), sep="\n")
     if note:
         print(note)
     print(f"{len(files)} files in {chosen.out}")

@@ -16,7 +16,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study import error_against_time
+from solver.study import timed
 from solver.study.benchmarks import ahead
 from solver.study.benchmarks.ahead_problems import GROUPS, PROBLEMS, AheadProblem, chosen_problems
 
@@ -56,7 +56,7 @@ def test_every_sample_of_the_incremental_solver_is_a_solution_of_its_own(
 ) -> None:
     solved: list[Any] = []
     monkeypatch.setattr(
-        error_against_time,
+        timed,
         "reference_of",
         lambda problem: solved.append(problem) or reference_of(problem),
     )

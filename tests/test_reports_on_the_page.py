@@ -31,10 +31,10 @@ TINY = {"elements": 4, "substructures": 2, "instants": 5}
 def test_a_study_gives_the_files_of_the_command_line(tmp_path: Path) -> None:
     study_of("bar", TINY, 1, False, tmp_path)
     found, sections = files(tmp_path), pickle.loads(said(tmp_path, SECTIONS))
-    assert set(found) == {"curves.csv", "levels.csv", "study.html"}
+    assert set(found) == {"curves.csv", "levels.csv", "map.csv", "study.html"}
     rows = list(csv.DictReader(found["curves.csv"].decode().splitlines()))
     assert {"incremental solver", "LATIN PGD"} <= {row["method"] for row in rows}
-    assert sum(isinstance(section, PlotSection) for section in sections) == 1
+    assert sum(isinstance(section, PlotSection) for section in sections) == 2
     page = found["study.html"].decode()
     for section in sections:
         assert isinstance(section, PlotSection) or section in page

@@ -62,9 +62,9 @@ def study_of(*courses):
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
     folder, study = measured
-    assert {file.name for file in folder.iterdir()} == {"curves.csv", "levels.csv", "study.html"}
+    assert {file.name for file in folder.iterdir()} == {"curves.csv", "levels.csv", "map.csv", "study.html"}
     page = (folder / "study.html").read_text(encoding="utf-8")
-    assert page.count("data-root-id") == 2
+    assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)
     cells = {f"<td>{cell}</td>" for row in winners(study)[1:] for cell in row}
     for words in (*FORMS, INCREMENTAL, "BLAS threads: 1", *cells):
@@ -178,13 +178,13 @@ def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main([*TINY, "--out", str(tmp_path)]) == 0
     page = (tmp_path / "study.html").read_text(encoding="utf-8")
-    assert page.count("data-root-id") == 2
+    assert page.count("data-root-id") == 3
     assert NO_CHARTS not in capsys.readouterr().out
     monkeypatch.setattr("solver.study.page.entry_points", lambda group: ())
     assert main([*TINY, "--out", str(tmp_path)]) == 0
     assert NO_CHARTS in capsys.readouterr().out.splitlines()
     names = {file.name for file in tmp_path.iterdir()}
-    assert names == {"curves.csv", "levels.csv", "study.html"}
+    assert names == {"curves.csv", "levels.csv", "map.csv", "study.html"}
 
 
 def test_the_exponent_is_the_slope_and_needs_two_sizes():

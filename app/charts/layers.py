@@ -182,6 +182,7 @@ def _of_map(chart: Map, before: Map | None, here: Here) -> Iterator[Layer]:
     paths, _ = _contours(before) if before else (_paths([]), None)
     yield Layer("ghost", "Contours", paths, {**line, "color": "#fff", "line_dash": "dashed"})
     paths, labels = _contours(chart)
+    labels = labels if chart.level is None else _values(chart)
     yield Layer("contour", "Contours", paths, {**line, "color": "#000", "alpha": 0.75})
     halo = {"text_color": "#000", "text_font_size": "11px", **PAPER}
     yield Layer("label", "Labels", labels, halo)
@@ -225,6 +226,13 @@ def _between(chart: Map) -> dict[str, Any]:
     return {**_sides(chart, columns, rows), "value": chart.z[rows, columns]}
 
 
+def _values(chart: Map) -> dict[str, Any]:
+    """Write into each cell what it is."""
+    rows, columns = np.nonzero(np.isfinite(chart.z))
+    text = [f"{value:.2g}" for value in chart.z[rows, columns]]
+    return {"x": chart.x_values[columns], "y": chart.y_values[rows], "text": text}
+
+
 def _sides(chart: Map, columns: Indices, rows: Indices) -> dict[str, Array]:
     x = edges(chart.x_values, logarithmic=chart.x.logarithmic)
     y = edges(chart.y_values, logarithmic=chart.y.logarithmic)
@@ -245,13 +253,15 @@ def _contours(chart: Map) -> tuple[dict[str, Any], dict[str, Any]]:
     from bokeh.plotting.contour import contour_data
 
     paths, labels = list[tuple[Array, Array]](), list[tuple[float, float, str]]()
-    at = levels(*span(chart), logarithmic=chart.scale.logarithmic)
+    several = levels(*span(chart), logarithmic=chart.scale.logarithmic)
+    at = several if chart.level is None else np.array([chart.level])
     if min(chart.z.shape) > 1 and at.size:
         axes = (chart.x, chart.y)
         there = [np.log if axis.logarithmic else np.asarray for axis in axes]
         back = [np.exp if axis.logarithmic else np.asarray for axis in axes]
         x, y = (to(v) for to, v in zip(there, (chart.x_values, chart.y_values), strict=True))
-        lines: Any = contour_data(x, y, chart.z, at, want_fill=False).line_data
+        of = np.log if chart.scale.logarithmic else np.asarray
+        lines: Any = contour_data(x, y, of(chart.z), of(at), want_fill=False).line_data
         for level, across, up in zip(at, lines.xs, lines.ys, strict=True):
             found = _parts(back[0](across), back[1](up))
             paths += found

@@ -12,16 +12,18 @@ from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, audit
 from solver.study.audit.stability import cases_of, stability_report, trials_of
 from solver.study.audit.units import invariance
+from solver.study.crossover import crossover
 from solver.study.error_against_time import error_against_time
 from solver.study.figure_page import figure_sections
 from solver.study.growth import growth
 from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
+from solver.study.progress import Tell
 from solver.study.study_page import study_sections, write_study
 
-SHARE_OF_GROWTH = 0.8
-"""Of the whole time, roughly, where growth is measured too."""
+PARTS = {"curves": 1.0, "growth": 4.0, "map": 1.0}
+"""Of a study, and how long each takes beside the others, roughly."""
 SHOWN_EVERY = 0.5
 """Seconds: a table that grows is sent to the browser as a whole."""
 Work = Callable[[Path], None]
@@ -31,18 +33,27 @@ Work = Callable[[Path], None]
 def study_of(scene: str, values: dict[str, Any], repeats: int, sizes: bool, folder: Path) -> None:
     """Measure error against run time, and with `sizes` growth with the size of the problem."""
     growing, settings = ReportFolder(folder), CATALOGUE[scene].settings.checked(values)
-    first = 1.0 - SHARE_OF_GROWTH if sizes else 1.0
-    study = error_against_time(
-        settings, repeats, lambda doing, share: growing.tell(doing, first * share)
-    )
-    found = (
-        growth(settings, lambda doing, share: growing.tell(doing, first + (1.0 - first) * share))
-        if sizes
-        else []
-    )
+    parts = {name: long for name, long in PARTS.items() if sizes or name != "growth"}
+    tell = _shares(growing, parts)
+    study = error_against_time(settings, repeats, tell["curves"])
+    found = growth(settings, tell["growth"]) if sizes else []
+    who = crossover(settings, tell["map"])
     growing.tell("Writing the report", 1.0)
-    growing.publish(lambda place: write_study(study, found, place))
-    growing.show(study_sections(study, found))
+    growing.publish(lambda place: write_study(study, found, who, place))
+    growing.show(study_sections(study, found, who))
+
+
+def _shares(growing: ReportFolder, parts: dict[str, float]) -> dict[str, Tell]:
+    """Give to each part of a report what tells how far the whole of it is."""
+    whole, done, found = sum(parts.values()), 0.0, dict[str, Tell]()
+    for name, long in parts.items():
+        found[name] = _part(growing, done / whole, long / whole)
+        done += long
+    return found
+
+
+def _part(growing: ReportFolder, before: float, share: float) -> Tell:
+    return lambda doing, done: growing.tell(doing, before + share * done)
 
 
 def stability_of(quick: bool, folder: Path) -> None:

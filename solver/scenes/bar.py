@@ -258,6 +258,7 @@ BAR = Entry(
     kind="rod",
     structure=bar,
     sizes=shared.ROD_SIZES,
+    grows=("elements",),
     coarser=_coarser,
     closed_form=lambda settings: closed_form(bar(settings)),
 )

@@ -151,4 +151,5 @@ BLOCK = Entry(
     kind="plane",
     structure=block,
     sizes=shared.PLANE_SIZES,
+    grows=shared.PLANE_GROWS,
 )

@@ -37,6 +37,8 @@ class Entry(Generic[S]):
         Solve it without discretisation in space, where that is known, or give None.
     sizes
         Numbers over which costs are measured, by setting.
+    grows
+        Settings by which the structure becomes larger as it is, all of them together.
     """
 
     title: str
@@ -45,6 +47,7 @@ class Entry(Generic[S]):
     kind: Kind
     structure: Callable[[S], Structure]
     sizes: Mapping[str, tuple[int, ...]]
+    grows: tuple[str, ...]
     coarser: Callable[[S], Iterable[Problem]] | None = None
     closed_form: Callable[[S], ClosedForm | None] | None = None
     broken_wire: Callable[[S], BrokenWire | None] | None = None

@@ -137,4 +137,5 @@ INCLINE = Entry(
     kind="plane",
     structure=incline,
     sizes=shared.PLANE_SIZES,
+    grows=shared.PLANE_GROWS,
 )

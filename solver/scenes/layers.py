@@ -190,4 +190,5 @@ LAYERS = Entry(
     kind="plane",
     structure=layers,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
+    grows=("layers",),
 )

@@ -21,6 +21,7 @@ PLANE_SIZES = {
     "substructures": (1, 2, 4, 8),
 }
 """The same of plane bodies."""
+PLANE_GROWS = ("elements", "elements_up", "substructures", "substructures_up")
 
 
 def seed(applies: Callable[[Any], bool], *, essential: bool) -> param.Integer[int]:

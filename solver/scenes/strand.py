@@ -233,6 +233,7 @@ STRAND = Entry(
     kind="wires",
     structure=strand,
     sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
+    grows=("wires",),
     coarser=_coarser,
     broken_wire=lambda settings: broken_wire(strand(settings)),
 )

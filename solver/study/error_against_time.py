@@ -26,6 +26,7 @@ from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.progress import Tell, silent
+from solver.study.timed import by_increments
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
 """Errors of the friction force whose times make the table."""
@@ -245,13 +246,6 @@ def _by_iterations(settings: Settings, number: int) -> list[float]:
         verdict.seconds
         for _, verdict in islice(judged(problem, method_of(settings), None, spent), number)
     ]
-
-
-def by_increments(settings: Settings) -> float:
-    """Give the time of the incremental solver, from settings to result, s."""
-    start = time.perf_counter()
-    reference_of(discretise(settings))
-    return time.perf_counter() - start
 
 
 def _peer_entry(peer: Peer, settings: Settings, troubles: list[str]) -> list[_Entry]:

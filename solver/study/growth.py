@@ -12,13 +12,14 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.scenes import entry_of
 from solver.settings import Settings
-from solver.study.error_against_time import INCREMENTAL, by_increments, forms_of
+from solver.study.error_against_time import INCREMENTAL, forms_of
 from solver.study.exponent import Exponent, exponent_of
 from solver.study.finished import BROKEN, REFUSED
 from solver.study.progress import Tell, silent
 from solver.study.quantities import reading
 from solver.study.sweep.plan import Plan, Varied
 from solver.study.sweep.point import run_point
+from solver.study.timed import by_increments
 
 MEASURED = (
     "LATIN multiscale",

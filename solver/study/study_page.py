@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from solver.study.crossover import Crossover
+from solver.study.crossover_report import MAP, crossover_map, crossover_notes, crossover_table
 from solver.study.error_against_time import Study
 from solver.study.growth import Growth
 from solver.study.page import PlotSection, Section, bullets, plain_table, write_page
@@ -25,8 +27,8 @@ from solver.study.study_report import (
 TITLE = "Error against run time"
 
 
-def study_sections(study: Study, found: Sequence[Growth]) -> list[Section]:
-    """Write a study, and growth with the size if that was measured."""
+def study_sections(study: Study, found: Sequence[Growth], sizes: Crossover) -> list[Section]:
+    """Write a study, growth with the size if that was measured, and the map of who is first."""
     growth: list[Section] = [
         f"<h2>{GROWTH}</h2>\n<p>{GROWTH_NOTE}</p>",
         PlotSection(GROWTH, growth_panels(found)),
@@ -38,17 +40,22 @@ def study_sections(study: Study, found: Sequence[Growth]) -> list[Section]:
         PlotSection(CURVES, error_panels(study)),
         f"<p>{CAPTION}</p>\n<h2>{TIMES}</h2>\n<p>{TIMES_NOTE}</p>\n{plain_table(table(study))}",
         *(growth if found else []),
+        f"<h2>{MAP}</h2>",
+        PlotSection(MAP, [crossover_map(sizes)]),
+        f"{plain_table(crossover_table(sizes))}\n{bullets(crossover_notes(sizes))}",
         f"<h2>How it was measured</h2>\n{bullets(conditions(study))}",
     ]
 
 
-def write_study(study: Study, found: Sequence[Growth], folder: Path) -> tuple[list[Path], str]:
+def write_study(
+    study: Study, found: Sequence[Growth], sizes: Crossover, folder: Path
+) -> tuple[list[Path], str]:
     """Write the tables and `study.html`.
 
     Parameters
     ----------
-    study, found
-        Errors against run time; growth with the size, or nothing.
+    study, found, sizes
+        Errors against run time; growth with the size, or nothing; who is first at which size.
     folder
         An existing folder; files of these names are replaced.
 
@@ -62,5 +69,5 @@ def write_study(study: Study, found: Sequence[Growth], folder: Path) -> tuple[li
         When a file cannot be written.
     """
     file = folder / "study.html"
-    note = write_page(file, TITLE, study_sections(study, found))
-    return [*write_tables(study, found, folder), file], note
+    note = write_page(file, TITLE, study_sections(study, found, sizes))
+    return [*write_tables(study, found, sizes, folder), file], note

@@ -8,6 +8,8 @@ from dataclasses import astuple
 from pathlib import Path
 
 from solver.disk import whole_file
+from solver.study.crossover import Crossover
+from solver.study.crossover_report import HEAD, crossover_rows
 from solver.study.error_against_time import GOAL, INCREMENTAL, LEVELS, MOST_ITERATIONS, Study
 from solver.study.growth import Growth
 
@@ -116,8 +118,10 @@ def aligned(rows: Sequence[Row]) -> str:
     )
 
 
-def write_tables(study: Study, found: Sequence[Growth], folder: Path) -> list[Path]:
-    """Write `curves.csv`, `levels.csv` and, with sizes, `growth.csv` (s; errors as fractions).
+def write_tables(
+    study: Study, found: Sequence[Growth], sizes: Crossover, folder: Path
+) -> list[Path]:
+    """Write `curves.csv`, `levels.csv`, `map.csv` and, with growth, that (s; errors as fractions).
 
     Raises
     ------
@@ -155,6 +159,7 @@ def write_tables(study: Study, found: Sequence[Growth], folder: Path) -> list[Pa
                 for level in LEVELS.values()
             ),
         ),
+        _write(folder / "map.csv", HEAD, crossover_rows(sizes)),
     ]
     if found:
         head = ["setting", "exponent", "margin", "method", "size", "seconds"]

@@ -10,12 +10,12 @@ import gc
 import math
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
-from solver.latin import Decision, Ending, Iterate, Solution, judged, solve
+from solver.latin import Decision, Ending, Solution, iterations, judged
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
@@ -24,7 +24,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.benchmarks.ahead_problems import AheadProblem
-from solver.study.error_against_time import by_increments
+from solver.study.timed import by_increments, by_latin, latins
 
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""
@@ -36,7 +36,7 @@ MOST = 300
 
 @dataclass(frozen=True)
 class Ahead:
-    """What a problem takes; seconds are medians, from settings to result.
+    """What a problem takes; medians, in seconds of the processor from settings to result.
 
     Attributes
     ----------
@@ -86,19 +86,19 @@ def answer(asked: dict[str, Any]) -> dict[str, Any]:
     """Measure in this process, as fields of `Ahead`."""
     settings = CATALOGUE[asked["scene"]].settings.checked(asked["changes"])
     has_reference, own_at, known_at, known_by = _course(settings)
-    solution = solve(discretise(settings), method_of(settings), watch=False)
-    iterations, found_at = len(solution.records), _found_at(solution)
+    solution = latins(settings)
+    count, found_at = len(solution.records), _found_at(solution)
     del solution
     samples: list[tuple[float, ...]] = []
     for _ in range(asked["repeats"]):
-        latin = _by_latin(settings)
-        gc.collect()
+        latin = by_latin(settings)
         incremental = by_increments(settings) if has_reference else math.nan
-        samples.append((latin, incremental, *_own_way(settings, own_at, known_at)))
+        own, known = _own_way(settings, own_at), _known_way(settings, known_at)
+        samples.append((latin, incremental, own, known))
     latin, incremental, own, known = map(statistics.median, zip(*samples, strict=True))
     return {
         "latin": latin,
-        "iterations": iterations,
+        "iterations": count,
         "incremental": incremental,
         "found_at": found_at,
         "own_iterations": own_at,
@@ -117,7 +117,8 @@ def _course(settings: Settings) -> tuple[bool, float, float, str]:
     except NoReferenceError:
         distance = None
     own_at, known_at, known_by = math.nan, math.nan, ""
-    for iterate, verdict in islice(_own_run(settings)[1], MOST):
+    own = settings.replace(finish="none")
+    for iterate, verdict in islice(judged(problem, method_of(own), resumable=False), MOST):
         if math.isnan(own_at) and distance and distance.of_friction_force(iterate) <= GOAL:
             own_at = float(iterate.number)
         if math.isnan(known_at) and _is_known(verdict):
@@ -128,39 +129,27 @@ def _course(settings: Settings) -> tuple[bool, float, float, str]:
     return distance is not None, own_at, known_at, known_by
 
 
-def _own_run(settings: Settings) -> tuple[float, Iterator[tuple[Iterate, Decision]]]:
-    """Give the time to make the problem, s, and iterates that no status step ends."""
-    own = settings.replace(finish="none")
-    began = time.perf_counter()
-    problem, method = discretise(own), method_of(own)
-    spent = time.perf_counter() - began
-    return spent, judged(problem, method, None, spent, resumable=False)
-
-
 def _is_known(verdict: Decision) -> bool:
     return verdict.status is not None and verdict.status.ending is Ending.CONVERGED
 
 
-def _own_way(settings: Settings, own_at: float, known_at: float) -> tuple[float, float]:
-    """Give the time to the goal, s, without what judges the iterates; and until it is known."""
-    gc.collect()
-    spent, run = _own_run(settings)
-    own = known = math.nan
-    last = max((int(at) for at in (own_at, known_at) if math.isfinite(at)), default=0)
-    for iterate, verdict in islice(run, last):
-        if iterate.number == own_at:
-            own = spent + iterate.seconds
-        if iterate.number == known_at:
-            known = verdict.seconds
-    return own, known
+def _own_way(settings: Settings, at: float) -> float:
+    """Give the time of so many iterations that no status step ends and nothing judges, s."""
+    return math.nan if math.isnan(at) else _seconds_of(settings, iterations, int(at))
 
 
-def _by_latin(settings: Settings) -> float:
-    """Give the time of LATIN, from settings to result, s."""
+def _known_way(settings: Settings, at: float) -> float:
+    """Give the time of so many with all that judges them, s."""
+    return math.nan if math.isnan(at) else _seconds_of(settings, judged, int(at))
+
+
+def _seconds_of(settings: Settings, way: Callable[..., Iterator[object]], number: int) -> float:
+    own = settings.replace(finish="none")
     gc.collect()
-    began = time.perf_counter()
-    solve(discretise(settings), method_of(settings), watch=False)
-    return time.perf_counter() - began
+    began = time.process_time()
+    for _ in islice(way(discretise(own), method_of(own), resumable=False), number):
+        pass
+    return time.process_time() - began
 
 
 def _found_at(solution: Solution) -> float:

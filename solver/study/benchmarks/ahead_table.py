@@ -20,7 +20,7 @@ HEAD = (
 )
 NOTES = (
     "LATIN: `solve` with the scene's defaults. incr.: the incremental solver on the same mesh. "
-    "Both from settings to result, each in turn; ratio: LATIN over the incremental solver.",
+    "Both from settings to result, in seconds of the processor, in turns; ratio: LATIN over incr.",
     "found at: error of the iterate from which a status step found the solution; with * above "
     f"{100 * NEAR:.0f} %, so the incremental solver answered, from LATIN's statuses.",
     f"own way: iterations and seconds until the contact force is within {100 * GOAL:.0f} %, "
