@@ -116,7 +116,8 @@ class Settings(Checked):
         "full",
         ["full", "pgd"],
         "full: a value for every point and instant. pgd: a sum of a few modes, each a shape in "
-        "space times a function of time (model reduction).",
+        "space times a function of time (model reduction); at these sizes full fields come sooner "
+        "to any error.",
         group="Method",
         title="Linear stage",
         essential=True,
@@ -153,7 +154,7 @@ class Settings(Checked):
         applies=_on_modes,
     )
     pgd_sharing = quantity(
-        0.0,
+        1e-5,
         (0.0, 1.0),
         (0.0, 0.5),
         "Equal substructures use the same modes if these miss at most this share of each one's "

@@ -155,3 +155,10 @@ def test_times_are_written_with_the_one_digit_that_they_have() -> None:
         "2 min and 2 GB",
         "2 h and 2 GB",
     ]
+
+
+def test_a_run_on_separated_bases_pays_for_its_proof_whatever_that_costs() -> None:
+    large = {"layers": 50, "max_iterations": 10, "with_reference": False}
+    full, bases = (cost("layers", linear_stage=one, **large) for one in ("full", "pgd"))
+    assert bases.seconds > 2.0 * full.seconds
+    assert bases.memory > full.memory

@@ -116,7 +116,7 @@ def test_a_certified_solution_stands_beside_the_modes_of_its_search() -> None:
     shown = told({**SMALL, "finish": "status", "pgd_modes": 3})
     last = bases_of(shown)
     assert last.is_left
-    assert "those of the search" in shown.page["pgd-space-modes.title"]["text"]
+    assert "of the search" in shown.page["pgd-space-modes.title"]["text"]
     shown.obey(Seek(1, shown.recording.iteration - 1))
     before = bases_of(shown)
     assert not before.is_left

@@ -36,7 +36,7 @@ def draw_space(scene: Scene, _kept: None) -> Drawing | None:
     x = spanned(float(modes.positions[0]), float(modes.positions[-1]))
     keys = (
         Key(GREY, "bare", f"substructure {bases.substructure + 1}"),
-        Key(GREY, "bare", "those of the search" if bases.is_left else news(modes)),
+        Key(GREY, "bare", "modes of the search" if bases.is_left else news(modes)),
     )
     return Drawing(x, UP, _curves(modes.positions, modes.space_modes, modes), keys=keys)
 

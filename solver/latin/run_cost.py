@@ -87,7 +87,8 @@ def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool)
     has_solver = is_alone(problem) or n_jumps <= MOST_JUMPS
     incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
     iterations = min(_iterations(problem, latin), most)
-    steps = latin.finish is not None and has_solver and costs.afford(iterations, WAIT)
+    is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
+    steps = has_solver and (latin.linear.has_to_prove or is_worth_it)
     seconds = BEGINNING + WATCHED * iterations * costs.iteration + steps * incremental
     reference = incremental if with_reference and has_solver else 0.0
     fields, dense = _fields(problem), _dense(problem, n_jumps)

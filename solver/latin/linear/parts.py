@@ -23,9 +23,12 @@ class Full:
     ----------
     remedy
         What helps a run that does not converge, to begin a sentence with; nothing it knows of.
+    has_to_prove
+        Whether a run ends by proof alone, whatever that costs.
     """
 
     remedy: ClassVar[str] = ""
+    has_to_prove: ClassVar[bool] = False
 
     def at_work(
         self, problem: Problem, k: Array, blocks: Blocks, *, multiscale: bool
@@ -64,17 +67,19 @@ class PGD:
         Most modes that one iteration adds to a substructure.
     sharing
         Equal substructures use the same modes if these miss at most this share of each one's field;
-        0: each has modes of its own.
-    remedy
-        What helps a run that does not converge, to begin a sentence with.
+        0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
+        (solver/study/README.md, 8).
+    remedy, has_to_prove
+        As of `Full`.
     """
 
     remedy: ClassVar[str] = "The modes may be too few: raise pgd_modes, lower pgd_tolerance"
+    has_to_prove: ClassVar[bool] = True
 
     modes: int = 10
     tolerance: float = 1e-7
     pairs: int = 2
-    sharing: float = 0.0
+    sharing: float = 1e-5
 
     def __post_init__(self) -> None:
         for name in ("modes", "pairs"):
