@@ -62,7 +62,12 @@ def study_of(*courses):
 
 def test_tables_and_a_page_that_stands_alone_are_written(measured):
     folder, study = measured
-    assert {file.name for file in folder.iterdir()} == {"curves.csv", "levels.csv", "map.csv", "study.html"}
+    assert {file.name for file in folder.iterdir()} == {
+        "curves.csv",
+        "levels.csv",
+        "map.csv",
+        "study.html",
+    }
     page = (folder / "study.html").read_text(encoding="utf-8")
     assert page.count("data-root-id") == 3
     assert not re.search(r"<link|<script src|<img|@import", page)

@@ -31,8 +31,7 @@ HELD_STILL = 0.5
 LEFT_ALONE = 180.0
 """Seconds after which a page that nobody sees gives its process back."""
 LOOKS = 0.2
-"""Seconds between two looks at reports and the sweep, while one is at work: what makes them may be
-another machine, which tells by files."""
+"""Seconds between two looks at reports and the sweep: another machine may make them, by files."""
 
 
 class Session(State):
@@ -54,8 +53,7 @@ class Session(State):
     Attributes
     ----------
     follows_hand, is_held
-        Whether the run is one of many while a slider is dragged, and whether it stands still for a
-        study that is timed.
+        Whether a slider is dragged, and whether the run stands still for a study that is timed.
     asked
         The reports and the sweep of this page.
     crowd
@@ -83,10 +81,9 @@ class Session(State):
         self._looks = timer(self.attend)
         self.asked = Asked(executor, partial(self._looks.set, LOOKS))
         self._left: dict[str, Settings] = {}
-        self._label = ""
+        self._label, self._by_hand = "", False
         self._due: Settings | None = None
         self._agreed: Settings | None = None
-        self._by_hand = False
         self._pages = pages
         pages.add(self)
 
@@ -273,19 +270,18 @@ class Session(State):
 
     def _keep_pace(self) -> None:
         if self.goes_on:
-            pace = self.pace if self._is_free else 0.0
-            self.worker.send(Pace(self.ticket, pace, self.is_held))
+            self.worker.send(Pace(self.ticket, self.pace if self._is_free else 0.0, self.is_held))
 
     def _work(self, *, notice: str = "", **how: bool) -> None:
         """Have a process do the run from its beginning."""
-        again = AGAIN if self.worker.deaths else notice
+        notices = AGAIN if self.worker.deaths else notice, cut_off(self.settings)
         self.worker.begin(Watch(self.look), Ready())
         self.worker.send(
             Run(
                 self.ticket,
                 self.settings,
                 label=self._label,
-                notice=" ".join(filter(None, (again, cut_off(self.settings)))),
+                notice=" ".join(filter(None, notices)),
                 pace=None if self.follows_hand else self.pace,
                 pause_after=None if self._is_free else 1,
                 is_held=self.is_held,
