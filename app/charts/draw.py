@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeGuard
 
 import holoviews as hv
 from bokeh.models import CustomJSTickFormatter
 from bokeh.plotting import figure
 
 from app.charts.layers import Here, Layer, layers, limits
+from solver.arrays import Array
 from solver.study.chart import Chart, Map, Panel, PanelAxis
 
 MOST_LABELS = 7
@@ -91,6 +92,7 @@ def _axes(chart: Chart, before: Chart | None) -> dict[str, Any]:
         "xlabel": _label(chart.x),
         "ylabel": _label(chart.y),
         "xticks": _ticks(chart),
+        "yticks": _steps(chart.y_values) if _has_steps(chart) else None,
         "padding": (0.03, 0.1),
         "show_legend": False,
         "show_grid": isinstance(chart, Panel),
@@ -106,11 +108,22 @@ def _label(axis: PanelAxis) -> str:
     return axis.label if len(axis.label) <= LONG else axis.unit
 
 
+def _has_steps(chart: Chart) -> TypeGuard[Map]:
+    """Tell whether a chart is a map of a few values, each of which has its tick."""
+    return isinstance(chart, Map) and chart.level is not None
+
+
+def _steps(values: Array) -> list[tuple[float, str]]:
+    return [(float(value), f"{value:g}") for value in values]
+
+
 def _ticks(chart: Chart) -> list[Any] | None:
     """Give the names of an axis, or its few whole numbers."""
     if chart.x.names:
         return list(enumerate(chart.x.names))
-    if not chart.x.whole or isinstance(chart, Map):
+    if isinstance(chart, Map):
+        return _steps(chart.x_values) if _has_steps(chart) else None
+    if not chart.x.whole:
         return None
     whole = sorted({int(x) for curve in chart.curves for x in curve.x})
     return whole if 0 < len(whole) <= MOST_LABELS else None
