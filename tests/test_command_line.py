@@ -14,6 +14,7 @@ from solver.checked import dump
 from solver.cli import main
 from solver.definitions import SettingError, about, allowed
 from solver.files import settings_from_toml
+from solver.reference.contact import MOST_JUMPS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 
@@ -181,7 +182,7 @@ def test_a_reference_that_is_not_wanted_or_too_large_is_left_out(capsys):
     assert main(["run", "strand", *changes, "--json"]) == 1
     printed = capsys.readouterr()
     assert json.loads(printed.out)["error_force"] is None
-    assert "at most 5000" in printed.err
+    assert f"at most {MOST_JUMPS}" in printed.err
     assert main(["study", "strand", *changes]) == 2
     assert "nothing to compare with" in capsys.readouterr().err
 
