@@ -176,8 +176,8 @@ class Settings(Checked):
     start = choice(
         "nested",
         ["zero", "nested"],
-        "zero: start from nothing. nested: solve coarser meshes first, and start from their "
-        "solution; the run time includes that.",
+        "zero: start from nothing. nested: start from the solution on half the elements, which the "
+        "incremental solver finds; the run time includes that.",
         group="Method",
         title="Start",
         essential=True,

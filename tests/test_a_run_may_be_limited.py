@@ -13,7 +13,7 @@ from solver.cli import main
 from solver.latin import Accuracy, Ending, Indicator, Iterations, Latin, Seconds, iterations, solve
 from solver.latin.criteria.estimate import ErrorEstimate
 from solver.latin.finish import status_step
-from solver.latin.start import nested
+from solver.latin.start.nested import Nested
 from solver.scenes import CATALOGUE, coarser_problems, discretise
 
 SMALL = {"elements": 40, "instants": 21, "substructures": 4}
@@ -36,21 +36,12 @@ def test_a_run_ends_with_its_iterate_and_says_what_helps() -> None:
     assert solution.iterate.number == 1
 
 
-def test_a_start_that_takes_too_long_leaves_one_iteration_to_every_mesh(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    done: list[int] = []
-
-    class Counted(nested.Cycle):
-        def linear_stage(self, *, mixes: bool = True) -> None:
-            done.append(self.outgoing.shape[0])
-            super().linear_stage(mixes=mixes)
-
-    monkeypatch.setattr(nested, "Cycle", Counted)
-    coarser = list(coarser_problems(CATALOGUE["bar"].settings.checked(SMALL)))
-    latin = Latin(start=nested.Nested(coarser), stop=Seconds(1e-9))
-    next(iterations(bar(), latin))
-    assert len(done) == len(coarser) > 1
+def test_a_start_that_takes_too_long_is_given_up() -> None:
+    problem = bar()
+    start = Nested(coarser_problems(CATALOGUE["bar"].settings.checked(SMALL)))
+    k = Latin().direction.of(problem)
+    assert start.at_work(problem, k) is not None
+    assert start.at_work(problem, k, seconds=0.0) is None
 
 
 def test_a_status_step_that_would_take_too_long_is_not_begun(

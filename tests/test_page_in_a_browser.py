@@ -78,7 +78,7 @@ def test_a_run_that_has_converged_stays_beside_the_next_one_which_may_start_from
     warm.click()
     slider(page, "Peak load").press("ArrowRight")
     expect(status(page)).to_contain_text("Started from the run before:")
-    expect(status(page)).to_contain_text("from coarser meshes")
+    expect(status(page)).to_contain_text("from a coarser mesh")
     expect(page.locator(".figures")).to_contain_text("before")
     page.locator("body").press("r")
     expect(status(page)).not_to_contain_text("Started from")

@@ -41,7 +41,7 @@ def recording(choice: StartChoice | None, **changes: Any) -> Recording:
         ),
         (NEARER, {}, "from zero it is 1."),
         (FARTHER, {}, "Started from zero. The run before is not clearly nearer"),
-        (FARTHER, {"start": "nested"}, "from coarser meshes it is 1."),
+        (FARTHER, {"start": "nested"}, "from a coarser mesh it is 1."),
         (None, {}, "Started from zero, as there was no run before to start from."),
     ],
 )

@@ -59,7 +59,7 @@ TERMS: dict[tuple[str, ...], str] = {
     ("mode",): "A shape in space times a function of time; a field is a sum of modes.",
     ("its field",): "The singular values of the field that the modes of a basis have to describe.",
     ("full stage",): "The same run without model reduction, to compare with.",
-    ("nested",): "Starts from the solution of coarser meshes.",
+    ("nested",): "Starts from the solution of a coarser mesh.",
     ("Anderson",): "Combines the last iterates so that the two stages agree best.",
 }
 """What it is called, the first spelling being that of the list, and what it means."""

@@ -106,7 +106,7 @@ def status_line(
 
 def start_line(run: Recording) -> str:
     """Say from where a run started that could have started from the one before it (HTML)."""
-    own = "coarser meshes" if run.settings.start == "nested" else "zero"
+    own = "a coarser mesh" if run.settings.start == "nested" else "zero"
     if run.choice is None:
         return f"Started from {own}, as there was no run before to start from."
     previous, other = number(run.choice.previous), number(run.choice.own)

@@ -1,6 +1,6 @@
 """Errors of all methods against the time that they take, from settings to result.
 
-Each method pays for what it needs: discretisation, factorisation, coarser meshes, iterations. One
+Each method pays for what it needs: discretisation, factorisation, the coarser mesh, iterations. One
 pass without the clock finds the errors, and warms up; then timed passes run every method once, in
 turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
 """
@@ -63,7 +63,7 @@ FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
     "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "status"},
     "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
 }
-"""The same of scenes where no run starts from coarser meshes."""
+"""The same of scenes where no run starts from a coarser mesh."""
 INCREMENTAL = "incremental solver"
 Kind = Literal["latin", "incremental", "peer"]
 

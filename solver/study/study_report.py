@@ -28,7 +28,7 @@ GROWTH_NOTE = (
 )
 BILLED = (
     "The time of a method is all that it takes from settings to result: discretisation, "
-    "factorisation, coarser meshes, iterations. Imports and the computation of errors are not "
+    "factorisation, the coarser mesh, iterations. Imports and the computation of errors are not "
     "counted.",
     f"The forms of LATIN end at a friction force error of {GOAL:g}, or after {MOST_ITERATIONS} "
     "iterations.",

@@ -89,7 +89,7 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     -------
     F of every row, shape (n_rows, n_instants), scaled.
     """
-    known, is_known = _known_forces(problem, contact_force)
+    known, is_known = known_forces(problem, contact_force)
     balance, needed = _balance(problem, displacement)
     cuts = problem.cuts
     n_cuts = sum(len(side) for side, _ in cuts)
@@ -107,7 +107,7 @@ def row_forces(problem: Problem, displacement: Array, contact_force: Array) -> A
     return known
 
 
-def _known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArray[np.bool_]]:
+def known_forces(problem: Problem, contact_force: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Give the forces of rows that rub or are loaded, and which rows these are."""
     found = np.zeros((problem.n_rows, problem.n_instants))
     is_known = np.zeros(problem.n_rows, dtype=bool)
