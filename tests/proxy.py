@@ -26,19 +26,32 @@ class Proxy:
         self._flows = Event()
         self._flows.set()
         self._sockets: list[socket.socket] = []
+        self._silent: list[socket.socket] = []
         Thread(target=self._accept, daemon=True).start()
 
     def cut(self) -> None:
         """Close all connections, and refuse others."""
         self._is_cut = True
-        for one in self._sockets:
-            with suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
-        self._sockets.clear()
+        self.drop()
+        self._silent, self._sockets = self._sockets, []
+        self.drop()
 
     def hush(self) -> None:
         """Keep all connections, and pass nothing on."""
         self._flows.clear()
+
+    def renew(self) -> None:
+        """Pass on what comes by new connections; the old ones stay silent."""
+        self._silent, self._sockets = self._sockets, []
+        self._flows = Event()
+        self._flows.set()
+
+    def drop(self) -> None:
+        """Close the connections that are silent for good."""
+        for one in self._silent:
+            with suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+        self._silent.clear()
 
     def mend(self) -> None:
         self._is_cut = False
@@ -64,14 +77,15 @@ class Proxy:
                     continue
                 self._sockets += [near, far]
                 for ends in ((near, far), (far, near)):
-                    Thread(target=self._pass_on, args=ends, daemon=True).start()
+                    Thread(target=_pass_on, args=(*ends, self._flows), daemon=True).start()
 
-    def _pass_on(self, source: socket.socket, sink: socket.socket) -> None:
+
+def _pass_on(source: socket.socket, sink: socket.socket, flows: Event) -> None:
+    with suppress(OSError):
+        while data := source.recv(1 << 16):
+            flows.wait()
+            sink.sendall(data)
+    for one in (source, sink):
         with suppress(OSError):
-            while data := source.recv(1 << 16):
-                self._flows.wait()
-                sink.sendall(data)
-        for one in (source, sink):
-            with suppress(OSError):
-                one.shutdown(socket.SHUT_RDWR)
-            one.close()
+            one.shutdown(socket.SHUT_RDWR)
+        one.close()

@@ -53,14 +53,21 @@ def keys_heard(page: Page) -> int:
 
 def test_a_page_whose_socket_broke_goes_on_where_it_was(network: Network) -> None:
     page, proxy = network.page, network.proxy
+
+    def anew() -> None:
+        """Have the silent socket close when the page has seen that its server is there."""
+        with page.expect_response(lambda answer: answer.request.method == "HEAD"):
+            proxy.renew()
+        proxy.drop()
+
     slider(page, "Wires").press("ArrowRight")
     expect(status(page)).to_contain_text("36 substructures")
     page.evaluate("window.stayed = true")
     heard = keys_heard(page)
-    for broken in (proxy.cut, proxy.hush):
+    for broken, mended in ((proxy.cut, proxy.mend), (proxy.hush, proxy.mend), (proxy.hush, anew)):
         broken()
         expect(status(page)).to_contain_text("not connected")
-        proxy.mend()
+        mended()
         expect(status(page)).to_contain_text("36 substructures")
         # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
         comes_true(page, f"window.stayed && {PAGES} === 1")

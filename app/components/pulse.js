@@ -92,10 +92,11 @@ export function render({model, view}) {
     if (!is_lost()) { return }
     try {
       if (!await reach() || !is_lost()) { return }
-      closed?.reconnect()
-      closed = null
-      // On a machine that has much to do it takes its time to be heard again.
+      // On a machine that has much to do it takes its time to be heard again; and a socket that had
+      // fallen silent may close just as the network comes back.
       for (let waited = 0; waited < PATIENCE; waited += BEAT) {
+        closed?.reconnect()
+        closed = null
         await new Promise((done) => setTimeout(done, BEAT))
         if (!is_lost()) { return }
       }
