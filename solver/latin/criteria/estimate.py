@@ -26,7 +26,7 @@ WAIT = 2.0
 """Seconds that a step may take before a run is called converged, whatever the iterations took."""
 LAST = 10.0
 """Times more that a run's last trial may cost: without it the run has no answer."""
-AGAIN = 1.5
+AGAIN = 2.0
 """Ratio of the iteration at which a failed status step is tried again."""
 
 
@@ -165,7 +165,7 @@ class ErrorEstimate:
 
     def _costs_of(self, iterate: Iterate) -> Costs:
         """Estimate the costs by the statuses that an iterate shows, now and then anew."""
-        if self._costs is None or iterate.number >= 2 * self._costs_at:
+        if self._costs is None or iterate.number >= AGAIN * self._costs_at:
             self._costs_at = iterate.number
             self._costs = costs_of(iterate.problem, moving_share(states_of(iterate)))
         return self._costs
