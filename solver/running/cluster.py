@@ -81,14 +81,17 @@ class Cluster(Pool):
         """Tell that the scheduler is gone, where what it was asked for shows that it is."""
         try:
             yield
-        except (OSError, RuntimeError, CancelledError) as trouble:
+        except (Exception, CancelledError) as trouble:
+            is_closed = self._client.status in ("closing", "closed")
+            if not is_closed and not isinstance(trouble, OSError | RuntimeError | CancelledError):
+                raise
             where = self._address
             raise GoneError(f"the scheduler at {where} does not answer any more") from trouble
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; it forgets what is not done yet if futures are to be cancelled."""
-        # One that is gone takes no leave.
-        with suppress(OSError, RuntimeError, CancelledError):
+        # One that is gone takes no leave, whatever its client says to that.
+        with suppress(Exception, CancelledError):
             self._executor.shutdown(wait=wait and not cancel_futures)
             self._client.close()
 
@@ -104,7 +107,9 @@ class Remote(Future[Any]):
 
     def cancel(self) -> bool:
         """Have the cluster forget the call; what a worker is at goes on until it is done."""
-        return self._call.cancel()
+        with suppress(Exception):  # that a client which is closed can tell nobody
+            return self._call.cancel()
+        return False
 
     def _hear(self, call: Future[Any]) -> None:
         if call.cancelled():
