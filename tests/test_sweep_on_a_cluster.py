@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from solver.cli import main
 from solver.definitions import SettingError
 from solver.running.cluster import Caller
 from solver.running.executors import opened
-from solver.running.pool import Pool
+from solver.running.pool import GoneError, Pool
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 
@@ -128,6 +129,21 @@ def test_a_sweep_waits_for_workers_and_a_scheduler_that_is_gone_is_told(
     assert "does not answer any more; the same command goes on from here" in said.err
     assert "Traceback" not in said.err
     assert "of 2000 runs" in said.out
+
+
+def test_a_client_that_has_given_up_its_scheduler_takes_calls_back_without_a_word(
+    cluster: Cluster, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    with opened(cluster.on) as pool:
+        calls = [pool.submit(time.sleep, 0.2) for _ in range(4)]
+        with monkeypatch.context() as patch:
+            patch.setattr(pool._client, "status", "closed")
+            for call in calls:
+                call.cancel()
+            with pytest.raises(GoneError):
+                pool.submit(time.sleep, 0.0)
+            pool.shutdown(cancel_futures=True)
+    assert not caplog.records
 
 
 def test_workers_of_other_versions_are_refused(pool: Pool, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -74,7 +74,7 @@ class Cluster(Pool):
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Have something done by a worker, which has to know the function by its name."""
         with self._answering():
-            return Remote(self._executor.submit(fn, *args, **kwargs))
+            return Remote(self._executor.submit(fn, *args, **kwargs), self._client)
 
     @contextmanager
     def _answering(self) -> Iterator[None]:
@@ -82,8 +82,8 @@ class Cluster(Pool):
         try:
             yield
         except (Exception, CancelledError) as trouble:
-            is_closed = self._client.status in ("closing", "closed")
-            if not is_closed and not isinstance(trouble, OSError | RuntimeError | CancelledError):
+            is_told = isinstance(trouble, OSError | RuntimeError | CancelledError)
+            if not is_told and not _is_closed(self._client):
                 raise
             where = self._address
             raise GoneError(f"the scheduler at {where} does not answer any more") from trouble
@@ -99,17 +99,16 @@ class Cluster(Pool):
 class Remote(Future[Any]):
     """A call whose loss with its worker is an `EndedError`, as it is on this machine."""
 
-    def __init__(self, call: Future[Any]) -> None:
+    def __init__(self, call: Future[Any], client: Client) -> None:
         super().__init__()
-        self._call = call
+        self._call, self._client = call, client
         self.set_running_or_notify_cancel()
         call.add_done_callback(self._hear)
 
     def cancel(self) -> bool:
         """Have the cluster forget the call; what a worker is at goes on until it is done."""
-        with suppress(Exception):  # that a client which is closed can tell nobody
-            return self._call.cancel()
-        return False
+        # One that is closed can tell nobody, and says that with a stack.
+        return not _is_closed(self._client) and self._call.cancel()
 
     def _hear(self, call: Future[Any]) -> None:
         if call.cancelled():
@@ -122,3 +121,8 @@ class Remote(Future[Any]):
             self.set_exception(EndedError("its workers were lost"))
         else:
             self.set_exception(trouble)
+
+
+def _is_closed(client: Client) -> bool:
+    """Tell whether a client has given up its scheduler, by itself too."""
+    return client.status in ("closing", "closed")
