@@ -45,9 +45,8 @@ def test_the_iterations_are_those_of_runs(found: ahead.Ahead) -> None:
     assert found.known_by == "certified"
 
 
-def test_all_times_are_there_and_knowing_is_billed_on_top(found: ahead.Ahead) -> None:
-    assert min(found.latin, found.incremental, found.own) > 0.0
-    assert found.known > found.own
+def test_all_times_are_there(found: ahead.Ahead) -> None:
+    assert min(found.latin, found.incremental, found.own, found.known) > 0.0
     assert found.ratio == found.latin / found.incremental
 
 

@@ -7,7 +7,9 @@ import os
 import re
 import subprocess
 import sys
+import time
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -18,7 +20,14 @@ from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.chart import HUES
-from solver.study.error_against_time import FORMS, INCREMENTAL, LEVELS, ErrorCurve, Study
+from solver.study.error_against_time import (
+    FORMS,
+    INCREMENTAL,
+    LEVELS,
+    ErrorCurve,
+    Study,
+    error_against_time,
+)
 from solver.study.growth import Growth, Size, growth
 from solver.study.page import NO_CHARTS
 from solver.study.study_panels import error_panels
@@ -100,6 +109,16 @@ def test_accelerated_forms_end_below_a_millionth(measured):
         if "Anderson" in one.method:
             assert one.error_force[-1] <= 1e-6
             assert one.error_displacement[-1] <= 1e-6
+
+
+def test_one_clock_bills_all_methods(monkeypatch):
+    seconds = map(float, count())
+    monkeypatch.setattr(time, "perf_counter", lambda: next(seconds))
+    settings = BarSettings.checked({"elements": 12, "instants": 11, "substructures": 3})
+    for one in error_against_time(settings, 1).courses:
+        assert (one.seconds >= 1.0).all()
+    sizes = [size for one in growth(settings) if one.setting == "instants" for size in one.sizes]
+    assert all(size.seconds >= 1.0 for size in sizes)
 
 
 def test_the_levels_agree_with_the_curves(measured):

@@ -26,7 +26,7 @@ from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.progress import Tell, silent
-from solver.study.timed import by_increments
+from solver.study.timed import by_increments, nothing_collected
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
 """Errors of the friction force whose times make the table."""
@@ -190,7 +190,8 @@ def error_against_time(
     for turn in range(1, repeats + 1):
         tell(f"Timed pass {turn} of {repeats}", turn / (repeats + 1))
         for entry, times in zip(entries, samples, strict=True):
-            times.append(entry.timed())
+            with nothing_collected():
+                times.append(entry.timed())
     courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
     return Study(settings, repeats, machine(), tuple(courses), tuple(troubles))
 
@@ -205,9 +206,14 @@ def _entries(settings: Settings, tell: Tell) -> list[_Entry]:
     for number, (method, form) in enumerate(forms.items()):
         tell(f"Errors of {method}", number / len(forms))
         entries.append(_latin_entry(method, form, distance))
-    steps = [float(reference.steps)]
     entries.append(
-        _Entry(INCREMENTAL, "incremental", steps, [(0.0, 0.0)], lambda: [by_increments(settings)])
+        _Entry(
+            INCREMENTAL,
+            "incremental",
+            steps=[float(reference.steps)],
+            errors=[(0.0, 0.0)],
+            timed=lambda: [by_increments(settings, time.perf_counter)],
+        )
     )
     return entries
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import statistics
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +20,7 @@ from solver.study.progress import Tell, silent
 from solver.study.quantities import reading
 from solver.study.sweep.plan import Plan, Varied
 from solver.study.sweep.point import run_point
-from solver.study.timed import by_increments
+from solver.study.timed import by_increments, nothing_collected
 
 MEASURED = (
     "LATIN multiscale",
@@ -87,7 +88,8 @@ def _swept(form: Settings, setting: str, sizes: tuple[int, ...]) -> Iterator[Siz
     """Measure a form of LATIN, one run after the other: others beside them would slow them down."""
     plan = Plan(form.replace(**LONG), (Varied(setting, sizes, logarithmic=True),), READINGS)
     for number, size in enumerate(sizes):
-        row = run_point(plan, number)
+        with nothing_collected():
+            row = run_point(plan, number)
         if row.ending not in (REFUSED, BROKEN):
             seconds, total, iterations = row.values
             reached = math.isfinite(iterations)
@@ -101,5 +103,6 @@ def _solved(settings: Settings, setting: str, sizes: tuple[int, ...]) -> Iterato
     for size in sizes:
         with contextlib.suppress(SettingError):
             changed = settings.replace(**{setting: size})
-            seconds = statistics.median(by_increments(changed) for _ in range(3))
+            samples = (by_increments(changed, time.perf_counter) for _ in range(3))
+            seconds = statistics.median(samples)
             yield Size(size, seconds, None, seconds)

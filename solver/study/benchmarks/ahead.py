@@ -6,10 +6,8 @@ all code. Then each way starts from settings, in turns, with nothing kept of the
 
 from __future__ import annotations
 
-import gc
 import math
 import statistics
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import islice
@@ -24,7 +22,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.benchmarks.ahead_problems import AheadProblem
-from solver.study.timed import by_increments, by_latin, latins
+from solver.study.timed import by_increments, by_latin, latins, seconds_of
 
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""
@@ -145,11 +143,12 @@ def _known_way(settings: Settings, at: float) -> float:
 
 def _seconds_of(settings: Settings, way: Callable[..., Iterator[object]], number: int) -> float:
     own = settings.replace(finish="none")
-    gc.collect()
-    began = time.process_time()
-    for _ in islice(way(discretise(own), method_of(own), resumable=False), number):
-        pass
-    return time.process_time() - began
+
+    def work() -> None:
+        for _ in islice(way(discretise(own), method_of(own), resumable=False), number):
+            pass
+
+    return seconds_of(work)
 
 
 def _found_at(solution: Solution) -> float:
