@@ -60,35 +60,45 @@ def from_jumps(jumps: sparse.csr_array) -> tuple[sparse.csr_array, sparse.csr_ar
     T, shape (n_dofs, n_jumps), with J T = I but for such jumps, and Z, shape (n_dofs, n_trees) for
     the trees that do not stand on the ground, with J Z = 0.
     """
-    size, ground = jumps.shape
+    ground = jumps.shape[1]
     edges = graph_of(jumps)
-    count, number = trees_of(edges, ground)
-    _, root = np.unique(number, return_index=True)
-    root[number[ground]] = ground
-    own = number[:ground] != number[ground]
-    columns = number[:ground] - (number[:ground] > number[ground])
-    moves = sparse.csr_array(
-        (np.ones(np.count_nonzero(own)), (np.flatnonzero(own), columns[own])),
-        shape=(ground, count - 1),
-    )
+    _, number = trees_of(edges, ground)
+    _, roots = np.unique(number, return_index=True)
+    roots[number[ground]] = ground
+    return _along_branches(jumps, edges, roots), _of_whole_trees(number)
+
+
+def _of_whole_trees(number: Indices) -> sparse.csr_array:
+    """Move every tree as one; `number` is the tree of every point, the last of all the ground."""
+    trees, standing = number[:-1], number[-1]
+    moved = np.flatnonzero(trees != standing)
+    columns = trees[moved] - (trees[moved] > standing)
+    return sparse.csr_array((np.ones(len(moved)), (moved, columns)), (len(trees), number.max()))
+
+
+def _along_branches(
+    jumps: sparse.csr_array, edges: tuple[Indices, Indices], roots: Indices
+) -> sparse.csr_array:
+    """Move all that is beyond a jump, seen from the root of its tree."""
+    size, ground = jumps.shape
     # Every root hangs on the ground, so that one search meets all points.
-    rows = np.concatenate([edges[0], root[root != ground]])
-    ends = np.concatenate([edges[1], np.full(count - 1, ground)])
+    others = roots[roots != ground]
+    rows = np.concatenate([edges[0], others])
+    ends = np.concatenate([edges[1], np.full(len(others), ground)])
     links = sparse.csr_array((np.ones(len(rows)), (rows, ends)), shape=(ground + 1, ground + 1))
-    order, parent = breadth_first_order(links, ground, directed=False)
-    point = np.setdiff1d(order, root)
-    parent = parent[point]
-    above = np.minimum(point, parent), np.maximum(point, parent)
-    keys, edge = np.unique(edges[0] * (ground + 1) + edges[1], return_index=True)
-    branch = edge[np.searchsorted(keys, above[0] * (ground + 1) + above[1])]
-    signs = np.asarray(jumps[branch, point]).ravel()
-    step = sparse.csr_array((signs, (point, branch)), shape=(ground, size))
-    held = parent < ground
-    back = sparse.csr_array(
-        (np.ones(np.count_nonzero(held)), (point[held], parent[held])), shape=(ground, ground)
-    )
+    order, parents = breadth_first_order(links, ground, directed=False)
+    points = np.setdiff1d(order, roots)
+    parents = parents[points]
+    keys, first = np.unique(edges[0] * (ground + 1) + edges[1], return_index=True)
+    wanted = np.minimum(points, parents) * (ground + 1) + np.maximum(points, parents)
+    branches = first[np.searchsorted(keys, wanted)]
+    signs = np.asarray(jumps[branches, points]).ravel()
+    step = sparse.csr_array((signs, (points, branches)), shape=(ground, size))
+    held = parents < ground
+    ones = np.ones(np.count_nonzero(held))
+    beyond = sparse.csr_array((ones, (points[held], parents[held])), shape=(ground, ground))
     found = step
     while step.nnz:
-        step = sparse.csr_array(back @ step)
+        step = sparse.csr_array(beyond @ step)
         found = found + step
-    return sparse.csr_array(found), moves
+    return sparse.csr_array(found)

@@ -42,7 +42,7 @@ NEXT = 2.0
 strands of 3 to 20 wires and three loads it gives 1.6 to 3 times what moves (measured)."""
 PASSES, PASS = 30, 1e-9
 """How often an iteration passes over a boundary field, and seconds a number (measured)."""
-CALLS, OF_ITERATION = 1e-4, 5e-4
+CALLS, OF_ITERATION = 2e-4, 5e-4
 """Seconds of a dense system, and of an iteration, that no size makes less (measured)."""
 SHIFT = 8e-6
 """Seconds that an iteration takes an instant to shift a body that slides as a whole (measured)."""
