@@ -64,6 +64,7 @@ def test_a_run_that_has_to_be_agreed_to_begins_by_the_button_alone(
     asks: list[Report] = [Picture(1, Facts(is_broken=True, asks=True), b"")]
     hear(session, lone, asks)
     assert transport._run.label == "Run anyway"
+    assert "however long" in transport._run.description
     assert len(runs(lone)) == 1
     transport.toggle()
     assert [run.is_agreed for run in runs(lone)] == [False, True]

@@ -22,6 +22,7 @@ LABELS = {
     "fastest": "as fast as it can",
 }
 RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
+AGREES = "Run anyway, however long that takes (space)."
 FIXED = 5
 """Buttons, pace and sliders, which always stand there."""
 PLAIN = {"whiteSpace": "nowrap"}
@@ -157,7 +158,7 @@ class Transport:
         elif facts is not None and facts.is_over:
             label, icon, does = "Replay", "replay", REPLAYS
         elif facts is not None and facts.asks:
-            label, icon = "Run anyway", "warning_amber"
+            label, icon, does = "Run anyway", "warning_amber", AGREES
         if self._run.icon != icon:
             self._run.param.update(label=label, icon=icon, description=does)
         if self._substructure in self._sliders:
