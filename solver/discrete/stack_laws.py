@@ -20,6 +20,7 @@ from solver.laws import (
     Frictionless,
     Interface,
     Perfect,
+    PointOfBody,
     SlackSpring,
     Sliders,
     Unilateral,
@@ -119,7 +120,7 @@ def _spring(scene: StackData, spring: Spring, part: Part) -> Contact:
         points=np.zeros(1, dtype=np.intp),
         positions=np.array([scene.length]),
         weights=scene.length * part.rectangle.edge_weights("right")[:1],
-        around=Bodies(depth=scene.height),
+        around=PointOfBody(scene.modulus(0)),
     )
 
 

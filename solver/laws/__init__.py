@@ -1,6 +1,6 @@
 """Interface laws: objects that own all that is said about them, all points at once."""
 
-from solver.laws.around import Bodies, Rod
+from solver.laws.around import Bodies, PointOfBody, Rod
 from solver.laws.boundary import Dirichlet, Neumann
 from solver.laws.compliant import Compliant
 from solver.laws.contact import OPEN, Contact
@@ -27,6 +27,7 @@ __all__ = [
     "Interface",
     "Neumann",
     "Perfect",
+    "PointOfBody",
     "Rod",
     "RowValues",
     "SlackSpring",

@@ -22,8 +22,7 @@ SYSTEMS = 3
 SHARE = 1.0
 """Share of the time of all iterations that a step may take: it is tried again at twice as many
 iterations, so that all trials together take twice as long as the iterations. Under loads far beyond
-friction an instant takes ten systems from any statuses, and from the exact force. With a third the
-block on a slope has its solution after 45 iterations instead of 25 (measured)."""
+friction an instant takes ten systems from any statuses, and from the exact force (measured)."""
 WORTH = 0.5
 """Share of the time of the iterations so far that a proof is worth: with all of it blocks of
 384 x 192 elements took twice as long, to prove what their estimate had said (measured)."""
