@@ -9,7 +9,10 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+from threading import Thread
+from typing import Any
 
 import numpy as np
 import pytest
@@ -105,24 +108,39 @@ def test_a_client_that_is_killed_is_gone_on_with(cluster: Cluster, tmp_path: Pat
     assert sorted(numbers) == list(range(40))
 
 
+class Hasty(Caller):
+    """A client that takes a scheduler which it had found for gone after a second."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._timeout = 1.0
+
+
 def test_a_sweep_waits_for_workers_and_a_scheduler_that_is_gone_is_told(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("solver.running.cluster.Caller", Hasty)
     doomed = Cluster(tmp_path)
     journal = tmp_path / "out" / "sweep.jsonl"
-    asked = [sys.executable, "-m", "solver", "sweep", "bar", "--vary", "peak=300:900:2000"]
+    asked = ["sweep", "bar", "--vary", "peak=300:900:2000"]
     asked += ["--of", "iterations", "--on", doomed.on, "--out", str(journal.parent)]
     asked += ["--set", "elements=20", "--set", "substructures=2", "--set", "instants=21"]
+
+    def end() -> None:
+        with suppress(AssertionError):
+            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
+        doomed.end()
+
     try:
         with opened(doomed.on) as pool:
             running = sweep(tiny(["peak=300,900"], ["iterations"]), pool)
             assert pool.width == 1
             doomed.worker()
             assert len(list(running)) == 2
-        with started(asked) as told:
-            wait_for(lambda: journal.exists() and journal.read_bytes().count(b"\n") > 3)
-            doomed.end()
-            assert told.wait() == 1
+        ending = Thread(target=end)
+        ending.start()
+        assert main(asked) == 1
+        ending.join()
     finally:
         doomed.end()
     said = capfd.readouterr()
