@@ -6,6 +6,7 @@ from __future__ import annotations
 import one_thread  # noqa: F401  # before NumPy, which asks but once
 # isort: on
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -88,6 +89,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take longest, and keep the order of all else."""
     places = {name: place for place, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: places.get(item.path.stem, len(places)))
+
+
+def pytest_collection_finish() -> None:
+    """Have no collection of garbage look through all that was imported again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

@@ -108,6 +108,11 @@ def test_keys_are_listed_step_through_time_and_play_it_to_its_end(page: Page) ->
     expect(instant).to_contain_text("t = 0.1 s")
     body.press("ArrowLeft")
     expect(instant).to_contain_text("t = 0 s")
+    slider(page, "Instant").press("End")
+    expect(instant).to_contain_text("t = 1 s")
+    for before in ("0.9", "0.8"):
+        body.press("ArrowLeft")
+        expect(instant).to_contain_text(f"t = {before} s")
     body.press("t")
     expect(instant).to_contain_text("t = 1 s")
 

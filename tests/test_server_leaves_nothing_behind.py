@@ -22,7 +22,7 @@ AT_REST = 0.2
 never idle."""
 
 
-def share(server: Server, seconds: float = 2.0) -> float:
+def share(server: Server, seconds: float = 1.0) -> float:
     """Give the share of a processor that a server takes for a while, its workers aside."""
 
     def taken() -> float:
@@ -90,7 +90,7 @@ def test_a_page_at_rest_is_told_of_and_takes_next_to_nothing_and_one_asked_for_o
         shown = -1
         while shown != len(page.times):
             shown = len(page.times)
-            time.sleep(1.0)
+            time.sleep(0.7)
 
     server = Server(tmp_path / "log", 0, *SHORT)
     try:
