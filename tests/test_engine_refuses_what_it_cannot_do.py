@@ -23,6 +23,7 @@ from solver.latin import (
 )
 from solver.latin.linear import coarse, response
 from solver.latin.linear.full import FullGroup
+from solver.latin.linear.response import Responses
 from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
@@ -72,9 +73,9 @@ def test_a_body_force_in_some_of_alike_substructures_stays_theirs(without: int) 
     force = parts[without].body_force
     assert force is not None
     parts[without] = replace(parts[without], body_force=None)
-    missing = FullGroup(problem, parts, problem.direction)
+    missing = FullGroup(problem, parts, problem.direction, Responses())
     parts[without] = replace(parts[without], body_force=np.zeros_like(force))
-    zero = FullGroup(problem, parts, problem.direction)
+    zero = FullGroup(problem, parts, problem.direction, Responses())
     assert missing.body is not None
     assert np.array_equal(missing.body, zero.body)
     assert [bool(missing.body[:, place].any()) for place in range(4)] == [

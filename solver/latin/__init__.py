@@ -12,6 +12,7 @@ from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.iterations import iterations
 from solver.latin.linear.parts import PGD, Full
 from solver.latin.method import Latin
+from solver.latin.slabs import solve_in_slabs
 from solver.latin.solve import Record, Solution, judged, record, solve
 from solver.latin.start.nested import Nested
 from solver.latin.stop import Decision, StopRules
@@ -43,4 +44,5 @@ __all__ = [
     "judged",
     "record",
     "solve",
+    "solve_in_slabs",
 ]

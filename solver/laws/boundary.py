@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -47,6 +48,10 @@ class Dirichlet(Interface):
         """Compare the displacement with that prescribed."""
         missed = beyond(displacement[self.rows] - self.displacement, noise)
         return Gaps(displacement=squared(missed))
+
+    def during(self, some: slice) -> Self:
+        """Give what is prescribed at some instants."""
+        return replace(self, displacement=self.displacement[:, some])
 
     @property
     def given_displacement(self) -> RowValues:
@@ -94,6 +99,10 @@ class Neumann(Interface):
     def macro_parts(self) -> Iterator[MacroPart]:
         """Give the macro forces, which the load balances."""
         yield MacroPart(self.rows, self.macro, np.asarray(self.macro.T @ self.force))
+
+    def during(self, some: slice) -> Self:
+        """Give what is prescribed at some instants."""
+        return replace(self, force=self.force[:, some])
 
     @property
     def given_force(self) -> RowValues:

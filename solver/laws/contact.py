@@ -59,6 +59,10 @@ class Contact(Pairs):
         along = self.tangential.component
         return (along,) if self.normal is None else (self.normal.component, along)
 
+    def begun(self, start: Array) -> Self:
+        """Give the law whose sliders begin elsewhere, as `Tangential.begun`."""
+        return replace(self, tangential=self.tangential.begun(start))
+
     @property
     def opens(self) -> bool:
         """Whether contact may be lost."""
@@ -121,7 +125,9 @@ class Contact(Pairs):
         if self.normal is not None:
             pressing = beyond(force[self.normal.component.above], noise)
             opening = beyond(self.normal.opening(displacement, force), 2.0 * noise)
-        moved = np.diff(self.tangential.slider(displacement, force), axis=1, prepend=0.0)
+        start = self.tangential.start
+        before = 0.0 if start is None else start[:, None]
+        moved = np.diff(self.tangential.slider(displacement, force), axis=1, prepend=before)
         slip = beyond(moved, 2.0 * noise)
         return Behaviour(
             slip=slip,
@@ -184,9 +190,10 @@ class Contact(Pairs):
 
         It is the sum of its pairs'.
         """
-        return np.diff(
-            self.by_point(self.tangential.slider(displacement, force)), axis=1, prepend=0.0
-        )
+        start = self.tangential.start
+        before = 0.0 if start is None else self.by_point(start)[:, None]
+        moved = self.by_point(self.tangential.slider(displacement, force))
+        return np.diff(moved, axis=1, prepend=before)
 
     def rules(self, first: int) -> list[Rules]:
         """Say what the jumps of the points obey, component by component.

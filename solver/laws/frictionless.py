@@ -25,6 +25,10 @@ class Frictionless(Tangential):
         object.__setattr__(self, "bound", none)
         object.__setattr__(self, "friction", none)
 
+    def begun(self, start: Array) -> Frictionless:
+        """Remember nothing."""
+        return self
+
     def rule(self, k: Array, n_instants: int) -> TangentialRule:
         """Let the jump be what it is."""
         springs = Springs(self.component, k)

@@ -129,6 +129,10 @@ class Interface(ABC):
             What rounding makes of either; less is nothing.
         """
 
+    def during(self, some: slice) -> Self:
+        """Give the law of some instants alone; where bodies stand before them is another matter."""
+        return self
+
     def macro_parts(self) -> Iterator[MacroPart]:
         """Give what is in equilibrium in the coarse problem."""
         return iter(())

@@ -15,8 +15,8 @@ WALK_FROM_POINTS = 150
 """From this many points on, the walk beats the scan (measured: between 60 and 211)."""
 
 
-def play(target: Array, reach: Array) -> Array:
-    """Follow a target with Coulomb play, from rest at zero.
+def play(target: Array, reach: Array, start: Array | None = None) -> Array:
+    """Follow a target with Coulomb play.
 
     Parameters
     ----------
@@ -24,32 +24,38 @@ def play(target: Array, reach: Array) -> Array:
         Position that the point would take without friction, shape (n_points, n_times), m.
     reach
         Distance at which it starts to slip, same shape or (n_points,), m; non-negative.
+    start
+        Position before, shape (n_points,), m; None is zero.
 
     Returns
     -------
     Position with friction, shape (n_points, n_times), m (solver/README.md, 2).
     """
     reach = reach if reach.ndim == target.ndim else reach[:, None]
-    result: Array = Play(*target.shape)(target, reach).copy()
+    result: Array = Play(target.shape[0], target.shape[1], start)(target, reach).copy()
     return result
 
 
-def Play(n_points: int, n_times: int) -> _Walk | _Scan:  # noqa: N802  # chooses a class, as one
+def Play(  # noqa: N802  # chooses a class, as one
+    n_points: int, n_times: int, start: Array | None = None
+) -> _Walk | _Scan:
     """Prepare the play operator for a size: its memory is allocated once, here.
 
-    Calling the result as `play(target, reach)`, with reach of shape (n_points, n_times) or
-    (n_points, 1), gives an array that the next call overwrites.
+    It begins at `start`, shape (n_points,), or at zero. Calling the result as `play(target,
+    reach)`, with reach of shape (n_points, n_times) or (n_points, 1), gives an array that the next
+    call overwrites.
     """
     few = n_points < WALK_FROM_POINTS and n_times > 1
-    return _Scan(n_points, n_times) if few else _Walk(n_points, n_times)
+    first = 0.0 if start is None else start
+    return _Scan(n_points, n_times, first) if few else _Walk(n_points, n_times, first)
 
 
 class _Walk:
     """One instant after the other."""
 
-    def __init__(self, n_points: int, n_times: int) -> None:
+    def __init__(self, n_points: int, n_times: int, start: Array | float = 0.0) -> None:
         self._low, self._high, self._position = np.zeros((3, n_times, n_points))
-        before = [np.zeros(n_points), *self._position[:-1]]
+        before = [start, *self._position[:-1]]
         self._steps = list(zip(before, self._low, self._high, self._position, strict=True))
 
     def __call__(self, target: Array, reach: Array) -> Array:
@@ -68,7 +74,7 @@ class _Scan:
     what the block makes of a point that enters it far below, or far above.
     """
 
-    def __init__(self, n_points: int, n_times: int) -> None:
+    def __init__(self, n_points: int, n_times: int, start: Array | float = 0.0) -> None:
         size = max(2, round(0.5 * np.sqrt(n_times)))
         blocks = -(-n_times // size)
         self._limits = np.zeros((2, blocks, size, n_points))
@@ -80,6 +86,7 @@ class _Scan:
             for j in range(1, size)
         ]
         entry = np.zeros((blocks + 1, n_points))
+        entry[0] = start
         last_low, last_high = self._composed[-1]
         self._carries = list(zip(entry[:-1], last_low, last_high, entry[1:], strict=True))
         self._entry = entry[:-1, None]

@@ -24,8 +24,9 @@ class Sliders(Tangential):
     component: Component
     bound: Array
     friction: Array
+    start: Array | None = None
 
-    of_pairs: ClassVar[tuple[str, ...]] = ("bound", "friction")
+    of_pairs: ClassVar[tuple[str, ...]] = ("bound", "friction", "start")
 
     @classmethod
     def of_known_bound(cls, component: Component, bound: Array) -> Self:
@@ -58,7 +59,7 @@ class SliderRule:
         self.springs = Springs(law.component, k)
         self.reach = law.bound[:, None] * self.springs.soft
         self.grows = law.friction[:, None] * self.springs.soft
-        self._play = Play(len(law.bound), n_instants)
+        self._play = Play(len(law.bound), n_instants, law.start)
 
     def __call__(
         self, incoming: Array, displacement: Array, some: slice, pressing: Array | None = None

@@ -16,6 +16,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws.interface import Component
+from solver.refusal import RefusedError
 
 
 class TangentialRule(Protocol):
@@ -43,6 +44,8 @@ class Tangential(ABC):
     ratio, slip_length
         Factor on the bound, in the end, and the accumulated slip, scaled, on the way to which it
         grows from 1 in proportion; (n_pairs,) each, None where slip changes nothing.
+    start
+        Where every slider stands before the first instant, (n_pairs,), scaled; None is zero.
     """
 
     component: Component
@@ -51,6 +54,7 @@ class Tangential(ABC):
     softness: Array | None = None
     ratio: Array | None = None
     slip_length: Array | None = None
+    start: Array | None = None
 
     of_pairs: ClassVar[tuple[str, ...]] = ()
     """Attributes of shape (n_pairs,) of its dataclass."""
@@ -73,6 +77,28 @@ class Tangential(ABC):
             W and F of all rows, shape (n_rows, n_instants); F may be None where nobody reads it.
         """
         return self.component.jump(displacement)
+
+    def begun(self, start: Array) -> Tangential:
+        """Give the law whose sliders stand elsewhere before the first instant.
+
+        Parameters
+        ----------
+        start
+            Where, as `slider` gives it, shape (n_pairs,), scaled.
+
+        Raises
+        ------
+        RefusedError
+            If it remembers more than that.
+        """
+        if self.slip_length is not None:
+            raise RefusedError(
+                "friction_law",
+                "slip-dependent",
+                "a law that remembers nothing but where its sliders stand",
+                "solve the whole interval at once, or take Coulomb's friction",
+            )
+        return self._with(start=start)
 
     def allowed(self, pressing: Array | None, slip: Array) -> Array:
         """Give the largest friction force, shape (n_pairs, n_instants).
@@ -98,7 +124,9 @@ class Tangential(ABC):
     def joined(cls, laws: Sequence[Self]) -> Self:
         """Put the pairs of laws between two bodies one after the other."""
         values: dict[str, Any] = {
-            name: np.concatenate([getattr(law, name) for law in laws]) for name in cls.of_pairs
+            name: np.concatenate([getattr(law, name) for law in laws])
+            for name in cls.of_pairs
+            if getattr(laws[0], name) is not None
         }
         component = Component(
             np.concatenate([law.component.above for law in laws]),

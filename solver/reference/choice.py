@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from solver.discrete.problem import Problem
+from solver.reference.condensation import NoReferenceError
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod
 from solver.reference.solution import Reference, States
@@ -41,7 +42,15 @@ def reference_of(problem: Problem, stop: Callable[[], bool] | None = None) -> Re
 
 
 def incremental_solver(problem: Problem) -> Incremental:
-    """Prepare the solver that the interfaces of a problem call for."""
+    """Prepare the solver that the interfaces of a problem call for.
+
+    Raises
+    ------
+    NoReferenceError
+        If there is none, or the problem goes on from where another ends.
+    """
+    if any(law.tangential.start is not None for law in problem.rubbing.values()):
+        raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
     return IncrementalRod(problem) if is_alone(problem) else IncrementalContact(problem)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.blocks import ALL, Blocks, at_once
+from solver.latin.linear.response import Responses
 from solver.latin.linear.stage import Group, LinearStage
 
 
@@ -54,9 +55,22 @@ class FullLinearStage(LinearStage[Array]):
     """The linear stage with full space-time fields, all of which is local in time."""
 
     def __init__(
-        self, problem: Problem, k: Array, *, multiscale: bool, blocks: Blocks | None = None
+        self,
+        problem: Problem,
+        k: Array,
+        *,
+        multiscale: bool,
+        blocks: Blocks | None = None,
+        responses: Responses | None = None,
     ) -> None:
-        super().__init__(problem, k, multiscale=multiscale, make_group=FullGroup, blocks=blocks)
+        super().__init__(
+            problem,
+            k,
+            multiscale=multiscale,
+            make_group=FullGroup,
+            blocks=blocks,
+            responses=responses,
+        )
         self._full = [group for group in self.groups if isinstance(group, FullGroup)]
         self._blocks = blocks or at_once(problem.n_instants)
 

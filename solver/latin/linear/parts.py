@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from solver.arrays import Array
@@ -10,6 +10,7 @@ from solver.discrete.problem import Problem
 from solver.latin.blocks import Blocks
 from solver.latin.criteria.estimate import ErrorEstimate, EstimateByProof
 from solver.latin.linear.full import FullLinearStage
+from solver.latin.linear.response import Responses
 from solver.latin.linear.separated import ReducedLinearStage
 from solver.reduction.enrichment import Enrichment
 from solver.refusal import check_range
@@ -25,10 +26,14 @@ class Full:
         What helps a run that does not converge, to begin a sentence with; nothing it knows of.
     has_to_prove
         Whether a run ends by proof alone, whatever that costs.
+    responses
+        Factors of substructures that runs with one k share; None: each run has its own.
     """
 
     remedy: ClassVar[str] = ""
     has_to_prove: ClassVar[bool] = False
+
+    responses: Responses | None = field(default=None, repr=False)
 
     def at_work(
         self, problem: Problem, k: Array, blocks: Blocks, *, multiscale: bool
@@ -44,7 +49,9 @@ class Full:
         multiscale
             Whether the coarse problem is part of it.
         """
-        return FullLinearStage(problem, k, multiscale=multiscale, blocks=blocks)
+        return FullLinearStage(
+            problem, k, multiscale=multiscale, blocks=blocks, responses=self.responses
+        )
 
     def estimate(self, accuracy: float) -> ErrorEstimate:
         """Begin to estimate the error of a run, of which this accuracy is asked."""
@@ -69,7 +76,7 @@ class PGD:
         Equal substructures use the same modes if these miss at most this share of each one's field;
         0: each has modes of its own. 1e-5 costs no accuracy, 1e-3 does where modes are few
         (solver/study/README.md, 8).
-    remedy, has_to_prove
+    remedy, has_to_prove, responses
         As of `Full`.
     """
 
@@ -80,6 +87,7 @@ class PGD:
     tolerance: float = 1e-7
     pairs: int = 2
     sharing: float = 1e-5
+    responses: Responses | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("modes", "pairs"):
@@ -92,7 +100,7 @@ class PGD:
     ) -> ReducedLinearStage:
         """Factor the linear stage, as `Full.at_work` says; it works on all instants at once."""
         rule = Enrichment(self.tolerance, self.pairs, self.modes, self.sharing)
-        return ReducedLinearStage(problem, k, rule, multiscale=multiscale)
+        return ReducedLinearStage(problem, k, rule, multiscale=multiscale, responses=self.responses)
 
     def estimate(self, accuracy: float) -> ErrorEstimate:
         """Begin to estimate the error, as `Full.estimate`."""

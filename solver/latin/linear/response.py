@@ -95,6 +95,22 @@ def response(elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse
     return DenseResponse(elasticity, k) if dense else SparseResponse(elasticity, k)
 
 
+class Responses:
+    """Boundary responses that are factored once, however many runs with one k need them."""
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[int, bytes], DenseResponse | SparseResponse] = {}
+        self._owners: list[Elasticity] = []  # so that no other takes over its identity
+
+    def of(self, elasticity: Elasticity, k: Array) -> DenseResponse | SparseResponse:
+        """Give that of an elasticity with a k, as `response`."""
+        key = id(elasticity), k.tobytes()
+        if key not in self._found:
+            self._found[key] = response(elasticity, k)
+            self._owners.append(elasticity)
+        return self._found[key]
+
+
 class _Cholesky:
     """A dense factor that solves like a sparse one."""
 

@@ -16,6 +16,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.latin.iterate import Checkpoint
+from solver.latin.linear.response import Responses
 from solver.latin.linear.stage import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis
 from solver.reduction.enrichment import Enrichment
@@ -64,17 +65,25 @@ class ReducedLinearStage(LinearStage[list[Family]]):
 
     Parameters
     ----------
-    problem, k, multiscale
+    problem, k, multiscale, responses
         As of `LinearStage`.
     enrichment
         How modes are found, when, and how many are kept.
     """
 
     def __init__(
-        self, problem: Problem, k: Array, enrichment: Enrichment, *, multiscale: bool
+        self,
+        problem: Problem,
+        k: Array,
+        enrichment: Enrichment,
+        *,
+        multiscale: bool,
+        responses: Responses | None = None,
     ) -> None:
         make_group = partial(ReducedGroup, enrichment=enrichment)
-        super().__init__(problem, k, multiscale=multiscale, make_group=make_group)
+        super().__init__(
+            problem, k, multiscale=multiscale, make_group=make_group, responses=responses
+        )
         self._reduced = [group for group in self.groups if isinstance(group, ReducedGroup)]
         place = {int(part.rows[0]): number for number, part in enumerate(problem.substructures)}
         self._numbers = [[place[int(row)] for row in group.rows[0]] for group in self.groups]
@@ -113,7 +122,7 @@ class ReducedGroup(Group[list[Family]]):
 
     Parameters
     ----------
-    problem, parts, k
+    problem, parts, k, responses
         As of `Group`.
     enrichment
         As of `ReducedLinearStage`.
@@ -125,9 +134,14 @@ class ReducedGroup(Group[list[Family]]):
     """
 
     def __init__(
-        self, problem: Problem, parts: list[Substructure], k: Array, enrichment: Enrichment
+        self,
+        problem: Problem,
+        parts: list[Substructure],
+        k: Array,
+        responses: Responses,
+        enrichment: Enrichment,
     ) -> None:
-        super().__init__(problem, parts, k)
+        super().__init__(problem, parts, k, responses)
         self._enrichment = enrichment
         self._weights = problem.time_weights
         self.iterations = 0

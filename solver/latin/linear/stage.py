@@ -14,7 +14,7 @@ from solver.discrete.substructure import Substructure
 from solver.latin.blocks import ALL, Blocks
 from solver.latin.iterate import Checkpoint
 from solver.latin.linear.coarse import CoarseProblem
-from solver.latin.linear.response import response
+from solver.latin.linear.response import Responses
 from solver.reduction.basis import Reduction
 
 State = TypeVar("State")
@@ -38,6 +38,8 @@ class LinearStage(Generic[State]):
         Makes a group of identical substructures with the same k.
     blocks
         Of instants, in which it works; None for all at once.
+    responses
+        Of stages before it that may serve again.
     """
 
     def __init__(
@@ -46,11 +48,13 @@ class LinearStage(Generic[State]):
         k: Array,
         *,
         multiscale: bool,
-        make_group: Callable[[Problem, list[Substructure], Array], Group[State]],
+        make_group: Callable[[Problem, list[Substructure], Array, Responses], Group[State]],
         blocks: Blocks | None = None,
+        responses: Responses | None = None,
     ) -> None:
+        kept = Responses() if responses is None else responses
         self.groups: list[Group[State]] = [
-            make_group(problem, parts, k) for parts in _alike(problem, k)
+            make_group(problem, parts, k, kept) for parts in _alike(problem, k)
         ]
         self._coarse = (
             CoarseProblem(problem, self.groups, blocks) if multiscale and problem.has_cuts else None
@@ -127,11 +131,13 @@ class Group(ABC, Generic[State]):
         The field that the state is brought to.
     """
 
-    def __init__(self, problem: Problem, parts: list[Substructure], k: Array) -> None:
+    def __init__(
+        self, problem: Problem, parts: list[Substructure], k: Array, responses: Responses
+    ) -> None:
         self.rows: Indices = np.stack([part.rows for part in parts], axis=1)
         self.k: Array = k[self.rows[:, 0]]
         self._n_instants = problem.n_instants
-        self.response = response(parts[0].elasticity, self.k)
+        self.response = responses.of(parts[0].elasticity, self.k)
         self.body: Array | None = None
         if any(part.body_force is not None for part in parts):
             self.body = self.field()

@@ -35,6 +35,10 @@ class Nested:
 
     coarser: Iterable[Problem] | Callable[[], Iterable[Problem]]
 
+    def problems(self) -> Iterable[Problem]:
+        """Give the coarser problems."""
+        return self.coarser() if callable(self.coarser) else self.coarser
+
     def at_work(self, problem: Problem, k: Array, seconds: float = math.inf) -> Checkpoint | None:
         """Give where a problem starts with a search direction.
 
@@ -42,7 +46,7 @@ class Nested:
         takes more than so many seconds.
         """
         deadline = time.perf_counter() + seconds
-        for coarse in self.coarser() if callable(self.coarser) else self.coarser:
+        for coarse in self.problems():
             try:
                 solver = incremental_solver(coarse)
                 found = solver.march(stop=lambda: time.perf_counter() > deadline)

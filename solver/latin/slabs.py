@@ -1,0 +1,209 @@
+"""Many cycles, in slabs of time: each begins with the fields of the one before.
+
+A load that repeats itself, exactly or nearly, makes the fields of a cycle those of the cycle before
+or nearly so. Over the whole interval an iteration does not know that, and corrects all cycles alike
+though the first is soon right. In slabs of a cycle the first take as many iterations as one cycle
+does, the next few, and one or two once friction has settled (solver/study/README.md, 8).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.discrete.slab import slab_of
+from solver.latin.criteria.converged import Indicator
+from solver.latin.criteria.status import Ending
+from solver.latin.cycle import read_only
+from solver.latin.direction.rules import SearchDirection
+from solver.latin.direction.update import FromStatus
+from solver.latin.iterate import Checkpoint, Iterate
+from solver.latin.linear.response import Responses
+from solver.latin.local.slide import slide_of
+from solver.latin.method import Latin
+from solver.latin.solve import Record, Solution, solve
+from solver.latin.start.nested import Nested
+from solver.reduction.basis import Reduction
+from solver.refusal import RefusedError
+
+SHARE = 1e-3
+"""Share of the accuracy at which the k-free indicator ends a slab too: what changes foretell takes
+eleven iterations to know, and a field that goes on as before needs one."""
+
+
+@dataclass(frozen=True)
+class Slab:
+    """A slab of time, ready to be solved.
+
+    Attributes
+    ----------
+    some
+        Its instants in the whole interval.
+    problem, latin
+        What to solve, and the method; slabs of one interval share k and the factors of it.
+    start
+        Where its iteration begins; None is the method's own start.
+    """
+
+    some: slice
+    problem: Problem
+    latin: Latin
+    start: Checkpoint | None = None
+
+
+@dataclass(frozen=True)
+class _OfWhole(SearchDirection):
+    """The search direction of the whole interval, whatever acts in a slab of it."""
+
+    k: Array | None = None
+
+    def of(self, problem: Problem) -> Array:
+        assert self.k is not None
+        return self.k
+
+    rule = of
+
+
+def first_slab(problem: Problem, latin: Latin, length: int) -> Slab:
+    """Give the first slab of a problem.
+
+    Parameters
+    ----------
+    problem, latin
+        What to solve, and the method.
+    length
+        Instants of a slab: those of a cycle, or of several. The first has one more, the state of
+        rest at which time begins.
+
+    Raises
+    ------
+    RefusedError
+        If the problem or the method goes by more than fields and where sliders stand.
+    """
+    _check(problem, latin, length)
+    some = slice(0, min(1 + length, problem.n_instants))
+    direction = _OfWhole(k=latin.direction.of(problem))
+    linear = replace(latin.linear, responses=Responses())
+    start = latin.start and Nested(partial(_at, latin.start, some))
+    accuracy = latin.stop.accuracy
+    known = Indicator(min(SHARE * accuracy, 1.0) ** 2)
+    stop = latin.stop | known if np.isfinite(accuracy) else latin.stop
+    own = replace(latin, direction=direction, linear=linear, start=start, stop=stop)
+    return Slab(some, slab_of(problem, some), own)
+
+
+def _at(start: Nested, some: slice) -> Iterator[Problem]:
+    return (slab_of(one, some) for one in start.problems())
+
+
+def next_slab(problem: Problem, slab: Slab, found: Iterate, length: int) -> Slab | None:
+    """Give the slab that follows; None after the last.
+
+    Parameters
+    ----------
+    problem, length
+        As for `first_slab`.
+    slab, found
+        The one before, and its solution.
+    """
+    first = slab.some.stop
+    if first == problem.n_instants:
+        return None
+    some = slice(first, min(first + length, problem.n_instants))
+    moved, force = found.local_displacement, found.boundary_local_force
+    ends = {
+        # Pairs of one point that stand apart could never stick together again.
+        name: law.mean_by_point(law.tangential.slider(moved, force)[:, -1])[law.points]
+        for name, law in found.problem.rubbing.items()
+    }
+    before = slice(found.problem.n_instants - length, None)
+    outgoing = found.outgoing[:, before][:, : some.stop - some.start]
+    start = Checkpoint(0, 0.0, read_only(np.asfortranarray(outgoing)), _cut(found, before, some))
+    return Slab(some, slab_of(problem, some, ends), slab.latin, start)
+
+
+def _cut(found: Iterate, before: slice, some: slice) -> Reduction | None:
+    """Give the bases of a slab with the time functions of another."""
+    if found.reduction is None or found.residual is not None:
+        return None
+    size = some.stop - some.start
+    modes = (
+        replace(own, time_functions=own.time_functions[:, before][:, :size])
+        for own in found.reduction.modes
+    )
+    return replace(found.reduction, modes=tuple(modes)).at_rest
+
+
+def solve_in_slabs(problem: Problem, latin: Latin, length: int) -> Solution:
+    """Solve a problem slab after slab, each until the method's stop rule ends it.
+
+    Later slabs have no status step, as incremental solvers begin at rest: they end by estimate.
+
+    Parameters
+    ----------
+    problem, latin, length
+        As for `first_slab`.
+
+    Returns
+    -------
+    The solution of the whole interval, all records, and the first ending that is not convergence.
+    """
+    slab: Slab | None = first_slab(problem, latin, length)
+    found: list[Solution] = []
+    while slab is not None:
+        found.append(solve(slab.problem, slab.latin, start=slab.start, watch=False))
+        slab = next_slab(problem, slab, found[-1].iterate, length)
+    missed = (one for one in found if one.status.ending is not Ending.CONVERGED)
+    status = next(missed, found[-1]).status
+    return Solution(together(problem, [one.iterate for one in found]), _records(found), status)
+
+
+def together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
+    """Put iterates of all slabs one after the other; they have no common bases."""
+    return Iterate(
+        number=sum(one.number for one in parts),
+        seconds=sum(one.seconds for one in parts),
+        problem=problem,
+        k=parts[0].k,
+        outgoing=_joined([one.outgoing for one in parts]),
+        incoming=_joined([one.incoming for one in parts]),
+        local_displacement=_joined([one.local_displacement for one in parts]),
+        local_incoming=_joined([one.local_incoming for one in parts]),
+    )
+
+
+def _joined(fields: Sequence[Array]) -> Array:
+    return read_only(np.asfortranarray(np.concatenate(fields, axis=1)))
+
+
+def _records(found: Sequence[Solution]) -> list[Record]:
+    """Give the records of all slabs, numbered through and on one clock."""
+    records: list[Record] = []
+    for one in found:
+        number, seconds = (records[-1].iteration, records[-1].seconds) if records else (0, 0.0)
+        records += [
+            replace(own, iteration=number + own.iteration, seconds=seconds + own.seconds)
+            for own in one.records
+        ]
+    return records
+
+
+def _check(problem: Problem, latin: Latin, length: int) -> None:
+    if length < 1:
+        raise RefusedError("length", length, "a whole number from 1", "give a cycle's instants")
+    if isinstance(latin.direction, FromStatus):
+        raise RefusedError(
+            "direction", "FromStatus", "a k that stays as it is", "take Auto or Paper"
+        )
+    if slide_of(problem) is not None:
+        raise RefusedError(
+            "problem",
+            "a body that slides as a whole",
+            "bodies that something holds",
+            "solve the whole interval at once",
+        )

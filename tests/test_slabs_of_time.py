@@ -1,0 +1,175 @@
+"""Slabs of time have the solution of the whole interval, and settle where a load repeats itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.discrete.problem import Problem
+from solver.discrete.slab import slab_of
+from solver.latin import (
+    PGD,
+    Accuracy,
+    FromStatus,
+    Indicator,
+    Iterations,
+    Latin,
+    iterations,
+    solve,
+)
+from solver.latin.slabs import first_slab, next_slab, solve_in_slabs
+from solver.laws.play import play
+from solver.reference.choice import incremental_solver, reference_of
+from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import distance_to
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE, discretise
+
+CYCLE = 12
+TIGHT = Latin(finish=None, stop=Indicator(1e-20) | Iterations(400))
+ROUGH = replace(TIGHT, stop=Accuracy(0.01) & Indicator(1e-3) | Iterations(400))
+
+
+def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
+    """Make a scene whose load repeats itself, 12 instants a cycle."""
+    turns = [
+        (cycle + part, sign)
+        for cycle in range(cycles)
+        for part, sign in ((0.25, 1.0), (0.75, -1.0), (1.0, 0.0))
+    ]
+    path = {
+        "block": lambda: {
+            "top_normal_load": [[0.0, 0.0], [0.25, -4e-5]],
+            "top_tangential_load": [[0.0, 0.0], *([t, 2e-5 * sign] for t, sign in turns)],
+            "elements": 16,
+            "elements_up": 8,
+            "substructures": 2,
+        },
+        "bar": lambda: {
+            "load": [[0.0, 0.0], *([t, 900.0 * sign] for t, sign in turns)],
+            "elements": 20,
+            "substructures": 4,
+        },
+        "strand": lambda: {
+            "load": [[0.0, 0.0], *([t, 600.0 * max(sign, 0.0)] for t, sign in turns)],
+            "elements": 20,
+            "substructures": 2,
+        },
+        "incline": dict,
+    }[scene]()
+    own = {**path, "instants": CYCLE * cycles + 1, "duration": float(cycles), **changes}
+    return discretise(CATALOGUE[scene].settings.checked(own))
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes"),
+    [
+        ("block", {}),
+        ("bar", {}),
+        ("bar", {"friction_law": "compliant"}),
+        ("strand", {}),
+    ],
+)
+def test_they_have_the_solution_of_the_whole(scene: str, changes: dict[str, Any]) -> None:
+    problem = cyclic(scene, 3, **changes)
+    found = solve_in_slabs(problem, TIGHT, CYCLE + 2)  # neither a cycle, nor a part of the whole
+    distance = distance_to(reference_of(problem), problem)
+    assert distance.of_friction_force(found.iterate) < 1e-6
+    assert distance.of_displacement(found.iterate) < 1e-6
+    assert found.records[-1].iteration == found.iterate.number
+
+
+def test_what_repeats_itself_takes_one_iteration() -> None:
+    problem = cyclic("block", 6)
+    slab, counts = first_slab(problem, ROUGH, CYCLE), []
+    while slab is not None:
+        found = solve(slab.problem, slab.latin, start=slab.start)
+        counts.append(len(found.records))
+        slab = next_slab(problem, slab, found.iterate, CYCLE)
+    assert len(counts) == 6
+    assert counts[-1] == 1
+    assert max(counts) < 40
+    whole = solve_in_slabs(problem, ROUGH, CYCLE)
+    assert len(whole.records) == sum(counts)
+    distance = distance_to(reference_of(problem), problem)
+    assert distance.of_friction_force(whole.iterate) < 0.01
+
+
+def test_sliders_of_one_point_begin_together() -> None:
+    """Pairs on both sides of a cut could not stick together, if they began apart."""
+    problem = cyclic("block", 2)
+    slab = first_slab(problem, ROUGH, CYCLE)
+    *_, found = islice(iterations(slab.problem, slab.latin), 5)
+    later = next_slab(problem, slab, found, CYCLE)
+    assert later is not None
+    law = later.problem.friction
+    last = law.tangential.slider(found.local_displacement, None)[:, -1]
+    assert not np.array_equal(law.mean_by_point(last)[law.points], last)
+    start = law.tangential.start
+    assert start is not None
+    assert np.array_equal(law.mean_by_point(start)[law.points], start)
+
+
+def test_bases_are_those_of_the_slab_before() -> None:
+    problem = cyclic("bar", 3)
+    method = replace(TIGHT, linear=PGD(modes=6), stop=Iterations(5))
+    slab = first_slab(problem, method, CYCLE)
+    *_, found = islice(iterations(slab.problem, slab.latin), 5)
+    later = next_slab(problem, slab, found, CYCLE)
+    assert later is not None
+    assert later.start is not None
+    assert later.start.reduction is not None
+    for own, before in zip(later.start.reduction.modes, found.bases, strict=True):
+        assert np.array_equal(own.outgoing, before.outgoing)
+        assert np.array_equal(own.time_functions, before.time_functions[:, -CYCLE:])
+    goes_on = next(iterations(later.problem, later.latin, later.start))
+    assert goes_on.displacement.shape == (problem.n_dofs, CYCLE)
+
+
+def test_factors_are_made_once() -> None:
+    problem = cyclic("block", 2)
+    slab = first_slab(problem, TIGHT, CYCLE)
+    found = next(iterations(slab.problem, slab.latin))
+    later = next_slab(problem, slab, found, CYCLE)
+    assert later is not None
+    shared = slab.latin.linear.responses
+    assert shared is not None
+    assert later.latin.linear.responses is shared
+    part = problem.substructures[0]
+    first = shared.of(part.elasticity, found.k[part.rows])
+    assert shared.of(part.elasticity, found.k[part.rows]) is first
+
+
+@pytest.mark.parametrize("points", [3, 200])
+def test_a_play_goes_on_where_it_stood(points: int) -> None:
+    draw = np.random.default_rng(0)
+    target, reach = draw.normal(size=(points, 30)), draw.uniform(0.1, 1.0, points)
+    whole = play(target, reach)
+    assert np.array_equal(play(target[:, 11:], reach, whole[:, 10]), whole[:, 11:])
+
+
+def test_incremental_solvers_do_not_go_on() -> None:
+    problem = cyclic("bar", 2)
+    later = slab_of(problem, slice(5, 9), {name: np.zeros(21 + 3) for name in problem.rubbing})
+    with pytest.raises(NoReferenceError):
+        incremental_solver(later)
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "method", "length", "name"),
+    [
+        ("bar", {"friction_law": "slip-dependent"}, TIGHT, CYCLE, "friction_law"),
+        ("bar", {}, replace(TIGHT, direction=FromStatus()), CYCLE, "direction"),
+        ("bar", {}, TIGHT, 0, "length"),
+        ("incline", {}, TIGHT, CYCLE, "problem"),
+    ],
+)
+def test_what_remembers_more_is_refused(
+    scene: str, changes: dict[str, Any], method: Latin, length: int, name: str
+) -> None:
+    with pytest.raises(RefusedError, match=f"^{name} = "):
+        solve_in_slabs(cyclic(scene, **changes), method, length)
