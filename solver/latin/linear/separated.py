@@ -7,7 +7,6 @@ residual of problem 2.3 is k times what the new y has outside the modes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -16,6 +15,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.discrete.substructure import Substructure
 from solver.latin.iterate import Checkpoint
+from solver.latin.linear.family import Family, members_of
 from solver.latin.linear.response import Responses
 from solver.latin.linear.stage import Group, LinearStage
 from solver.reduction.basis import Modes, Reduction, ReductionRecord, SeparatedBasis
@@ -25,39 +25,6 @@ SHARE_EVERY = 10
 """Iterations between two looks for bases that can be shared."""
 NOTHING_LEFT = 1e-13
 """Share of the field's squared norm below which a difference of squares is only rounding."""
-
-
-@dataclass
-class Family:
-    """One basis and the substructures of a group that use it.
-
-    Attributes
-    ----------
-    members
-        Places of the substructures in their group.
-    basis
-        Of y = W + F/k; columns run through the members, then through the instants.
-    incoming_modes
-        W - F/k of every mode, shape (n_boundary, n_modes).
-    record
-        What the last iteration did.
-    """
-
-    members: list[int]
-    basis: SeparatedBasis
-    incoming_modes: Array
-    record: ReductionRecord
-
-    def columns(self, field: Array) -> Array:
-        """Take the members of a group field as one matrix, shape (n_boundary, n_columns).
-
-        It is a view of the field if there is one member, otherwise a copy.
-        """
-        return _members(field, self.members).reshape(len(field), -1, order="F")
-
-    def time_functions(self, place: int) -> Array:
-        """Give one member's time functions, shape (n_modes, n_instants)."""
-        return self.basis.time_functions[:, place :: len(self.members)]
 
 
 class ReducedLinearStage(LinearStage[list[Family]]):
@@ -266,7 +233,7 @@ class ReducedGroup(Group[list[Family]]):
         target = self.field()
         for part in (family, other):
             self._put(target, part.members, part.basis.field())
-        columns = _members(target, members).reshape(len(target), -1, order="F")
+        columns = members_of(target, members).reshape(len(target), -1, order="F")
         basis = self._basis_of(columns, len(members))
         family.members, family.basis = members, basis
         family.incoming_modes = self._incoming(basis)
@@ -298,9 +265,3 @@ class ReducedGroup(Group[list[Family]]):
 
     def _put(self, field: Array, members: list[int], columns: Array) -> None:
         field[:, members] = columns.reshape(len(field), len(members), -1, order="F")
-
-
-def _members(field: Array, members: list[int]) -> Array:
-    if len(members) == 1:
-        return field[:, members[0] : members[0] + 1]
-    return np.asfortranarray(field[:, members])
