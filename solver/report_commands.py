@@ -17,8 +17,10 @@ from solver.study.audit.report import HEAD, line, prepare
 from solver.study.audit.stability import cases_of, stability_report, trials_of
 from solver.study.audit.survey import draws, survey_report
 from solver.study.audit.units import SCENE, invariance, is_same
+from solver.study.benchmarks import cycles_problems
 from solver.study.benchmarks.ahead_problems import GROUPS, chosen_problems
 from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
+from solver.study.benchmarks.cycles_report import measured, write_cycles
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.benchmarks.whole_cost import print_whole_cost
 from solver.study.crossover import crossover
@@ -37,7 +39,7 @@ REFUSED = 2
 def add_reports(commands: Any) -> None:
     """Add the commands that measure and write reports."""
     cost = commands.add_parser("benchmark", help="time per iteration, by stage, against its floor")
-    cost.add_argument("--repeats", type=int, help="whose median is taken; 7, of --ahead 3")
+    cost.add_argument("--repeats", type=int, help="whose median is taken; 7, or 3 of long ones")
     kinds = cost.add_mutually_exclusive_group()
     kinds.add_argument(
         "--whole", action="store_true", help="what runs take against what they say before, instead"
@@ -45,9 +47,13 @@ def add_reports(commands: Any) -> None:
     kinds.add_argument(
         "--ahead", action="store_true", help="LATIN beside the incremental solver, instead"
     )
-    cost.add_argument("--only", choices=GROUPS, help="of --ahead: these problems alone")
-    cost.add_argument("--large", action="store_true", help="of --ahead: those of minutes too")
-    cost.add_argument("--out", type=Path, metavar="DIR", help="of --ahead: write ahead.csv there")
+    kinds.add_argument(
+        "--cycles", action="store_true", help="speed-up over the number of cycles, instead"
+    )
+    both = "of --ahead and --cycles:"
+    cost.add_argument("--only", choices=GROUPS, help=f"{both} these problems alone")
+    cost.add_argument("--large", action="store_true", help=f"{both} those of minutes too")
+    cost.add_argument("--out", type=Path, metavar="DIR", help=f"{both} write files there")
     cost.set_defaults(command=_benchmark)
     figures = commands.add_parser("figures", help="draw the paper's Figs. 3 to 8 again")
     figures.add_argument("--out", type=Path, default=Path("figures"), metavar="DIR")
@@ -98,13 +104,16 @@ def writing(folder: Path) -> Iterator[None]:
 
 
 def _benchmark(chosen: argparse.Namespace) -> int:
-    chosen.repeats = (3 if chosen.ahead else 7) if chosen.repeats is None else chosen.repeats
+    is_long = chosen.ahead or chosen.cycles
+    chosen.repeats = (3 if is_long else 7) if chosen.repeats is None else chosen.repeats
     _check_repeats(chosen)
-    if chosen.ahead:
-        return _ahead(chosen)
+    if is_long:
+        return _ahead(chosen) if chosen.ahead else _cycles(chosen)
     for name in ("only", "large", "out"):
         if value := getattr(chosen, name):
-            raise SettingError(f"--{name}", str(value), "only with --ahead", "leave it out")
+            raise SettingError(
+                f"--{name}", str(value), "only with --ahead or --cycles", "leave it out"
+            )
     if chosen.whole:
         print_whole_cost()
         return 0
@@ -120,6 +129,23 @@ def _ahead(chosen: argparse.Namespace) -> int:
         return 0
     with writing(chosen.out):
         write_ahead(print_ahead(problems, chosen.repeats), chosen.out / "ahead.csv")
+    return 0
+
+
+def _cycles(chosen: argparse.Namespace) -> int:
+    problems = [one for one in cycles_problems.PROBLEMS if chosen.only in (None, one.group)]
+    if not problems:
+        allowed = " or ".join(cycles_problems.GROUPS)
+        raise SettingError("--only", chosen.only, f"with --cycles {allowed}", "choose one of them")
+    numbers = cycles_problems.MANY if chosen.large else cycles_problems.FEW
+    if chosen.out is None:
+        measured(problems, numbers, chosen.repeats)
+        return 0
+    with writing(chosen.out):
+        files, note = write_cycles(measured(problems, numbers, chosen.repeats), chosen.out)
+    if note:
+        print(note)
+    print(f"{len(files)} files in {chosen.out}")
     return 0
 
 

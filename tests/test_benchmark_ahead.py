@@ -103,4 +103,4 @@ def test_every_problem_has_settings_that_are_allowed_and_a_group() -> None:
 
 def test_its_options_mean_nothing_alone(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["benchmark", "--large"]) == 2
-    assert "only with --ahead" in capsys.readouterr().err
+    assert "only with --ahead or --cycles" in capsys.readouterr().err
