@@ -27,7 +27,7 @@ from solver.files import (
     settings_from_command,
     summary,
 )
-from solver.latin import Ending, Seconds, Solution, solve
+from solver.latin import Ending, Seconds, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.reference.choice import reference_of
@@ -91,6 +91,12 @@ def _parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         help="end after so long with what there is by then; the reference is given up likewise",
     )
+    run.add_argument(
+        "--slab",
+        type=int,
+        metavar="INSTANTS",
+        help="solve slab after slab of so many instants: those of a cycle, where a load has many",
+    )
     run.set_defaults(command=_run)
     scenes = commands.add_parser("scenes", help="list the scenes")
     scenes.set_defaults(command=_scenes)
@@ -123,7 +129,10 @@ def _run(chosen: argparse.Namespace) -> int:
     most, beside = settings.max_iterations, chosen.reference
     _announce(run_cost(problem, method, most, with_reference=beside), limit)
     distance = _distance(problem, limit) if chosen.reference else None
-    solution = solve(problem, method, distance=distance, watch=chosen.reference, spent=spent)
+    if chosen.slab is None:
+        solution = solve(problem, method, distance=distance, watch=chosen.reference, spent=spent)
+    else:
+        solution = solve_in_slabs(problem, method, chosen.slab, distance=distance, spent=spent)
     if chosen.out is not None:
         try:
             save_result(chosen.out, settings, solution)

@@ -116,8 +116,8 @@ class Settings(Checked):
         "full",
         ["full", "pgd"],
         "full: a value for every point and instant. pgd: a sum of a few modes, each a shape in "
-        "space times a function of time (model reduction); at these sizes full fields come sooner "
-        "to any error.",
+        "space times a function of time (model reduction). That holds many cycles of a load in a "
+        "fraction of the memory; full fields come sooner to any error.",
         group="Method",
         title="Linear stage",
         essential=True,
@@ -126,7 +126,8 @@ class Settings(Checked):
         10,
         (1, 1000),
         (1, 20),
-        "Most modes kept for a substructure; the smallest are dropped.",
+        "Most modes kept for a substructure; the smallest are dropped. Many cycles of a load need "
+        "no more than one.",
         group="Method",
         title="Most PGD modes",
         applies=_on_modes,

@@ -8,6 +8,8 @@ does, the next few, and one or two once friction has settled (solver/study/READM
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -22,6 +24,8 @@ from solver.latin.criteria.status import Ending
 from solver.latin.cycle import read_only
 from solver.latin.direction.rules import SearchDirection
 from solver.latin.direction.update import FromStatus
+from solver.latin.finish.status_step import StatusStep
+from solver.latin.indicators import behaviour_indicator, latin_indicator
 from solver.latin.iterate import Checkpoint, Iterate
 from solver.latin.linear.response import Responses
 from solver.latin.local.slide import slide_of
@@ -29,6 +33,7 @@ from solver.latin.method import Latin
 from solver.latin.solve import Record, Solution, solve
 from solver.latin.start.nested import Nested
 from solver.reduction.basis import Reduction
+from solver.reference.distance import Distance
 from solver.refusal import RefusedError
 
 SHARE = 1e-3
@@ -139,28 +144,44 @@ def _cut(found: Iterate, before: slice, some: slice) -> Reduction | None:
     return replace(found.reduction, modes=tuple(modes)).at_rest
 
 
-def solve_in_slabs(problem: Problem, latin: Latin, length: int) -> Solution:
+def solve_in_slabs(
+    problem: Problem,
+    latin: Latin,
+    length: int,
+    *,
+    distance: Distance | None = None,
+    spent: float = 0.0,
+) -> Solution:
     """Solve a problem slab after slab, each until the method's stop rule ends it.
 
-    Later slabs have no status step, as incremental solvers begin at rest: they end by estimate.
+    The first is certified where that can be, whatever the method says: its error would go on into
+    all others. These end by estimate, as incremental solvers begin at rest.
 
     Parameters
     ----------
     problem, latin, length
-        As for `first_slab`.
+        As for `first_slab`; a limit on seconds is on all slabs together.
+    distance
+        To a reference of the whole interval, for the errors in the last record.
+    spent
+        Seconds that the run took before, to make the problem.
 
     Returns
     -------
     The solution of the whole interval, all records, and the first ending that is not convergence.
     """
+    began = time.perf_counter()
     slab: Slab | None = first_slab(problem, latin, length)
     found: list[Solution] = []
     while slab is not None:
-        found.append(solve(slab.problem, slab.latin, start=slab.start, watch=False))
+        method = replace(slab.latin, finish=None if found else StatusStep())
+        billed = spent + time.perf_counter() - began
+        found.append(solve(slab.problem, method, start=slab.start, watch=False, spent=billed))
         slab = next_slab(problem, slab, found[-1].iterate, length)
     missed = (one for one in found if one.status.ending is not Ending.CONVERGED)
     status = next(missed, found[-1]).status
-    return Solution(together(problem, [one.iterate for one in found]), _records(found), status)
+    whole = together(problem, [one.iterate for one in found])
+    return Solution(whole, _records(found, whole, distance), status)
 
 
 def together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
@@ -181,29 +202,33 @@ def _joined(fields: Sequence[Array]) -> Array:
     return read_only(np.asfortranarray(np.concatenate(fields, axis=1)))
 
 
-def _records(found: Sequence[Solution]) -> list[Record]:
-    """Give the records of all slabs, numbered through and on one clock."""
+def _records(found: Sequence[Solution], whole: Iterate, distance: Distance | None) -> list[Record]:
+    """Give the records of all slabs, numbered through; the last is of the whole interval."""
     records: list[Record] = []
     for one in found:
-        number, seconds = (records[-1].iteration, records[-1].seconds) if records else (0, 0.0)
-        records += [
-            replace(own, iteration=number + own.iteration, seconds=seconds + own.seconds)
-            for own in one.records
-        ]
+        number = records[-1].iteration if records else 0
+        records += [replace(own, iteration=number + own.iteration) for own in one.records]
+    records[-1] = replace(
+        records[-1],
+        indicator=latin_indicator(whole),
+        behaviour=behaviour_indicator(whole),
+        error_displacement=distance.of_displacement(whole) if distance else math.nan,
+        error_force=distance.of_friction_force(whole) if distance else math.nan,
+    )
     return records
 
 
 def _check(problem: Problem, latin: Latin, length: int) -> None:
     if length < 1:
-        raise RefusedError("length", length, "a whole number from 1", "give a cycle's instants")
+        raise RefusedError("slab", length, "instants, from 1 on", "give those of a cycle")
     if isinstance(latin.direction, FromStatus):
         raise RefusedError(
-            "direction", "FromStatus", "a k that stays as it is", "take Auto or Paper"
+            "k_update", "status", "a k that stays as it is in slabs of time", "set it to none"
         )
     if slide_of(problem) is not None:
         raise RefusedError(
-            "problem",
-            "a body that slides as a whole",
-            "bodies that something holds",
+            "slab",
+            length,
+            "only where no body slides as a whole",
             "solve the whole interval at once",
         )
