@@ -78,7 +78,8 @@ class Settings(Checked):
         ["paper", "auto"],
         "How k, the stiffness that joins the two stages of an iteration, is chosen. paper: from "
         "the length of a substructure. auto: at points that may slip, from the length that is "
-        "expected to slide and that of an element.",
+        "expected to slide and that of an element; between bodies that turn out to slip nowhere, "
+        "from their depth.",
         group="Method",
         title="Search direction",
         essential=True,
@@ -186,8 +187,8 @@ class Settings(Checked):
     k_update = choice(
         "none",
         ["none", "status"],
-        "none: k stays as it is. status: once stick and slip have settled, k becomes smaller where "
-        "points slip; taken back if that does not help.",
+        "none: k is as the search direction says. status: once stick and slip have settled, k "
+        "becomes smaller where points slip; taken back if that does not help.",
         group="Method",
         title="Update of k",
         applies=_on_fields,

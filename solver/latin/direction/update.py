@@ -10,7 +10,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.latin.direction.rules import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
-from solver.latin.iterate import UpdateProgress
+from solver.latin.iterate import Checkpoint, UpdateProgress
 
 SETTLED, CALM = 0.1, 25
 """The status has settled when no larger share of all points and instants than this changed between
@@ -46,9 +46,9 @@ class FromStatus:
         """Give k of every row at the start, shape (n_rows,), scaled, read-only."""
         return self.first.of(problem)
 
-    def at_work(self, problem: Problem, course: UpdateProgress | None) -> DirectionUpdate:
+    def at_work(self, problem: Problem, start: Checkpoint | None) -> DirectionUpdate:
         """Give k of a problem to a run, on a course that a checkpoint may remember."""
-        return DirectionUpdate(problem, self.of(problem), course)
+        return DirectionUpdate(problem, self.of(problem), start.course if start else None)
 
 
 class DirectionUpdate:
