@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from solver.latin import iterations
+from solver.latin import iterations, solve
 from solver.latin.direction.sticking import LOOK
 from solver.latin.iterate import Checkpoint
 from solver.reference.choice import reference_of
@@ -71,3 +71,9 @@ def test_such_a_run_goes_on_from_any_checkpoint_to_the_bit(place):
     for one, other in zip(again, straight[place + 1 :], strict=True):
         assert np.array_equal(one.k, other.k)
         assert np.array_equal(one.outgoing, other.outgoing)
+
+
+def test_what_nowhere_slips_is_solved_by_a_status_step_at_once():
+    solution = solve(*problem_of(**{**THIN, "instants": 81, "finish": "status"}))
+    assert solution.is_certified
+    assert solution.iterate.number <= LOOK

@@ -19,6 +19,10 @@ from solver.reference.states import HELD, States
 
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""
+AT_REST, SAVED = 0.02, 10
+"""Share of the jumps that move up to which statuses are right at once, as nothing slips and nothing
+is open but while nothing presses; and the iterations that a step then saves, at least. Layers 200
+to 1000 times as long as thick: solved after 2 iterations instead of 10 (measured)."""
 SHARE = 1.0
 """Share of the time of all iterations that a step may take: it is tried again at twice as many
 iterations, so that all trials together take twice as long as the iterations. Under loads far beyond
@@ -64,12 +68,15 @@ class Costs:
         Of one iteration.
     n_instants
         Number of instants.
+    is_at_rest
+        Whether nothing slips: then one system an instant is enough.
     """
 
     condensing: float
     system: float
     iteration: float
     n_instants: int
+    is_at_rest: bool = False
 
     @property
     def step(self) -> float:
@@ -85,6 +92,8 @@ class Costs:
 
     def are_small(self, iterations: float) -> bool:
         """Tell whether a step, also one with some wrong statuses, costs little beside them."""
+        if self.is_at_rest and self.step <= (SAVED + iterations) * self.iteration:
+            return True
         step = self.condensing + SYSTEMS * self.n_instants * self.system
         return step <= SHARE * iterations * self.iteration
 
@@ -132,4 +141,5 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     n_moving = (expected_share(problem) if moving is None else moving) * n_jumps
     system = CALLS + 2.0 / 3.0 * n_moving**3 / FACTOR
     system += (GATHER * n_moving + READ * n_jumps) * n_moving
-    return Costs(condensing, system, iteration, problem.n_instants)
+    is_at_rest = moving is not None and moving <= AT_REST
+    return Costs(condensing, system, iteration, problem.n_instants, is_at_rest)
