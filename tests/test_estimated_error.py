@@ -15,7 +15,9 @@ import pytest
 from solver.cli import main
 from solver.latin import Ending, StopRules, iterations, judged, solve, stop
 from solver.latin.criteria.changes import ForceChanges
-from solver.latin.criteria.estimate import SETTLED, ErrorEstimate
+from solver.latin.criteria.estimate import ROOM, SETTLED, ErrorEstimate
+from solver.latin.finish.cost import Costs, costs_of, moving_share
+from solver.latin.finish.status_step import states_of
 from solver.reference.choice import reference_of
 from solver.reference.distance import Distance, distance_to
 from solver.scenes import CATALOGUE, discretise
@@ -129,6 +131,21 @@ def test_a_status_step_is_tried_once_the_whole_force_settles_though_friction_has
             break
     assert changes.last.worst > SETTLED
     assert estimate.certificate is not None
+
+
+def test_the_last_chance_before_a_limit_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = discretise(small("block"))
+    first = next(iterations(problem, method_of(small("block", start="zero"))))
+    monkeypatch.setattr("solver.latin.criteria.estimate.time.perf_counter", lambda: 0.0)
+    monkeypatch.setattr(Costs, "afford", lambda _, iterations, least=0.0: math.isinf(least))
+    step = costs_of(problem, moving_share(states_of(first))).step
+    found = []
+    for times in (math.inf, 2.0 * ROOM, 0.5 * ROOM, 0.5):
+        estimate = ErrorEstimate(0.01)
+        estimate.deadline = times * step
+        estimate(first, 1.0)
+        found.append(estimate.is_proven)
+    assert found == [False, False, True, False]
 
 
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])

@@ -67,7 +67,8 @@ def test_without_a_reference_only_its_share_is_left_out() -> None:
 
 
 def test_what_has_too_many_jumps_for_a_reference_pays_none() -> None:
-    assert cost("strand", wires=200).reference == 0.0
+    assert cost("strand", wires=200).reference > 0.0
+    assert cost("strand", wires=200, elements=80).reference == 0.0
 
 
 def test_a_run_of_few_iterations_takes_no_longer_than_these() -> None:

@@ -30,8 +30,8 @@ BEGINNING = 0.05
 FIELDS = 25
 """Boundary fields that a run holds at a time, besides those that the acceleration remembers: 22 on
 a block of 768 x 384 elements, 33 on a bar of 16 000 (measured)."""
-SQUARES = 3
-"""Matrices between all jumps that a condensation holds at a time."""
+SQUARES = 1
+"""Matrices between all jumps that a condensation holds at a time (measured)."""
 ANSWERS = 1
 """Matrices of all degrees of freedom and jumps that it holds at a time."""
 NUMBER = 8

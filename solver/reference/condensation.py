@@ -34,6 +34,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from solver.arrays import ROUNDING, Array, Indices
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.blocks import blocks, symmetrise
 from solver.reference.glued import from_jumps, jumps
 from solver.reference.self_stress import base_of, self_stresses
 from solver.reference.states import rules_of
@@ -133,9 +134,9 @@ class Condensation:
         self._alone = self._solved(self._glued.T @ patterns) @ course
         load = self._jumped.T @ load - self._pulled.T @ self._alone
         whole = (self._jumped.T @ strained).toarray(order="C")
-        whole -= self._pulled.T @ self._solved(self._pulled.toarray(order="F"))
-        whole += whole.T
-        whole *= 0.5
+        for some in blocks(len(whole)):
+            whole[:, some] -= self._pulled.T @ self._solved(self._pulled[:, some].toarray())
+        symmetrise(whole)
         self._tie(whole)
         self.stiffness: Array = whole
         self.load: Array = self._balanced(load) + whole @ self._given_of_base
@@ -165,9 +166,10 @@ class Condensation:
         gauge, stiffness = self.gauge, self.stiffness
         costs = stiffness @ gauge
         costs -= 0.5 * gauge @ (gauge.T @ costs)
-        more = costs @ gauge.T
         size = float(np.diagonal(stiffness).mean())
-        self.stiffness = stiffness - more - more.T + size * gauge @ gauge.T
+        for some in blocks(len(stiffness)):
+            more = costs[some] @ gauge.T + gauge[some] @ (costs - size * gauge).T
+            stiffness[some] -= more
         self.load += gauge @ (self.motions.T @ self._force - gauge.T @ self.load)
 
     @property

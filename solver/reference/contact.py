@@ -25,10 +25,10 @@ from solver.reference.residual import Shown, unbalanced_of
 from solver.reference.solution import Interrupted, Reference
 from solver.reference.states import States, rules_of
 
-MOST_JUMPS = 6500
-"""Jumps up to which there is a reference: it keeps a few dense matrices of their size, 0.6 GB in
-all, and its time grows with the square to the cube of their number. 6195 of 60 wires, of which few
-slip at a time, take 7 s; 1900 of 20 layers, of which a third does, 4 s (measured)."""
+MOST_JUMPS = 13_000
+"""Jumps up to which there is a reference: it keeps a dense matrix of their size, 1.4 GB, and its
+time grows with the square to the cube of their number. 12 935 of 200 wires, of which few slip at a
+time, take 18 s and 1.5 GB; 3700 of 20 layers, of which a third does, 30 s (measured)."""
 
 
 class IncrementalContact:
