@@ -164,6 +164,12 @@ def test_the_first_is_certified_and_all_are_on_one_clock() -> None:
     assert ended.iterate.displacement.shape == (problem.n_dofs, problem.n_instants)
 
 
+def test_a_slab_of_all_instants_is_the_whole_run() -> None:
+    problem = cyclic("bar")
+    found = solve_in_slabs(problem, Latin(), problem.n_instants)
+    assert found.is_certified
+
+
 def test_the_command_solves_in_slabs(capsys: pytest.CaptureFixture[str], tmp_path: Any) -> None:
     asked = ["run", "bar", "--set", "load=cycles", "--set", "elements=20", "--set", "instants=41"]
     out = tmp_path / "result.npz"

@@ -3,7 +3,7 @@
 A load that repeats itself, exactly or nearly, makes the fields of a cycle those of the cycle before
 or nearly so. Over the whole interval an iteration does not know that, and corrects all cycles alike
 though the first is soon right. In slabs of a cycle the first take as many iterations as one cycle
-does, the next few, and one or two once friction has settled (solver/study/README.md, 8).
+does, the next few, and one or two once friction has settled (solver/study/README.md, 9).
 """
 
 from __future__ import annotations
@@ -172,6 +172,9 @@ def solve_in_slabs(
     """
     began = time.perf_counter()
     slab: Slab | None = first_slab(problem, latin, length)
+    if slab is not None and slab.some.stop == problem.n_instants:
+        whole = replace(latin, finish=StatusStep())
+        return solve(problem, whole, distance=distance, watch=False, spent=spent)
     found: list[Solution] = []
     while slab is not None:
         method = replace(slab.latin, finish=None if found else StatusStep())
@@ -180,8 +183,8 @@ def solve_in_slabs(
         slab = next_slab(problem, slab, found[-1].iterate, length)
     missed = (one for one in found if one.status.ending is not Ending.CONVERGED)
     status = next(missed, found[-1]).status
-    whole = together(problem, [one.iterate for one in found])
-    return Solution(whole, _records(found, whole, distance), status)
+    joined = together(problem, [one.iterate for one in found])
+    return Solution(joined, _records(found, joined, distance), status)
 
 
 def together(problem: Problem, parts: Sequence[Iterate]) -> Iterate:
