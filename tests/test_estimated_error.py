@@ -133,6 +133,22 @@ def test_a_status_step_is_tried_once_the_whole_force_settles_though_friction_has
     assert estimate.certificate is not None
 
 
+@pytest.mark.parametrize(("scene", "is_by_increments"), [("bar", False), ("layers", True)])
+def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
+    scene: str, is_by_increments: bool
+) -> None:
+    settings = CATALOGUE[scene].settings()
+    problem = discretise(settings)
+    found = solve(problem, method_of(settings), distance=true_distance(problem))
+    before = found.records[-2]
+    words = f"from iterate {before.iteration}, whose contact force was"
+    assert words in found.status.advice
+    said = float(found.status.advice.split(words)[1].split("%")[0])
+    assert said == pytest.approx(100.0 * before.error_force, rel=0.1)
+    assert (before.error_force > stop.FAR) == is_by_increments
+    assert ("incremental solver's answer" in found.status.advice) == is_by_increments
+
+
 def test_the_last_chance_before_a_limit_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = discretise(small("block"))
     first = next(iterations(problem, method_of(small("block", start="zero"))))

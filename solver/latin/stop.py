@@ -34,10 +34,11 @@ _CERTIFIED = (
     "Certified: equilibrium and all contact laws hold up to rounding, so no iteration can better "
     "this solution on this mesh"
 )
-_SEARCHED = (
-    " A status step found it from an iterate on separated bases, whose contact force was {:g} % "
-    "wrong; the modes are those of that iterate."
-)
+_FOUND = " A status step found it from iterate {}, whose contact force was {:g} % wrong."
+_BY_INCREMENTS = " So this is the incremental solver's answer, from LATIN's statuses."
+_ON_BASES = " The modes are those of that iterate."
+FAR = 0.1
+"""Error of the contact force from which on what a status step finds is not LATIN's own."""
 
 JUMPS = (
     "At some instant no equilibrium goes on from the one before: friction falls with slip faster "
@@ -79,12 +80,13 @@ def proven(
     """Say of an iterate that is a certified solution that the run ends with it.
 
     Separated bases that it shows are those of the search, and `found` is the error of the contact
-    force that was found on them.
+    force of the iterate that it was found from.
     """
     residual = finish.residual or 0.0
     advice = f"{_CERTIFIED} (residual {residual:.0e})."
-    if finish.reduction is not None:
-        advice += _SEARCHED.format(float(f"{100.0 * found:.2g}"))
+    if not math.isnan(found):
+        advice += _FOUND.format(finish.number - 1, float(f"{100.0 * found:.2g}"))
+        advice += _BY_INCREMENTS * (found > FAR) + _ON_BASES * (finish.reduction is not None)
     status = Status(Ending.CONVERGED, advice)
     return Decision(seconds, math.nan, math.nan, residual, status, certificate)
 
