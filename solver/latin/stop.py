@@ -30,12 +30,9 @@ LOWEST = 1e-24
 USUAL_ACCURACY = 0.01
 """Of a status step that ends a run which nobody asks to be accurate."""
 
-_CERTIFIED = (
-    "Certified: equilibrium and all contact laws hold up to rounding, so no iteration can better "
-    "this solution on this mesh"
-)
-_FOUND = " A status step found it from iterate {}, whose contact force was {:g} % wrong."
-_BY_INCREMENTS = " So this is the incremental solver's answer, from LATIN's statuses."
+_CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
+_FOUND = " A status step found it from iterate {}, whose contact force was {:g} % wrong{}."
+_BY_INCREMENTS = ": the incremental solver's answer, from LATIN's statuses"
 _ON_BASES = " The modes are those of that iterate."
 FAR = 0.1
 """Error of the contact force from which on what a status step finds is not LATIN's own."""
@@ -85,8 +82,9 @@ def proven(
     residual = finish.residual or 0.0
     advice = f"{_CERTIFIED} (residual {residual:.0e})."
     if not math.isnan(found):
-        advice += _FOUND.format(finish.number - 1, float(f"{100.0 * found:.2g}"))
-        advice += _BY_INCREMENTS * (found > FAR) + _ON_BASES * (finish.reduction is not None)
+        wrong, whose = float(f"{100.0 * found:.2g}"), _BY_INCREMENTS * (found > FAR)
+        advice += _FOUND.format(finish.number - 1, wrong, whose)
+        advice += _ON_BASES * (finish.reduction is not None)
     status = Status(Ending.CONVERGED, advice)
     return Decision(seconds, math.nan, math.nan, residual, status, certificate)
 
