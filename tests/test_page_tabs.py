@@ -44,7 +44,7 @@ def test_the_page_makes_a_study_of_its_settings_when_asked(page: Page) -> None:
     press(page, "Start")
     expect(measured).to_be_visible()
     expect(page.get_by_text("Study: substructures 2")).to_be_visible()
-    expect(page.get_by_text("incremental solver").first).to_be_visible()
+    expect(page.get_by_text("incremental solver").locator("visible=true").first).to_be_visible()
     with page.expect_download() as caught:
         page.get_by_text("levels.csv").click()
     assert caught.value.suggested_filename == "levels.csv"
