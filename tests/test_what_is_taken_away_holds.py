@@ -87,7 +87,9 @@ def test_tables_of_two_runs_have_both_and_the_settings_of_both() -> None:
     twin = BarSettings.checked({**SMALL["bar"], "friction": 0.4, "max_iterations": 7}).values()
     shown = told("bar", twin=twin)
     comments, rows = read(table("iterations", shown.scene()))
-    assert column(rows, "B", "iteration") == [1, 2, 3, 4, 5]
+    numbers = shown.recording.history.column("iteration")
+    assert len(numbers) > 1
+    assert np.array_equal(column(rows, "B", "iteration"), numbers)
     assert shown.runs._twin is not None
     history = shown.runs._twin.recording.history
     assert np.array_equal(column(rows, "A", "indicator"), history.column("indicator"))
