@@ -149,19 +149,28 @@ def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     assert ("incremental solver's answer" in found.status.advice) == is_by_increments
 
 
-def test_the_last_chance_before_a_limit_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_limit_comes_near_when_there_is_time_for_one_step() -> None:
     problem = discretise(small("block"))
     first = next(iterations(problem, method_of(small("block", start="zero"))))
-    monkeypatch.setattr("solver.latin.criteria.estimate.time.perf_counter", lambda: 0.0)
-    monkeypatch.setattr(Costs, "afford", lambda _, iterations, least=0.0: math.isinf(least))
     step = costs_of(problem, moving_share(states_of(first))).step
     found = []
-    for times in (math.inf, 2.0 * ROOM, 0.5 * ROOM, 0.5):
+    for times in (math.inf, 2.0 * ROOM, 0.5 * ROOM):
         estimate = ErrorEstimate(0.01)
         estimate.deadline = times * step
-        estimate(first, 1.0)
-        found.append(estimate.is_proven)
-    assert found == [False, False, True, False]
+        estimate._left = lambda estimate=estimate: estimate.deadline  # type: ignore[method-assign]
+        found.append(estimate.is_last_chance(first))
+    assert found == [False, False, True]
+
+
+@pytest.mark.parametrize("finish", ["status", "none"])
+def test_at_its_last_chance_a_run_that_may_end_with_a_step_tries_one(
+    finish: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ErrorEstimate, "is_last_chance", lambda *_: True)
+    monkeypatch.setattr(Costs, "afford", lambda _, iterations, least=0.0: math.isinf(least))
+    settings = small("block", finish=finish, start="zero")
+    _, verdict = next(judged(discretise(settings), method_of(settings)))
+    assert (verdict.certificate is not None) == (finish == "status")
 
 
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])

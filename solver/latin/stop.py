@@ -114,7 +114,7 @@ class StopRules:
         asked = latin.stop.accuracy
         self._estimate = latin.linear.estimate(asked if math.isfinite(asked) else USUAL_ACCURACY)
         self._stall = Stall(latin)
-        self._is_first = True
+        self._is_first, self._had_its_last = True, False
         self._found = math.nan
         self.seconds = spent
 
@@ -158,6 +158,9 @@ class StopRules:
         is_last = self._criterion.is_last(number, seconds)
         are_asked = self._is_first or is_last
         self._is_first = False
+        if self._may_finish and not self._had_its_last and self._estimate.is_last_chance(iterate):
+            self._had_its_last = True
+            self._estimate.try_step(iterate, LAST, least=math.inf)
         numbers = Numbers(iterate, self._estimate, seconds, are_asked=are_asked)
         if are_asked or number % SELDOM == 0:
             _ = numbers.indicator

@@ -60,7 +60,7 @@ class ErrorEstimate:
         self._step: StatusSolver | None = None
         self._costs: Costs | None = None
         self._costs_at = 0
-        self._has_solver, self._had_its_last = True, False
+        self._has_solver = True
         self.certificate: Certificate | None = None
         self.deadline = math.inf
 
@@ -88,9 +88,6 @@ class ErrorEstimate:
         is_near = self._changes.last.whole <= SETTLED or ends_soon or indicator <= SOLVED
         if is_due and (is_near or self._is_worth_it(iterate)):
             self.try_step(iterate, least=WAIT if ends_soon else 0.0)
-        if self._is_last_chance(iterate):
-            self._had_its_last = True
-            self.try_step(iterate, LAST, least=math.inf)
         if self.certificate is None:
             return expected.worst
         return self.certificate.distance.of_friction_force(iterate)
@@ -136,6 +133,12 @@ class ErrorEstimate:
             return False
         return self._costs_of(iterate).afford(patience * iterate.number, least)
 
+    def is_last_chance(self, iterate: Iterate) -> bool:
+        """Tell whether a run without an answer would have no time for a status step later."""
+        if self.certificate is not None or math.isinf(self.deadline):
+            return False
+        return self._left() <= ROOM * self._costs_of(iterate).step
+
     def try_step(self, iterate: Iterate, patience: float = 1.0, least: float = 0.0) -> bool:
         """Try the status step, unless it costs too much, as above; tell whether it holds."""
         if not self.can_be_proven(iterate, patience, least):
@@ -168,12 +171,6 @@ class ErrorEstimate:
 
     def _is_in_time(self, iterate: Iterate) -> bool:
         return self._costs_of(iterate).step <= self._left()
-
-    def _is_last_chance(self, iterate: Iterate) -> bool:
-        """Tell whether a run without an answer would have no time for a step later."""
-        if self.certificate is not None or self._had_its_last or math.isinf(self.deadline):
-            return False
-        return self._left() <= ROOM * self._costs_of(iterate).step
 
     def _left(self) -> float:
         """Give the seconds that are left of the run's limit."""
