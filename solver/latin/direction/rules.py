@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.direction.changing import ChangingDirection
 from solver.latin.direction.sticking import UntilNothingSlips
 from solver.latin.iterate import Checkpoint, UpdateProgress
 from solver.refusal import check_range
@@ -84,7 +85,7 @@ class SearchDirection(ABC):
 
     def at_work(
         self, problem: Problem, start: Checkpoint | None
-    ) -> ConstantDirection | UntilNothingSlips:
+    ) -> ConstantDirection | ChangingDirection:
         """Give k of a problem to a run that goes on from a checkpoint, if from any."""
         return ConstantDirection(self.of(problem))
 
@@ -108,7 +109,7 @@ class Auto(SearchDirection):
 
     def at_work(
         self, problem: Problem, start: Checkpoint | None
-    ) -> ConstantDirection | UntilNothingSlips:
+    ) -> ConstantDirection | ChangingDirection:
         """Give k of a problem to a run; between bodies that nowhere slip it becomes larger.
 
         Not so in a run from the fields of another, which are near already.

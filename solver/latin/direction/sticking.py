@@ -8,6 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.direction.changing import ChangingDirection
 from solver.latin.iterate import UpdateProgress
 
 LOOK = 3
@@ -16,7 +17,7 @@ points and instants; in the third none does where none does in the end, and of 3
 slip at more than half a hundredth of points and instants showed it (measured)."""
 
 
-class UntilNothingSlips:
+class UntilNothingSlips(ChangingDirection):
     """A k for what slips, and for bodies that are one as soon as they turn out to be.
 
     Small k is for what slips: there friction is known, and the place is sought. What has never
@@ -41,14 +42,9 @@ class UntilNothingSlips:
     def __init__(
         self, problem: Problem, k: Array, stuck: Array, course: UpdateProgress | None
     ) -> None:
+        super().__init__(k, course)
         self._laws = [law for law in problem.rubbing.values() if not law.is_on_support]
         self._stuck = stuck
-        self.course = course or UpdateProgress("first", k)
-
-    @property
-    def k(self) -> Array:
-        """Search direction of the rows by now, shape (n_rows,), scaled, read-only."""
-        return self.course.k
 
     @property
     def is_due(self) -> bool:
@@ -56,13 +52,7 @@ class UntilNothingSlips:
         return self.course.phase == "first" and self.course.count == LOOK
 
     def see(self, local_displacement: Array, incoming: Array) -> None:
-        """Take in a local stage.
-
-        Parameters
-        ----------
-        local_displacement, incoming
-            Its W^, and W - F/k that it read, shape (n_rows, n_instants).
-        """
+        """Take in a local stage: whether anything slips there."""
         course = self.course
         if course.phase != "first":
             return

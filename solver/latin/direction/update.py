@@ -8,6 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.problem import Problem
+from solver.latin.direction.changing import ChangingDirection
 from solver.latin.direction.rules import Auto, SearchDirection, automatic
 from solver.latin.indicators import behaviour_of
 from solver.latin.iterate import Checkpoint, UpdateProgress
@@ -51,7 +52,7 @@ class FromStatus:
         return DirectionUpdate(problem, self.of(problem), start.course if start else None)
 
 
-class DirectionUpdate:
+class DirectionUpdate(ChangingDirection):
     """k(x, t) in separated form: a profile in x from the status, constant in t.
 
     A slipping point carries its bound whatever its place, so the small k that leaves its place
@@ -72,17 +73,11 @@ class DirectionUpdate:
     """
 
     def __init__(self, problem: Problem, k: Array, course: UpdateProgress | None) -> None:
-        self._problem = problem
-        self._first = k
+        super().__init__(k, course)
+        self._problem, self._first = problem, k
         self._gives_way = any(
             law.tangential.softness is not None for law in problem.rubbing.values()
         )
-        self.course = course or UpdateProgress("first", k)
-
-    @property
-    def k(self) -> Array:
-        """Search direction of the rows by now, shape (n_rows,), scaled, read-only."""
-        return self.course.k
 
     @property
     def is_due(self) -> bool:
@@ -91,13 +86,7 @@ class DirectionUpdate:
         return wait is not None and self.course.count >= wait
 
     def see(self, local_displacement: Array, incoming: Array) -> None:
-        """Take in a local stage.
-
-        Parameters
-        ----------
-        local_displacement, incoming
-            Its W^, and W - F/k that it read, shape (n_rows, n_instants).
-        """
+        """Take in a local stage: what sticks and slips there."""
         course = self.course
         if course.phase == "updated":
             self.course = replace(course, count=course.count + 1)
@@ -114,17 +103,7 @@ class DirectionUpdate:
         self.course = replace(course, status=status, count=course.count + 1 if is_calm else 0)
 
     def turn(self, displacement: Array, force: Array) -> tuple[Array, Array] | None:
-        """Decide on k.
-
-        Parameters
-        ----------
-        displacement, force
-            W and F of the linear stage, shape (n_rows, n_instants), scaled.
-
-        Returns
-        -------
-        W and F to go on from where k changes, or None.
-        """
+        """Decide on k, as `ChangingDirection` says."""
         course = self.course
         violation = behaviour_of(self._problem, displacement, force)
         kept = (displacement, force)

@@ -40,9 +40,9 @@ AFFORDABLE = 40
 DENSE, FACTOR, SPARSE = 1e10, 2e10, 6e9
 """Operations a second of dense products, of dense factors, and of sparse ones (measured)."""
 SHALLOW = 1.8
-"""Doublings of degrees of freedom over jumps from which a condensation takes longer, as factors
-fill: with one more twice as long. Blocks in 8 x 4, 16 x 8 and 32 x 16 substructures take 1.1, 2 and
-2.6 times what they would without, layers 1.0 (measured)."""
+"""Doublings of degrees of freedom over jumps that cost a condensation nothing; beyond one more each
+adds its whole time once, as factors fill. Blocks in 8 x 4, 16 x 8 and 32 x 16 substructures take
+1.1, 2 and 2.6 times that time, layers 1.0 (measured)."""
 SQUARE = 5e-8
 """Seconds a number of the condensed stiffness takes, all in all (measured)."""
 GATHER, READ = 8e-9, 1.5e-9
