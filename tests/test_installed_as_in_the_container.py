@@ -1,7 +1,8 @@
 """The Dockerfile's steps without a container engine: install, serve, ask the health check.
 
 The clean environment is lent what the project declares that it needs, and nothing else: pip checks
-the versions, but unpacks no packages that these tests run on already.
+the versions, but unpacks no packages that these tests run on already. Outside the tree, what is
+installed there has all that the command, the engine as a library and the page need.
 """
 
 import http.client
@@ -9,6 +10,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -20,12 +22,24 @@ from pathlib import Path
 
 import pytest
 import yaml
+from browser import Server
 from packaging.requirements import Requirement
+from pages import status, visits
+from playwright.sync_api import expect
 from processes import PATIENCE, wait_for
+from test_server_leaves_nothing_behind import end_with_pages
 
 from app.session.pages import VARIABLE
 
 ROOT = Path(__file__).resolve().parents[1]
+PROGRAM = """
+from solver import Latin, Rods, solve
+import numpy as np, solver
+t = np.linspace(0.0, 1.0, 21)
+rods = Rods(length=1.0, stiffness=1e6, elements=20, substructures=2, bound=np.full(21, 1500.0),
+            load=900.0 * t, instants=t, duration=1.0)
+print(solve(rods.discretise(), Latin()).status.ending, solver.__file__)
+"""
 
 
 def dockerfile() -> list[tuple[str, str]]:
@@ -175,3 +189,56 @@ def test_the_installed_page_serves_and_is_healthy(image, tmp_path):
     finally:
         server.terminate()
         server.wait(PATIENCE)
+
+
+def run(image, place, *command):
+    """Run a program of the image where nothing of the tree is."""
+    _, variables = image
+    program = shutil.which(command[0], path=variables["PATH"])
+    return subprocess.run(
+        [program, *command[1:]],
+        cwd=place,
+        env=variables,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_the_command_runs_a_scene(image, tmp_path):
+    done = run(image, tmp_path, "slipfront", "run", "bar", "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["status"] == "converged"
+
+
+def test_the_command_lists_the_page_among_its_own(image, tmp_path):
+    assert "serve the page" in run(image, tmp_path, "slipfront", "--help").stdout
+
+
+def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path):
+    folder, _ = image
+    done = run(image, tmp_path, "python", "-c", PROGRAM)
+    ending, home = done.stdout.split()
+    assert ending == "converged", done.stderr
+    assert Path(home).is_relative_to(folder.parent / "environment")
+
+
+@pytest.fixture
+def served(image, tmp_path):
+    _, variables = image
+    command = [shutil.which("slipfront", path=variables["PATH"]), "serve"]
+    made = Server(tmp_path / "log", serves=command, place=tmp_path)
+    try:
+        made.wait()
+        yield made
+    finally:
+        made.stop()
+
+
+def test_its_page_runs_in_a_browser_and_an_interrupt_leaves_no_process(served, chrome):
+    with visits(served, chrome) as visit:
+        page = visit("?lesson=best-k")
+        expect(page.get_by_role("button", name="Show me")).to_be_visible()
+        assert page.evaluate("[...document.styleSheets].length") > 0
+        expect(status(page)).to_contain_text("onverged")
+    end_with_pages(served, signal.SIGINT)
