@@ -76,6 +76,8 @@ def test_the_bar_slips_as_far_as_its_load_reaches() -> None:
     run = ran("bar", load="ramp", peak=800.0, elements=60, instants=61)
     assert taken("slipped_share", run) == pytest.approx(800.0 / BOUND, abs=0.02)
     assert taken("peak_friction", run) == pytest.approx(800.0, rel=1e-6)
+    assert taken("stuck_share", run) == pytest.approx(1.0 - 800.0 / BOUND, abs=0.02)
+    assert taken("stiffness", run) == pytest.approx(2.0 * STIFFNESS * BOUND / 800.0, rel=1e-2)
     assert taken("first_slip_time", run) == run.problem.instants[1]
     reached = taken("first_slip_time@0.25", run)
     assert reached == pytest.approx(0.25 * BOUND / 800.0, abs=0.04)
@@ -167,6 +169,22 @@ def test_a_pressed_block_carries_what_presses_it() -> None:
     run = ran("block", **pressed, **SMALL_BLOCK)
     assert taken("peak_pressing", run) == pytest.approx(1e7 * 0.1, rel=1e-6)
     assert math.isnan(taken("peak_pressing", ran("bar", **SMALL)))
+
+
+def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() -> None:
+    pressed = {"gap": "flat", "top": "traction", "top_normal_traction": -1e7, "friction": 0.0}
+    run = ran("block", plane="stress", **pressed, **SMALL_BLOCK)
+    assert taken("peak_pressure", run) == pytest.approx(1e7, rel=1e-6)
+    assert taken("peak_stress", run) == pytest.approx(1e7, rel=1e-6)
+    assert taken("contact_width", run) == pytest.approx(0.1, rel=1e-9)
+    bar = ran("bar", **SMALL)
+    assert all(math.isnan(taken(name, bar)) for name in ("peak_pressure", "peak_stress"))
+
+
+def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
+    run = ran("incline", friction=0.0, elements=6, elements_up=4, instants=9, substructures=1)
+    assert taken("spring_force", run) == pytest.approx(1000.0 * math.sin(math.radians(40.0)))
+    assert math.isnan(taken("stiffness", run))
 
 
 def test_compliant_friction_dissipates_by_slip_alone() -> None:

@@ -138,8 +138,19 @@ def holding_friction(run: FinishedRun, at: float | None) -> float:
 
 def end_displacement(run: FinishedRun, at: float | None) -> float:
     """Give the loop's displacement where its force first is largest, m; NaN for an angle."""
+    return displacement_at(run, largest_load(run))
+
+
+def largest_load(run: FinishedRun) -> int:
+    """Find the instant at which the loop's force first is largest."""
     size = np.abs(run.force)
-    return displacement_at(run, int(np.argmax(size >= (1.0 - EQUAL) * size.max())))
+    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
+
+
+def stiffness(run: FinishedRun, at: float | None) -> float:
+    """Give the loop's largest force over its displacement, N/m; NaN for an angle."""
+    moved = end_displacement(run, at)
+    return float(run.force[largest_load(run)]) / moved if moved else math.nan
 
 
 def displacement_at(run: FinishedRun, instant: int) -> float:

@@ -13,7 +13,7 @@ from solver.definitions import SettingError
 from solver.reduction.svd import InterfaceField
 from solver.scenes import kind_of
 from solver.settings import Settings
-from solver.study import measures
+from solver.study import contact_measures, measures
 from solver.study.finished import FinishedRun
 from solver.study.quantity import Parameter, Quantity
 
@@ -38,6 +38,10 @@ def _in_the_plane(settings: Settings) -> bool:
 
 def _over_a_displacement(settings: Settings) -> bool:
     return settings.loop_is_over_displacement
+
+
+def _with_a_spring(settings: Settings) -> bool:
+    return "spring" in settings.definitions()
 
 
 def _with_a_broken_wire(settings: Settings) -> bool:
@@ -161,6 +165,34 @@ _ALL = (
         measures.peak_pressing,
         applies=_in_the_plane,
     ),
+    Quantity(
+        "peak_pressure",
+        "Largest pressure",
+        "Pa",
+        contact_measures.peak_pressure,
+        applies=_in_the_plane,
+    ),
+    Quantity(
+        "contact_width",
+        "Largest length in contact",
+        "m",
+        contact_measures.contact_width,
+        applies=_in_the_plane,
+    ),
+    Quantity(
+        "peak_stress",
+        "Largest von Mises stress",
+        "Pa",
+        contact_measures.peak_stress,
+        applies=_in_the_plane,
+    ),
+    Quantity(
+        "spring_force",
+        "Largest force in the spring",
+        "N",
+        contact_measures.spring_force,
+        applies=_with_a_spring,
+    ),
     Quantity("holding_friction", "Smallest friction that holds", "", measures.holding_friction),
     Quantity(
         "end_displacement",
@@ -177,9 +209,24 @@ _ALL = (
         measures.residual_displacement,
         applies=_over_a_displacement,
     ),
+    Quantity(
+        "stiffness",
+        "Largest load over its displacement",
+        "N/m",
+        measures.stiffness,
+        applies=_over_a_displacement,
+    ),
     Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
     Quantity(
         "slipped_share", "Share of the points that slip", "", measures.slipped_share, is_share=True
+    ),
+    Quantity(
+        "stuck_share",
+        "Share of the contact that sticks at the largest load",
+        "",
+        contact_measures.stuck_share,
+        is_share=True,
+        at_instant=contact_measures.stuck_share_at,
     ),
     Quantity("first_slip_time", "Time of the first slip", "s", measures.first_slip_time, SHARE),
     Quantity(
