@@ -30,6 +30,7 @@ from solver.files import (
 from solver.latin import Ending, Seconds, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
+from solver.mesh_command import add_mesh
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
@@ -105,6 +106,7 @@ def _parser() -> argparse.ArgumentParser:
     settings.set_defaults(command=_settings)
     add_reports(commands)
     add_sweep(commands)
+    add_mesh(commands)
     add_lesson(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone

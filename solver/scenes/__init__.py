@@ -92,6 +92,12 @@ def loads_of(settings: Settings) -> Sequence[str]:
     return settings.LOADS
 
 
+def mesh_of(settings: Settings) -> Sequence[str]:
+    """Name the settings that say how many elements there are."""
+    assert isinstance(settings, SceneSettings)
+    return settings.MESH
+
+
 def ends_of(settings: Settings) -> Mapping[str, int]:
     """Give the largest numbers of parts that other settings leave, by the name of their setting."""
     assert isinstance(settings, SceneSettings)

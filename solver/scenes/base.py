@@ -66,6 +66,8 @@ class SceneSettings(Settings):
 
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
+    MESH: ClassVar[Sequence[str]] = ("elements",)
+    """Numbers of elements: twice each is a mesh of half the size."""
     LOADS: ClassVar[Sequence[str]] = ()
     """Settings that say how much it is loaded; the first that applies counts."""
     SHAPES: ClassVar[Mapping[str, Callable[[Array, int], Array]]] = PRESETS

@@ -26,6 +26,7 @@ class PlaneSettings(SceneSettings):
 
     across = "height"
     PARTS: ClassVar = {"substructures": "elements", "substructures_up": "elements_up"}
+    MESH: ClassVar = ("elements", "elements_up")
 
     duration = shared.duration()
     instants = shared.instants(81)

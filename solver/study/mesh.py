@@ -1,0 +1,141 @@
+"""Whether a mesh is fine enough: a quantity on three meshes, its order, and what it tends to.
+
+Richardson's extrapolation, with the margin that Roache gives it (J. Fluids Eng. 116, 405, 1994).
+Runs end with the exact solution on their mesh, so what differs between them is the mesh alone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from solver.definitions import SettingError
+from solver.scenes import mesh_of
+from solver.settings import Settings
+
+SAFETY = 1.25
+"""Roache's factor on what is still missing, for three meshes."""
+LEAST_ORDER, LARGEST_ORDER = 0.5, 2.0
+"""Between which an order is believed: a smaller one has shown no limit yet, and a larger one is
+luck, as no quantity of ours has one from linear elements."""
+UNSURE = 3.0
+"""Times the largest difference, where there is no order to believe (Eca and Hoekstra, J. Comput.
+Phys. 262, 104, 2014)."""
+EQUAL = 1e-6
+"""Relative difference up to which two values are one."""
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """A quantity on three meshes, each with elements of half the size of the one before.
+
+    Attributes
+    ----------
+    values
+        Coarse first.
+    own
+        The place of the one that is asked about.
+    """
+
+    values: tuple[float, float, float]
+    own: int
+
+    @property
+    def is_told(self) -> bool:
+        """Whether all three have a value."""
+        return all(math.isfinite(value) for value in self.values)
+
+    @property
+    def order(self) -> float | None:
+        """Power of the elements' size with which the rest goes; None where there is no such."""
+        coarse, middle, fine = self.values
+        first, second = middle - coarse, fine - middle
+        if self._is_settled or first * second <= 0.0:
+            return None
+        return math.log2(first / second)
+
+    @property
+    def limit(self) -> float:
+        """What the quantity tends to, or that on the finest mesh where nothing tells it."""
+        _, middle, fine = self.values
+        order = self._believed
+        return fine if order is None else fine + (fine - middle) / (2.0**order - 1.0)
+
+    @property
+    def margin(self) -> float:
+        """To both sides of the limit."""
+        coarse, middle, fine = self.values
+        if self._is_settled:
+            return 0.0
+        if self._believed is None:
+            return UNSURE * max(abs(middle - coarse), abs(fine - middle))
+        return SAFETY * abs(self.limit - fine)
+
+    @property
+    def deviation(self) -> float:
+        """How far the value that is asked about may be from the limit, as a share of that."""
+        most = abs(self.values[self.own] - self.limit) + self.margin
+        return most / abs(self.limit) if self.limit else math.inf if most else 0.0
+
+    @property
+    def _is_settled(self) -> bool:
+        largest = max(map(abs, self.values))
+        return max(self.values) - min(self.values) <= EQUAL * largest
+
+    @property
+    def _believed(self) -> float | None:
+        order = self.order
+        if order is None or order < LEAST_ORDER:
+            return None
+        return min(order, LARGEST_ORDER)
+
+
+def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
+    """Give three meshes, each twice as fine as the one before, and the place of a run's own.
+
+    That is the middle one, or the first where its numbers of elements cannot be halved.
+
+    Raises
+    ------
+    SettingError
+        Where the finest has more elements than a scene takes.
+    """
+    try:
+        return [_refined(settings, factor) for factor in (0.5, 1, 2)], 1
+    except SettingError:
+        return [_refined(settings, factor) for factor in (1, 2, 4)], 0
+
+
+def _refined(settings: Settings, factor: float) -> Settings:
+    counts = ((name, factor * getattr(settings, name)) for name in mesh_of(settings))
+    return settings.replace(
+        **{name: int(count) if count == int(count) else count for name, count in counts}
+    )
+
+
+def answer(found: Refinement, unit: str) -> str:
+    """Say in two sentences what three meshes tell.
+
+    Parameters
+    ----------
+    found
+        What they came to.
+    unit
+        Of the values; empty for a pure number.
+    """
+    if not found.is_told:
+        return "One of the runs came to no certified solution, or has no such value: no answer."
+    if found.margin == 0.0:
+        return "All three are equal: no mesh of ours changes it."
+    limit = f"{found.limit:.4g} ± {found.margin:.2g} {unit}".rstrip()
+    own = f"This mesh is within {100.0 * found.deviation:.2g} % of that."
+    order = found.order
+    if order is None:
+        return f"It follows no power of an element's size: {limit} is all that is known. {own}"
+    if order < LEAST_ORDER:
+        return (
+            f"It changes with the power {order:.2f} of an element's size, which shows no limit: "
+            f"{limit}, if there is one. {own}"
+        )
+    goes = f"Its error goes with the power {order:.2f} of an element's size"
+    return f"{goes}, and with ever smaller ones it becomes {limit}. {own}"
