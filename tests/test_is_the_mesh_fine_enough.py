@@ -13,7 +13,7 @@ from solver.scenes import CATALOGUE
 from solver.study.mesh import LEAST_ORDER, Refinement, answer, meshes_around
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
-"""Energy of a full cycle of the bar, J (theory.md, 3)."""
+"""Energy of a full cycle of the bar, J."""
 
 
 def power(order: float, limit: float, share: float) -> Refinement:

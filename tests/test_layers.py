@@ -33,7 +33,7 @@ LAYERS = [
     ["files"],
     ["running"],
     ["study"],
-    ["lessons", "report_commands"],
+    ["lessons", "mesh_command", "report_commands"],
     ["sweep_command"],
     ["cli"],
     ["__main__"],
