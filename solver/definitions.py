@@ -9,8 +9,8 @@ import copy
 import difflib
 import math
 import tomllib
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -44,6 +44,8 @@ class About:
         Whether it does anything, given all the settings.
     essential
         Whether it stands in the open on the page, not behind "more".
+    aliases
+        What files and scripts may say for one of its values.
     """
 
     group: str
@@ -52,6 +54,7 @@ class About:
     logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
     essential: bool = False
+    aliases: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -227,9 +230,10 @@ def checked_value(definition: Parameter, name: str, value: object) -> Any:
             raise refuse("write true or false")
         return value
     if isinstance(definition, param.Selector):
-        if value not in definition.objects:
+        meant = about(definition).aliases.get(value, value) if isinstance(value, str) else value
+        if meant not in definition.objects:
             raise refuse("choose one of these")
-        return value
+        return meant
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise refuse("write a number")
     if isinstance(value, float) and not math.isfinite(value):

@@ -126,7 +126,7 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "scene": settings.scene,
         "status": str(solution.status.ending),
         "advice": solution.status.advice,
-        "iterations": solution.iterate.number,
+        "iterations": solution.iterate.iterations,
         "indicator": last.indicator if last else None,
         "behaviour": last.behaviour if last else None,
         "estimated_error": last.estimated_error if last else None,

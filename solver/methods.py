@@ -10,7 +10,7 @@ METHODS: Mapping[str, Mapping[str, object]] = {
         "acceleration": "anderson",
         "start": "nested",
         "relaxation": 0.8,
-        "finish": "status",
+        "finish": "at-once",
         "tolerance": 1e-3,
     },
     "paper": {

@@ -194,13 +194,15 @@ class Settings(Checked):
         applies=_on_fields,
     )
     finish = choice(
-        "status",
-        ["none", "status"],
-        "status: end the run with a status step: keep the present stick, slip and opening, solve "
-        "the linear problem that is left, and take its solution if it obeys all laws. none: only "
-        "iterate.",
+        "at-once",
+        ["none", "accuracy", "at-once"],
+        "When a status step ends the run: keep the present stick, slip and opening, solve the "
+        "linear problem that is left, and take its solution if it obeys all laws. at-once: as soon "
+        "as one holds. accuracy: once the iterates themselves are within the accuracy; the answer "
+        "is then put beside them. none: only iterate.",
         group="Method",
         title="Finish",
+        aliases={"status": "at-once", "at once": "at-once"},
     )
     accuracy = quantity(
         0.01,

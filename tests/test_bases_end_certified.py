@@ -94,7 +94,7 @@ def test_a_run_that_only_iterates_stays_approximate_and_names_the_step() -> None
     solution = solve(problem, method)
     assert not solution.is_certified
     assert solution.iterate.number == 60
-    assert "finish=status" in solution.status.advice
+    assert "finish=at-once" in solution.status.advice
     assert method.finish is None
     assert solve(problem, replace(method, finish=StatusStep())).is_certified
 

@@ -74,6 +74,6 @@ def test_such_a_run_goes_on_from_any_checkpoint_to_the_bit(place):
 
 
 def test_what_nowhere_slips_is_solved_by_a_status_step_at_once():
-    solution = solve(*problem_of(**{**THIN, "instants": 81, "finish": "status"}))
+    solution = solve(*problem_of(**{**THIN, "instants": 81, "finish": "at-once"}))
     assert solution.is_certified
     assert solution.iterate.number <= LOOK

@@ -60,7 +60,7 @@ def distances():
 
 
 @pytest.mark.parametrize("friction", [0.02, 0.05])
-@pytest.mark.parametrize("finish", ["none", "status"])
+@pytest.mark.parametrize("finish", ["none", "at-once"])
 def test_friction_does_not_hide_behind_a_large_pressure(finish, friction):
     values = {"accuracy": 1e-3, "elements": 24, "elements_up": 12, "instants": 41}
     settings = BlockSettings.checked({**values, "finish": finish, "friction": friction})

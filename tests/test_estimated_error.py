@@ -162,7 +162,7 @@ def test_a_limit_comes_near_when_there_is_time_for_one_step() -> None:
     assert found == [False, False, True]
 
 
-@pytest.mark.parametrize("finish", ["status", "none"])
+@pytest.mark.parametrize("finish", ["at-once", "none"])
 def test_at_its_last_chance_a_run_that_may_end_with_a_step_tries_one(
     finish: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -170,7 +170,7 @@ def test_at_its_last_chance_a_run_that_may_end_with_a_step_tries_one(
     monkeypatch.setattr(Costs, "afford", lambda _, iterations, least=0.0: math.isinf(least))
     settings = small("block", finish=finish, start="zero")
     _, verdict = next(judged(discretise(settings), method_of(settings)))
-    assert (verdict.certificate is not None) == (finish == "status")
+    assert (verdict.certificate is not None) == (finish == "at-once")
 
 
 @pytest.mark.parametrize("wrong", [math.nan, math.inf])

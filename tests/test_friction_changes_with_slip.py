@@ -148,7 +148,7 @@ def test_a_run_comes_to_the_reference_by_itself_and_is_certified(ratio, load):
     run = solve(problem, method_of(chosen), distance=distance)
     assert run.status.ending is Ending.CONVERGED
     assert run.records[-1].error_force < 0.02
-    whole = solve(problem, method_of(chosen.replace(finish="status")), distance=distance)
+    whole = solve(problem, method_of(chosen.replace(finish="at-once")), distance=distance)
     assert whole.is_certified
     assert whole.records[-1].error_force < 1e-9
     assert whole.records[-1].behaviour < 1e-9

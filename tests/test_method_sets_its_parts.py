@@ -30,7 +30,7 @@ FAST = {
     "acceleration": "anderson",
     "start": "nested",
     "relaxation": 0.8,
-    "finish": "status",
+    "finish": "at-once",
     "tolerance": 1e-3,
 }
 METHODS = {"paper": PAPER, "fast": FAST}

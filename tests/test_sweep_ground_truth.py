@@ -48,7 +48,7 @@ def test_the_energy_of_a_cycle_over_the_peak_is_the_closed_form() -> None:
 
 
 def test_iterations_over_k_are_those_of_single_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    plan = tiny(["k_scale=0.1:10:3:log", "finish=none,status"], ["iterations"])
+    plan = tiny(["k_scale=0.1:10:3:log", "finish=none,at-once"], ["iterations"])
     for row in rows_of(plan):
         own = [f"{name}={value}" for name, value in plan.settings_at(row.number).changed().items()]
         main(["run", "bar", "--json", *(part for one in own for part in ("--set", one))])

@@ -113,7 +113,7 @@ def test_modes_are_together_as_large_as_the_field_that_they_hold_once_it_has_con
 
 
 def test_a_certified_solution_stands_beside_the_modes_of_its_search() -> None:
-    shown = told({**SMALL, "finish": "status", "pgd_modes": 3})
+    shown = told({**SMALL, "finish": "at-once", "pgd_modes": 3})
     last = bases_of(shown)
     assert last.is_left
     assert "of the search" in shown.page["pgd-space-modes.title"]["text"]

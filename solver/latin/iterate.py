@@ -117,6 +117,9 @@ class Iterate:
     force
         F of such a one, shape (n_rows, n_instants), scaled: beside a body's rigid motion the digits
         of F/k may be lost.
+    is_answer
+        Whether such a one stands beside the iterates of a search that came to its own end, and so
+        is no iteration.
     """
 
     number: int
@@ -133,6 +136,12 @@ class Iterate:
     course: UpdateProgress | None = None
     residual: float | None = None
     force: Array | None = None
+    is_answer: bool = False
+
+    @property
+    def iterations(self) -> int:
+        """Iterations done; an answer beside them is none."""
+        return self.number - self.is_answer
 
     @property
     def checkpoint(self) -> Checkpoint:

@@ -37,6 +37,8 @@ class Record:
         Relative L2 distance to the reference over space and time.
     reduction
         What the iteration did to the separated basis of every substructure; empty without bases.
+    is_answer
+        As in `Iterate`.
     """
 
     iteration: int
@@ -47,6 +49,7 @@ class Record:
     error_displacement: float
     error_force: float
     reduction: tuple[ReductionRecord, ...] = ()
+    is_answer: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +98,7 @@ def record(
         error_displacement=distance.of_displacement(iterate) if distance else math.nan,
         error_force=distance.of_friction_force(iterate) if distance else math.nan,
         reduction=iterate.reduction.records if iterate.reduction else (),
+        is_answer=iterate.is_answer,
     )
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array
-from solver.latin.criteria.converged import agrees
+from solver.latin.criteria.converged import Proven, agrees
 from solver.latin.criteria.estimate import LAST
 from solver.latin.criteria.judged_numbers import Numbers
 from solver.latin.criteria.status import Ending, Status
@@ -30,6 +30,7 @@ LOWEST = 1e-24
 USUAL_ACCURACY = 0.01
 """Of a status step that ends a run which nobody asks to be accurate."""
 
+_SEARCHED = " The iterates by themselves had come within {:g} % of its contact force."
 _CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
 _FOUND = " A status step found it from iterate {}, whose contact force was {:g} % wrong{}."
 _BY_INCREMENTS = ": the incremental solver's answer, from LATIN's statuses"
@@ -72,19 +73,26 @@ class Decision:
 
 
 def proven(
-    finish: Iterate, certificate: Certificate | None, seconds: float, found: float = math.nan
+    finish: Iterate,
+    certificate: Certificate | None,
+    seconds: float,
+    found: float = math.nan,
+    why: str = "",
 ) -> Decision:
     """Say of an iterate that is a certified solution that the run ends with it.
 
-    Separated bases that it shows are those of the search, and `found` is the error of the contact
-    force of the iterate that it was found from.
+    Separated bases that it shows are those of the search. `found` is the error of the contact force
+    of the last iterate before, and `why` says of a search that had to end earlier what to try.
     """
     residual = finish.residual or 0.0
     advice = f"{_CERTIFIED} (residual {residual:.0e})."
     if not math.isnan(found):
         wrong, whose = float(f"{100.0 * found:.2g}"), _BY_INCREMENTS * (found > FAR)
-        advice += _FOUND.format(finish.number - 1, wrong, whose)
-        advice += _ON_BASES * (finish.reduction is not None)
+        is_beside = finish.is_answer and not whose
+        said = (
+            _SEARCHED.format(wrong) if is_beside else _FOUND.format(finish.number - 1, wrong, whose)
+        )
+        advice += said + _ON_BASES * (finish.reduction is not None) + f" {why}" * bool(why)
     status = Status(Ending.CONVERGED, advice)
     return Decision(seconds, math.nan, math.nan, residual, status, certificate)
 
@@ -93,7 +101,8 @@ class StopRules:
     """When a run ends; they remember what they have seen, and what they cost.
 
     A run has converged when its criterion says so, or when a status step ends it with a certified
-    solution. It also ends when the LATIN indicator has stopped falling, or numbers to be finite.
+    solution: at once, or once the iterates themselves are that near to it. It also ends when the
+    LATIN indicator has stopped falling, or numbers to be finite.
 
     Parameters
     ----------
@@ -109,13 +118,16 @@ class StopRules:
     """
 
     def __init__(self, latin: Latin, spent: float = 0.0) -> None:
-        self._latin, self._criterion = latin, latin.stop.at_work()
+        asked, stop = latin.stop.accuracy, latin.stop
         self._may_finish = latin.finish is not None
-        asked = latin.stop.accuracy
+        self._searches = latin.finish is not None and not latin.finish.at_once
+        if self._searches and math.isfinite(asked):
+            stop = Proven(asked) | stop
+        self._latin, self._criterion = latin, stop.at_work()
         self._estimate = latin.linear.estimate(asked if math.isfinite(asked) else USUAL_ACCURACY)
         self._stall = Stall(latin)
         self._is_first, self._had_its_last = True, False
-        self._found = math.nan
+        self._found, self._why = math.nan, ""
         self.seconds = spent
 
     def judge(self, iterate: Iterate) -> Decision:
@@ -130,20 +142,24 @@ class StopRules:
         certificate = self._estimate.certificate
         indicator, behaviour = numbers.known("indicator"), numbers.known("behaviour")
         seconds = self._billed(iterate, began)
-        if certificate is None or not self._may_finish:
+        is_over = status is not None or not self._searches
+        if certificate is None or not (self._may_finish and is_over):
             estimated = numbers.known("estimated_error")
             return Decision(seconds, indicator, behaviour, estimated, status, certificate)
         began = time.perf_counter()
         self._found = estimated = certificate.distance.of_friction_force(iterate)
+        if status is not None and status.ending is not Ending.CONVERGED:
+            self._why = status.advice
         number, spent, searched = iterate.number + 1, iterate.seconds, iterate.reduction
         finish = finished(iterate.problem, iterate.k, certificate, number, spent, searched)
+        finish = replace(finish, is_answer=self._searches)
         self._billed(iterate, began)
         return Decision(seconds, indicator, behaviour, estimated, None, certificate, finish)
 
     def close(self, finish: Iterate) -> Decision:
         """Judge the certified solution that ends a run."""
         seconds = finish.seconds + self.seconds
-        verdict = proven(finish, self._estimate.certificate, seconds, self._found)
+        verdict = proven(finish, self._estimate.certificate, seconds, self._found, self._why)
         behaviour = behaviour_indicator(finish)
         return replace(verdict, indicator=latin_indicator(finish), behaviour=behaviour)
 
@@ -245,13 +261,13 @@ class Stall:
 
     def _remedy(self, begin: str) -> str:
         """Say what helps; a status step needs neither k nor the digits of W + F/k."""
-        also = ", or finish=status" if self._latin.finish is None else ""
+        also = ", or finish=at-once" if self._latin.finish is None else ""
         return f"{begin} another k_scale{also}."
 
 
 def of_bases(latin: Latin) -> str:
     """Say what helps a run on separated bases, in a sentence; empty for full fields."""
-    remedy, also = latin.linear.remedy, ", or set finish=status" if latin.finish is None else ""
+    remedy, also = latin.linear.remedy, ", or set finish=at-once" if latin.finish is None else ""
     return f"{remedy}{also}." if remedy else ""
 
 

@@ -34,7 +34,7 @@ def method_of(settings: Settings) -> Latin:
         relaxation=settings.relaxation,
         acceleration=Anderson() if settings.acceleration == "anderson" else None,
         start=Nested(partial(coarser_problems, settings)) if settings.start == "nested" else None,
-        finish=StatusStep() if settings.finish == "status" else None,
+        finish=_FINISH[settings.finish],
         stop=goal | Iterations(settings.max_iterations),
         threads=settings.threads,
     )
@@ -57,6 +57,11 @@ def _modes(settings: Settings) -> PGD:
     )
 
 
+_FINISH = {
+    "none": None,
+    "accuracy": StatusStep(at_once=False),
+    "at-once": StatusStep(),
+}
 _LINEAR: dict[str, Callable[[Settings], Full | PGD]] = {
     "full": lambda settings: Full(),
     "pgd": _modes,

@@ -50,7 +50,7 @@ FORMS: dict[str, dict[str, Any]] = {
     "LATIN auto k, nested": {**AUTO, "start": "nested"},
     "LATIN auto k, nested, Anderson": NESTED,
     "LATIN auto k, nested, Anderson, k updated": {**NESTED, "k_update": "status"},
-    "LATIN fast": {**NESTED, "finish": "status"},
+    "LATIN fast": {**NESTED, "finish": "at-once"},
     "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
 }
 """Settings that make the forms of LATIN; all others are those of the run."""
@@ -60,7 +60,7 @@ FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
     "LATIN auto k": AUTO,
     "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
     "LATIN auto k, Anderson, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
-    "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "status"},
+    "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "at-once"},
     "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
 }
 """The same of scenes where no run starts from a coarser mesh."""

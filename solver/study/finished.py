@@ -177,7 +177,7 @@ def neighbour(problem: Problem, settings: Settings, states: States) -> Solution 
     """
     began = time.perf_counter()
     fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
-    if settings.finish != "status" or settings.linear_stage == "pgd" or not fits:
+    if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
         return None
     costs = costs_of(problem, moving_share(states))
     if not costs.afford(ALONE):

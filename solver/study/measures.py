@@ -53,7 +53,8 @@ def until(column: str, error: str) -> Callable[[FinishedRun, float | None], floa
     def of(run: FinishedRun, at: float | None) -> float:
         if not run.has_errors:
             return math.nan
-        reached = (one for one in run.solution.records if getattr(one, error) <= (at or 0.0))
+        iterates = (one for one in run.solution.records if not one.is_answer)
+        reached = (one for one in iterates if getattr(one, error) <= (at or 0.0))
         first: Record | None = next(reached, None)
         return math.inf if first is None else float(getattr(first, column))
 

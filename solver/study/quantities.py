@@ -89,7 +89,9 @@ def _until(name: str, title: str, column: str, error: str, unit: str = "") -> Qu
 
 
 _ALL = (
-    Quantity("iterations", "Iterations", "", lambda run, at: run.iterate.number, is_of_course=True),
+    Quantity(
+        "iterations", "Iterations", "", lambda run, at: run.iterate.iterations, is_of_course=True
+    ),
     Quantity("seconds", "Run time", "s", measures.recorded("seconds"), is_of_course=True),
     Quantity(
         "seconds_per_iteration",

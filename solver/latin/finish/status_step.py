@@ -66,7 +66,17 @@ class Certificate:
 
 @dataclass(frozen=True)
 class StatusStep:
-    """Ends a run with the certified solution, once a status step from an iterate holds."""
+    """Ends a run with the certified solution, once a status step from an iterate holds.
+
+    Attributes
+    ----------
+    at_once
+        Whether it ends the run as soon as it holds. Otherwise the method goes on by itself until
+        its own force is within the accuracy, or until it gives up; what is certified is then put
+        beside its iterates, as the answer, and is none of them.
+    """
+
+    at_once: bool = True
 
 
 class StatusSolver:

@@ -73,7 +73,7 @@ def drawn(settings: Settings, seed: int, number: int) -> Trial:
             "seed": seed,
             "row": number,
             "foolish_k": is_foolish(settings),
-            "may_finish": settings.finish == "status",
+            "may_finish": settings.finish != "none",
             "accuracy": settings.accuracy,
             "settings": json.dumps(changed),
         },
