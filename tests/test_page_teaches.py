@@ -60,6 +60,15 @@ def test_a_lesson_is_predicted_moved_read_reloaded_and_left(open_page: Visit) ->
     page.reload()
     expect(lesson(page)).to_contain_text("Not “3 to 5”, but: About 10.")
     expect(modes).not_to_have_js_property("ariaValueNow", "5")
+    with page.expect_download() as handed_out:
+        press(page, "Handout")
+    paper = handed_out.value.path().read_text(encoding="utf-8")
+    front, overleaf = paper.split('<section class="overleaf">')
+    assert "How many products of a shape in space" in front
+    assert "Why?" in front
+    assert "About 10." in overleaf
+    assert "…" not in overleaf
+    assert [part.count("</svg>") > 0 for part in (front, overleaf)] == [True, True]
     press(page, "Explore freely")
     expect(slider(page, "Peak load")).to_be_visible()
     expect(page.locator(".figures")).to_be_visible()

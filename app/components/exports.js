@@ -59,6 +59,13 @@ const pictured = (seen, html, caption) => {
   whole.append(drawn("rect", {...size, fill: paper}), words, inner)
   return {...size, paper, text: new XMLSerializer().serializeToString(whole)}
 }
+const named = (name) =>
+  Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)
+const is_drawn = (slug) => named(`${slug}.x`) !== undefined
+const plot_of = (slug, caption) => {
+  const [plot] = named(`${slug}.x`).document.roots()
+  return pictured(Bokeh.index.find_one(plot), named(`${slug}.title`).text, caption)
+}
 const painted = async ({width, height, paper, text}, scale, size = {width, height}) => {
   const image = new Image(), type = "image/svg+xml"
   image.src = URL.createObjectURL(new Blob([text], {type}))

@@ -36,6 +36,7 @@ def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
     """
     place = list(LESSONS).index(lesson.name)
     found = {
+        "name": lesson.name,
         "place": f"Lesson {place + 1} of {len(LESSONS)}",
         "title": lesson.title,
         "text": [parts(one) for one in lesson.text],

@@ -1,10 +1,5 @@
 export function render({model}) {
-  const named = (name) =>
-    Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)
-  const seen = (slug) => {
-    const [plot] = named(`${slug}.x`).document.roots()
-    return pictured(Bokeh.index.find_one(plot), named(`${slug}.title`).text, model.caption)
-  }
+  const seen = (slug) => plot_of(slug, model.caption)
   const plots = make("select", {ariaLabel: "Plot"}), tables = make("select", {ariaLabel: "Table"})
   const button = (name, title, onclick) =>
     make("button", {className: "wide", title, onclick}, name)

@@ -83,6 +83,11 @@ export function render({model}) {
     name ? [button(`Next: ${title}`, () => open(name), {className: "main"})] : []
   const leave = () => button("Explore freely", () => open(""),
     {title: "Leave the lesson: all controls, and the run as it is."})
+  const on_paper = () => button("Handout", () => {
+    const address = `${location.origin}${location.pathname}?lesson=${model.lesson.name}`
+    const page = handout(model.lesson, new Map(model.values), address)
+    save(`slipfront-${model.lesson.name}.html`, new Blob([page], {type: "text/html"}))
+  }, {title: "Save a page to print: the question, with room to write, and the answer overleaf."})
   // In front of a class one thing is said at a time, in a type for the back row.
   const is_strip = () => model.is_strip && matchMedia("(min-width: 1001px)").matches
   const folded = (text) => make("details", {}, make("summary", {}, "What it is about"), ...text)
@@ -95,7 +100,7 @@ export function render({model}) {
       const asked = [question, choices(lesson), ...polled(lesson), ...ends]
       return is_strip() ? [...heads, ...asked, folded(text)] : [...heads, ...text, ...asked]
     }
-    const ends = lesson.follows ? [] : [...go_on(lesson.next), leave()]
+    const ends = lesson.follows ? [] : [...go_on(lesson.next), on_paper(), leave()]
     const told = paragraphs(lesson.explanation), votes = counts(lesson), answer = verdict(lesson)
     if (!is_strip()) {
       return [...heads, folded(text), question, ...votes, answer, ...told, ...ends]

@@ -100,7 +100,10 @@ class LessonPane(Plain):
     is_strip = param.Boolean(default=False)
     recalls = param.Boolean(default=False)
 
-    _esm = script("elements.js", "values.js", "points.js", "controls.js", "teaching/lesson.js")
+    _esm = script(
+        *("elements.js", "exports.js", "values.js", "points.js", "controls.js"),
+        *("teaching/handout.js", "teaching/lesson.js"),
+    )
     _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
 
 
@@ -207,8 +210,12 @@ class Teaching:
         session.asks = lesson is not None and (session.choice is None or self._waits)
         choice = None if session.asks else session.choice
         session.watch(readings=readings(lesson, choice) if lesson else ())
-        self.view.lesson = {**content(lesson, choice), **self._in_class()} if lesson else {}
+        self.view.lesson = self._content(lesson, choice) if lesson else {}
         self._show_class()
+
+    def _content(self, lesson: Lesson, choice: int | None) -> dict[str, Any]:
+        slugs = [view.slug for view in VIEWS if view.name in lesson.views]
+        return {**content(lesson, choice), "slugs": slugs, **self._in_class()}
 
     def _in_class(self) -> dict[str, Any]:
         """Say what else there is of a lesson that is followed: its ends are the leader's.
