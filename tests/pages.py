@@ -86,7 +86,7 @@ def slider(page: Page, name: str) -> Locator:
 
 
 def card(page: Page, name: str) -> Locator:
-    return page.locator(".card").filter(has_text=name)
+    return page.get_by_role("figure", name=name, exact=True)
 
 
 def choose(box: Locator, option: str) -> None:

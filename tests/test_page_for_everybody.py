@@ -181,6 +181,7 @@ def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_
 def test_the_value_under_a_pointer_that_rests_is_that_of_the_plot_that_came_there(
     page: Page,
 ) -> None:
+    page.set_viewport_size({"width": 1280, "height": 520})
     box = card(page, "Friction force").bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
@@ -189,6 +190,7 @@ def test_the_value_under_a_pointer_that_rests_is_that_of_the_plot_that_came_ther
     for _ in range(10):
         page.mouse.wheel(0.0, 60.0)
     expect(value).to_have_count(0)
+    page.set_viewport_size({"width": 1280, "height": 720})
 
 
 def test_keys_move_the_run_only_where_it_is_seen(page: Page) -> None:

@@ -14,6 +14,7 @@ from pages import (
     comes_true,
     iteration,
     one_page,
+    press,
     slider,
     status,
 )
@@ -23,8 +24,8 @@ from app.session.uploads import saved
 from solver.scenes import CATALOGUE
 
 FOREVER: dict[str, Any] = {"method": "paper", "max_iterations": 100_000, "tolerance": 1e-30}
-SCENES = [("Parallel wires", 18, 0), ("Block on an inclined", 8, 1)]
-"""Title, substructures, and whether there are bodies with stresses; each has several interfaces."""
+SCENES = [("Parallel wires", 18), ("Block on an inclined", 8)]
+"""Title and substructures; each has several interfaces."""
 SEEN = """(name) => {
   const range = Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)
   return [range.start, range.end]
@@ -48,7 +49,7 @@ def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_rese
     take(page, **FOREVER)
     expect(status(page)).to_contain_text("running")
     expect(status(page)).to_contain_text("10 substructures, multiscale")
-    expect(page.locator(".card")).to_have_count(8)
+    expect(page.locator(".card")).to_have_count(6)
     expect(status(page)).to_contain_text(re.compile("friction force error [0-9.]+ %"))
     first = iteration(page)
     expect(status(page)).to_contain_text(re.compile(rf"iteration (?!{first}\b)"))
@@ -64,7 +65,7 @@ def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_rese
     expect(status(page)).to_contain_text("paused at iteration 2")
     page.get_by_role("button", name="Run or pause").click()
     expect(status(page)).to_contain_text("running")
-    for number in (7, 8):
+    for number in (5, 6):
         page.get_by_role("checkbox", name="Singular values").click()
         expect(page.locator(".card")).to_have_count(number)
 
@@ -166,19 +167,16 @@ def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_go
 
 def test_scenes_are_chosen_and_keep_their_settings(page: Page) -> None:
     take(page, substructures=5)
-    box = {
-        name: page.get_by_role("combobox", name=name) for name in ("Scene", "Interface", "Stress")
-    }
+    box = {name: page.get_by_role("combobox", name=name) for name in ("Scene", "Interface")}
     expect(status(page)).to_contain_text("5 substructures")
     expect(slider(page, "Substructures")).to_be_visible()
-    for title, parts, bodies in SCENES:
+    for title, parts in SCENES:
         choose(box["Scene"], title)
         expect(status(page)).to_contain_text(f"{parts} substructures")
         expect(status(page)).to_contain_text("friction force error")
-        expect(page.locator(".card")).to_have_count(9)
+        expect(page.locator(".card")).to_have_count(6)
         expect(page.get_by_text("Friction coefficient").first).to_be_visible()
         expect(box["Interface"]).to_have_count(1)
-        expect(box["Stress"]).to_have_count(bodies)
     choose(box["Scene"], "Clamped bar")
     expect(status(page)).to_contain_text("5 substructures")
     expect(page.locator(".figures")).not_to_contain_text("before")
@@ -190,10 +188,16 @@ def test_bodies_are_drawn_in_the_browser_and_looked_at_otherwise(page: Page) -> 
     field.fill("3")
     field.press("Enter")
     bodies_drawn(page, f"=== {3 * 16 * 2}")
+    stress = page.get_by_role("combobox", name="Stress")
+    expect(stress).to_have_count(0)
+    press(page, "Deformed bodies")
+    expect(page.get_by_role("button", name="Scene", exact=True)).to_be_focused()
+    expect(page.locator(".card")).to_have_count(6)
+    expect(page).to_have_url(re.compile("plots=Deformed%20bodies%2C"))
     expect(page.get_by_text("displacement ×").first).to_be_visible()
     slider(page, "Magnification").fill("7")
     expect(page.get_by_text("displacement × 100").first).to_be_visible()
-    choose(page.get_by_role("combobox", name="Stress"), "stress xx")
+    choose(stress, "stress xx")
     expect(page.locator(".title").filter(has_text="Deformed")).to_contain_text("xx")
     interface = page.get_by_role("combobox", name="Interface")
     choose(interface, "contact 2-3")

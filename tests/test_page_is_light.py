@@ -81,7 +81,7 @@ def test_the_server_makes_no_figure_for_a_page_and_sends_little_of_any() -> None
         with closing(lone_session(scene_settings("bar").checked({}))) as session:
             dashboard = Dashboard(session)
             dashboard.page.server_doc(document)
-            assert len(dashboard._gallery.shown) == 8
+            assert len(dashboard._gallery.shown) == 6
             assert not list(document.select({"type": Plot}))
             assert len(json.dumps(document.to_json(deferred=False))) < 700_000
             forget(document)
@@ -116,7 +116,7 @@ def test_views_and_sliders_are_those_that_apply(
     dashboard = make(query)
     dashboard.loaded()
     transport = dashboard._transport
-    assert len(dashboard._gallery.shown) == views
+    assert sum(len(names) for *_, names in dashboard._gallery.shown) == views
     assert (transport._substructure in transport._sliders.objects) == substructures
 
 

@@ -42,7 +42,7 @@ def test_a_plot_is_saved_with_name_legend_and_units(page: Page) -> None:
     page.get_by_role("combobox", name="Plot").select_option("Friction force")
     drawing = ElementTree.fromstring(saved(page, "SVG").read_text())
     words = {one.text for one in drawing.iter("{http://www.w3.org/2000/svg}text")}
-    assert {"Friction force", "reference", "Position x (m)", "Friction force (kN/m)"} < words
+    assert {"Friction force", "reference", "Position x (m)", "Force (kN/m)"} < words
     assert "bar, t = 0.75 s, iteration 12" in words
     with Image.open(saved(page, "PNG")) as picture:
         pixels = np.asarray(picture.convert("L"))

@@ -44,7 +44,7 @@ def test_a_slider_is_dragged_in_a_sheet_below_the_scene(phone: Page) -> None:
 
 
 def test_the_plot_that_one_looks_at_stays_above_the_sheet(phone: Page) -> None:
-    last = phone.get_by_role("figure", name="Error against run time")
+    last = phone.get_by_role("figure", name="Singular values")
     last.scroll_into_view_if_needed()
     handle = phone.get_by_role("button", name="Controls")
     handle.press("Enter")

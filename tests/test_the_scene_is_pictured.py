@@ -190,6 +190,6 @@ def test_loads_of_several_units_are_drawn_as_shares_of_their_largest_values() ->
     assert drawing is not None
     assert {key.text.split(",")[0] for key in drawing.keys} == {"F", "u"}
     assert drawing.y is not None
-    assert drawing.y.label == "Load (of its peak)"
+    assert drawing.y.label == "Load (of peak)"
     assert drawing.y.high < 1.5
     assert of_color(drawing, GIVEN) == []

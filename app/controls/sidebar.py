@@ -25,7 +25,7 @@ from app.controls.refusals import last_that_holds, refused, refused_by_name
 from app.reports.report import Report
 from app.session.session import Session
 from app.session.uploads import load_in, saved
-from app.views.catalogue import fitting
+from app.views.catalogue import drawn, fitting
 from solver.definitions import SettingError, about
 from solver.files import settings_from_toml
 from solver.scenes import ends_of, points_of
@@ -71,7 +71,7 @@ class Sidebar:
         self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
         self.view.on_msg(lambda message: self.hear(**message.data))
-        shown = ["wanted", "twin", "warm_start", "undrawn", "lesson"]
+        shown = ["wanted", "twin", "warm_start", "chosen", "lesson"]
         session.param.watch(lambda *events: self._show(), shown)
         self._show()
 
@@ -92,13 +92,13 @@ class Sidebar:
         )
         values = {name: shown_value(getattr(settings, name)) for name in acting}
         views = [view.name for view in fitting(settings)]
-        drawn = [name for name in views if name not in session.undrawn]
+        seen = [view.name for view in drawn(settings, session.chosen)]
         own = {
             SCENE: settings.scene,
             LESSON: lesson.name if lesson else "",
             COMPARE: choice_of(session.twin, settings),
             WARM: session.warm_start,
-            VIEWS: [views, drawn],
+            VIEWS: [views, seen],
             SHARE: None,
             "": self._answered,
             ENDS: ends_of(settings),
@@ -125,9 +125,7 @@ class Sidebar:
         elif name == WARM:
             self._session.warm_start = value
         elif name == VIEWS:
-            offered = {view.name for view in fitting(self._session.wanted)}
-            undrawn = (self._session.undrawn | offered) - set(value)
-            self._session.param.update(undrawn=undrawn, is_named=False)
+            self._session.draw(value)
         elif name == SHARE:
             self._on_share(value)
         elif value is None:

@@ -19,6 +19,12 @@ MOST_POINTS = 200
 """Contact points of an interface, and nodes of a rod's substructure, that are shown at most."""
 
 
+def size_of(described: Description) -> tuple[float, float]:
+    """Give length and height of all bodies as they are drawn, m."""
+    thickness = described.length * (PITCH * (described.bodies - 1) + THICKNESS)
+    return described.length, thickness if described.height is None else described.height
+
+
 @dataclass(frozen=True, eq=False)
 class Portrait:
     """What a picture of a scene shows of every iterate alike.
@@ -43,9 +49,7 @@ class Portrait:
     @property
     def size(self) -> tuple[float, float]:
         """Length and height of all bodies as they are drawn, m."""
-        own = self.described
-        thickness = own.length * (PITCH * (own.bodies - 1) + THICKNESS)
-        return own.length, thickness if own.height is None else own.height
+        return size_of(self.described)
 
 
 @dataclass(frozen=True, eq=False)

@@ -70,7 +70,7 @@ class Session(State):
         hire: Hire = Link,
         turns: Turns | None = None,
     ) -> None:
-        super().__init__(settings=settings, wanted=settings)  # type: ignore[no-untyped-call]
+        super().__init__(settings=settings, wanted=settings)
         self.turns = turns or Turns()
         self.worker = PageWorker(hire)
         self.attendance = Attendance(self, self.worker, hire, self.turns, self.start)

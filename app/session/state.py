@@ -43,11 +43,11 @@ class State(param.Parameterized):
     )
     tab = param.String(default=TABS[0], doc="Which of `TABS` is looked at.")
     view = param.String(default=VIEWS[0], doc="Which of `VIEWS`: how much stands around plots.")
-    undrawn = param.Parameter[frozenset[str]](
-        default=frozenset(), doc="Names of the views that are not to be drawn."
+    chosen = param.Parameter[frozenset[str] | None](
+        doc="Names of the views that are drawn; None has the first of each card."
     )
     is_named = param.Boolean(
-        default=False, doc="Whether the others are those that a lesson or an address names."
+        default=False, doc="Whether these are those that a lesson or an address names."
     )
     lesson = param.Parameter[Lesson | None](doc="The one that is open.")
     choice = param.Parameter[int | None](doc="What was predicted in it.")
@@ -62,14 +62,29 @@ class State(param.Parameterized):
     in_class = param.Integer(default=0, doc="Counts the news of the class.")
     reported = param.Integer(default=0, doc="Counts the news of reports and the sweep.")
 
+    def __init__(self, **values: Any) -> None:
+        super().__init__(**values)  # type: ignore[no-untyped-call]
+        self._kept_views: dict[str, frozenset[str]] = {}
+        self.param.watch(self._on_wanted, "wanted")
+
+    def _on_wanted(self, event: Any) -> None:
+        if self.lesson is None and event.old.scene != event.new.scene:
+            self.draw_for(None)
+
     def together(self) -> AbstractContextManager[None]:
         """Have what changes in here told at its end, all of it together."""
         return batch_call_watchers(self)
 
-    def draw(self, names: Iterable[str]) -> None:
-        """Draw the views of these names and no others."""
-        undrawn = frozenset(view.name for view in ALL_VIEWS) - frozenset(names)
-        self.param.update(undrawn=undrawn, is_named=bool(undrawn))
+    def draw(self, names: Iterable[str], *, is_named: bool = False) -> None:
+        """Draw the views of these names and no others; the scene keeps them."""
+        self._kept_views[self.wanted.scene] = frozenset(names)
+        self.param.update(chosen=frozenset(names), is_named=is_named)
+
+    def draw_for(self, lesson: Lesson | None) -> None:
+        """Draw the views that a lesson names, or without one those that the scene has kept."""
+        kept = self._kept_views.get(self.wanted.scene)
+        chosen = frozenset(lesson.views) if lesson else kept
+        self.param.update(chosen=chosen, is_named=lesson is not None)
 
     @property
     def is_over(self) -> bool:
@@ -83,10 +98,6 @@ class State(param.Parameterized):
 
     @property
     def plots(self) -> str:
-        """Names of the views that are drawn, separated by commas, or nothing if all are."""
-        return ",".join(self.drawn) if self.undrawn else ""
-
-    @property
-    def drawn(self) -> tuple[str, ...]:
-        """Names of the views that are to be drawn, where they fit."""
-        return tuple(view.name for view in ALL_VIEWS if view.name not in self.undrawn)
+        """Names of the views that are chosen, separated by commas, or nothing if none are."""
+        chosen = self.chosen or ()
+        return ",".join(view.name for view in ALL_VIEWS if view.name in chosen)

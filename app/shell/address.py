@@ -47,7 +47,7 @@ class Sight:
     view
         "page" has controls, "present" is for a projector, "embed" for a frame in a course page.
     plots
-        Names of the views that are drawn, separated by commas; empty has all.
+        Names of the views that are drawn, separated by commas; empty has one on each card.
     """
 
     tab: str = TABS[0]

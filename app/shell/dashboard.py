@@ -28,7 +28,7 @@ from app.shell.tabs import Tabs
 from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
 from app.teaching.teaching import Teaching, name_of
-from app.views.catalogue import fitting
+from app.views.catalogue import drawn
 from app.whatif.whatif import WhatIf
 from solver.settings import Settings
 
@@ -69,8 +69,8 @@ class Dashboard:
         self._notes, self._log = Notes(session), RunLog(session)
         self._presence = Presence(session, self.pulse)
         self._transport, self._looks = Transport(session), Looks(session)
-        chosen = {**self._transport.chooses(), **self._looks.chooses(), "drag": self._drag}
-        self._gallery = gallery(chosen)
+        chosen = {**self._transport.chooses(), **self._looks.chooses()}
+        self._gallery = gallery({**chosen, "drag": self._drag, "tab": self._turn})
         self._banner = Banner(session)
         self._sidebar = Sidebar(session, lambda: self._link.copy(), self._teach)
         self._teaching = Teaching(session, self._sidebar)
@@ -83,7 +83,7 @@ class Dashboard:
         self._furnish(on_phone=on_phone)
         self._listen()
         if self._sight.plots:
-            session.draw(self._sight.plots.split(","))
+            session.draw(self._sight.plots.split(","), is_named=True)
         if self._sight.lesson:
             self._teaching.take(self._sight.lesson)
         else:
@@ -150,7 +150,7 @@ class Dashboard:
         watch(lambda event: self._dress(), "view")
         watch(lambda event: self._on_class(), "in_class")
         watch(lambda *events: self._place(), ["facts", "settings"])
-        arranged = ["wanted", "undrawn", "lesson", "asks", "view", "tab", "room"]
+        arranged = ["wanted", "chosen", "lesson", "asks", "view", "tab", "room"]
         watch(lambda *events: self._arrange(), arranged)
 
     def _make_live(self) -> pn.Column:
@@ -162,14 +162,14 @@ class Dashboard:
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
         session, room = self.session, self.session.room
-        fit = fitting(session.wanted)
-        wanted = (room.views if room else ()) or session.drawn
-        self._shown = [view for view in fit if view.name in wanted and not session.asks]
+        chosen = (room.views if room else ()) or session.chosen
+        self._shown = [] if session.asks else drawn(session.wanted, chosen)
         few = self._stage.is_bare and not session.is_named
         there = self._shown[: FIRST_ROW if few else None]
         self._transport.view.visible = room is None
         self._saver.view.visible = room is None and self._tabs.shows_the_run
-        self._gallery.offer(there)
+        is_free = not (room or session.lesson or self._stage.is_bare)
+        self._gallery.offer(there, session.wanted, has_tabs=is_free)
         self._gallery.let_drag(session.wanted, self._teaching.controls)
         self._saver.offer(there)
         # The worker sends what a view had already only when the choice of views changes.
@@ -197,6 +197,12 @@ class Dashboard:
 
     def _drag(self, told: dict[str, Any]) -> None:
         self._sidebar.hear(**told)
+
+    def _turn(self, names: list[str]) -> None:
+        """Draw a view in place of another one."""
+        session, (seen, other) = self.session, names
+        drawn_now = {view.name for view in drawn(session.wanted, session.chosen)}
+        session.draw(drawn_now - {seen} | {other})
 
     def _teach(self, name: str) -> None:
         self._teaching.open(name)

@@ -74,12 +74,36 @@ export function render({model}) {
       return made
     }
     const element = box("card"), title = box("title"), place = box("plot")
+    const [before, seen, after, legend] = ["span", "b", "span", "span"].map((tag) =>
+      document.createElement(tag))
+    title.append(before, seen, after, legend)
     Object.assign(element, {role: "figure", ariaLabel: name, tabIndex: 0})
     element.append(title, place)
     const made = Document.from_json(json), [plot] = made.roots()
     const words = made.get_model_by_name(`${slug}.title`)
     const write = () => {
-      title.innerHTML = words.text
+      const {content} = Object.assign(document.createElement("template"), {innerHTML: words.text})
+      const own = content.querySelector("b")
+      if (own.innerHTML !== seen.innerHTML) { seen.innerHTML = own.innerHTML }
+      own.remove()
+      legend.replaceChildren(content)
+    }
+    // Views that may stand in its place are called where they stand in their order.
+    let offered = []
+    const tabs = (names) => {
+      if (String(names) === String(offered)) { return }
+      offered = names
+      const found = names.map((other) => {
+        const tab = Object.assign(document.createElement("button"), {textContent: other})
+        tab.onclick = () => {
+          turned = other
+          model.send_msg({kind: "tab", value: [name, other]})
+        }
+        return tab
+      })
+      const at = names.indexOf(name)
+      before.replaceChildren(...found.slice(0, Math.max(at, 0)))
+      after.replaceChildren(...found.slice(at + 1))
     }
     words.properties.text.change.connect(write)
     write()
@@ -93,7 +117,7 @@ export function render({model}) {
       handles(place, plot, held, model, (event) => [choose, chosen].forEach((one) => one(event)))
     }
     // Pictures find its models from now on; they are drawn one after the other.
-    cards.set(slug, {element, place, made, plot, drawn: false})
+    cards.set(slug, {element, name, place, made, plot, tabs, drawn: false})
   }
   // The title of an axis for which there is no room has a second line: its unit, or its last word.
   const pen = document.createElement("canvas").getContext("2d")
@@ -131,15 +155,27 @@ export function render({model}) {
     keep_wrapped(one.plot)
     await frame()
   }
+  // Who has turned to another view has the focus there.
+  let turned = ""
   const show = () => {
-    for (const slug of model.shown) {
+    const [template, row, isLong] = model.grid
+    root.classList.toggle("long", isLong)
+    root.style.setProperty("--template", template)
+    root.style.setProperty("--row", row)
+    const wanted = model.shown.map(([slug, area, names]) => {
       if (!cards.has(slug)) { make(slug) }
+      const one = cards.get(slug)
+      one.element.style.setProperty("--area", area)
+      one.tabs(names)
+      return one
+    })
+    if (wanted.length !== root.children.length ||
+        wanted.some(({element}, i) => element !== root.children[i])) {
+      root.replaceChildren(...wanted.map(({element}) => element))
     }
-    const wanted = model.shown.map((slug) => cards.get(slug).element)
-    if (wanted.length !== root.children.length || wanted.some((one, i) => one !== root.children[i])) {
-      root.replaceChildren(...wanted)
-    }
-    for (const slug of model.shown) { drawing = drawing.then(() => draw(slug)) }
+    wanted.find(({name}) => name === turned)?.element.querySelector(".title button")?.focus()
+    turned = ""
+    for (const [slug] of model.shown) { drawing = drawing.then(() => draw(slug)) }
   }
   // Colours and type of axes are in the style sheet, which Bokeh reads only when it paints.
   // They do not reach glyphs and the scale of colours.
@@ -161,7 +197,7 @@ export function render({model}) {
   const restyle = () => requestAnimationFrame(() => cards.forEach(dress))
   const watcher = new MutationObserver(restyle)
   watcher.observe(document.documentElement, {attributes: true, attributeFilter: ["data-theme", "data-built"]})
-  model.on("shown", show)
+  model.on(["shown", "grid"], show)
   model.on("magnified", restyle)
   model.on("caption", () => {
     pictured()

@@ -18,7 +18,8 @@ from app.components.form import item_of
 from app.components.innards import Plain
 from app.components.panes import looks, script
 from app.shell.figures import make_figure
-from app.views.catalogue import VIEWS
+from app.shell.layout import layout
+from app.views.catalogue import VIEWS, beside
 from app.views.drawing import View
 from app.worker.painter import PLOTS
 from solver.scenes import behind
@@ -36,7 +37,10 @@ class Gallery(Plain):
     figures
         As JSON, for every view by its slug: Bokeh's document, its name, and what it chooses.
     shown
-        Slugs of the views that are seen, in order.
+        Of every view that is seen, in order: slug, area of the grid, and names of the views that
+        share its card, itself among them.
+    grid
+        The grid, and its rows beyond the window, as CSS has them; whether the first is a band.
     magnified
         How much larger the type of plots is than it usually is.
     sliders
@@ -49,6 +53,7 @@ class Gallery(Plain):
 
     figures = param.String(default="{}")
     shown = param.List(default=[])
+    grid = param.List(default=["none", "auto", False])
     sliders = param.Dict(default={})
     magnified = param.Number(default=1.0)
     said = param.List(default=[])
@@ -56,9 +61,15 @@ class Gallery(Plain):
 
     _esm = script("values.js", "shell/handles.js", "shell/gallery.js")
 
-    def offer(self, views: Sequence[View]) -> None:
-        """Show these views and no others."""
-        self.shown = [view.slug for view in views]
+    def offer(self, views: Sequence[View], settings: Settings, *, has_tabs: bool) -> None:
+        """Show these views and no others, each with those that may stand in its place."""
+        found, seen = layout(views, settings), set(views)
+        shown = []
+        for view, area in zip(views, found.areas, strict=True):
+            tabs = [one for one in beside(view, settings) if one is view or one not in seen]
+            shown.append([view.slug, area, [one.name for one in tabs] if has_tabs else []])
+        grid = [found.template, found.row, found.is_long]
+        self.param.update(shown=shown, grid=grid)
 
     def let_drag(self, settings: Settings, names: Collection[str]) -> None:
         """Have what stands behind these settings dragged, as far as it is in the picture."""
@@ -79,7 +90,8 @@ def gallery(choices: dict[str, Callable[[Any], None]]) -> Gallery:
     choices
         What a tap or a drag on a plot tells, by what it chooses: "instant" and "time" with a
         time, s, "substructure" with a number, "interface" with a name, "place" with a position,
-        m, and "drag" with what the slider of a setting tells.
+        m, "drag" with what the slider of a setting tells, and "tab" with the names of a view and
+        of the one that is to stand in its place.
     """
     made = Gallery(name=PLOTS, figures=figures(), **{**looks("plots"), "margin": 0})
     made.on_msg(lambda message: choices[message.data["kind"]](message.data["value"]))

@@ -26,7 +26,7 @@ from solver.settings import Settings
 
 WATCHED = (
     *("wanted", "twin", "look", "pace", "facts", "running", "room"),
-    *("tab", "view", "undrawn", "lesson", "question"),
+    *("tab", "view", "chosen", "lesson", "question"),
 )
 Standing = tuple[Settings, Sight, Room | None, Settings | None, Question | None]
 COPIED = "Copied: the link to what stands here."

@@ -164,7 +164,7 @@ class Teaching:
         lesson = LESSONS.get(name)
         with self._session.together():
             self._session.param.update(lesson=lesson, choice=None)
-            self._session.draw(lesson.views if lesson else [view.name for view in VIEWS])
+            self._session.draw_for(lesson)
             if lesson is not None:
                 self._session.watch(interface=lesson.interface)
 

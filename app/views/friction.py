@@ -21,7 +21,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     limits = _limits(scene, float(begun.bound.max()) or 1.0, kept)
     factor, unit = decimal_scale(limits[1] / ROOM, "N/m")
     x = spanned(0.0, scene.length)
-    y = Axis(limits[0] / factor, limits[1] / factor, label=f"Friction force ({unit})")
+    y = Axis(limits[0] / factor, limits[1] / factor, label=f"Force ({unit})")
     places, bound = begun.positions, begun.bound / factor
     curves = [
         upright(begun.cuts, y, color=GREY, alpha=0.35, width=1),
@@ -59,7 +59,7 @@ def _limits(scene: Scene, bound: float, kept: Limits | None) -> Limits:
 
 VIEW = View(
     "Friction force",
-    Plot(POSITION, "Friction force (N/m)"),
+    Plot(POSITION, "Force (N/m)"),
     draw,
     # Plane bodies have no bound that is known beforehand, and tractions instead.
     lambda settings: not is_plane(settings),

@@ -22,7 +22,7 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
     units = {unit for _, unit, _ in paths}
     peaks = [float(np.abs(values).max()) or 1.0 for _, _, values in paths]
     top = max(peaks)
-    factor, unit = decimal_scale(top, units.pop()) if len(units) == 1 else (0.0, "of its peak")
+    factor, unit = decimal_scale(top, units.pop()) if len(units) == 1 else (0.0, "of peak")
     time = float(scene.run.stand.instants[scene.instant])
     x = spanned(float(instants[0]), float(instants[-1]))
     shown = [values / (factor or peak) for (_, _, values), peak in zip(paths, peaks, strict=True)]

@@ -62,7 +62,7 @@ VIEW = View(
     "Singular values",
     Plot(
         "Mode n",
-        "Singular value / largest",
+        "Size / largest",
         logarithmic="y",
         palette=LINES,
         scale="substructure",
