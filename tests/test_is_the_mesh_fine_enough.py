@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from solver.cli import main
 from solver.scenes import CATALOGUE
-from solver.study.mesh import LEAST_ORDER, Refinement, answer, meshes_around
+from solver.study.mesh import LARGEST_ORDER, LEAST_ORDER, Refinement, answer, meshes_around
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
 """Energy of a full cycle of the bar, J."""
@@ -32,7 +32,7 @@ def test_a_power_of_the_size_is_found_with_what_it_tends_to(
     found = power(order, limit, share)
     assert found.order == pytest.approx(order, rel=1e-6)
     assert abs(found.limit - limit) <= found.margin
-    if order <= 2.0:
+    if order <= LARGEST_ORDER:
         assert found.limit == pytest.approx(limit, rel=1e-6)
     assert abs(found.values[1] / found.limit - 1.0) <= found.deviation
 
@@ -50,6 +50,8 @@ def test_whatever_three_meshes_give_the_finest_is_inside_the_margin(
 def test_a_singular_corner_shows_no_limit_and_a_jump_no_power() -> None:
     assert "shows no limit" in answer(power(-0.3, 1.0, 0.5), "Pa")
     assert "no power" in answer(Refinement((1.0, 1.0, 0.9), 1), "m")
+    assert "hardly changes" in answer(Refinement((1.0, 1.1, 1.1 + 1e-12), 1), "m")
+    assert Refinement((1.0, 1.1, 1.1 + 1e-12), 1).margin > 0.1
     assert "All three are equal" in answer(Refinement((2.0, 2.0, 2.0), 1), "m")
     assert "no answer" in answer(Refinement((1.0, math.nan, 1.0), 1), "m")
 

@@ -15,6 +15,7 @@ TINY = "?elements=20&substructures=2&instants=11&plots=Scene"
 CURVE = f"{TINY}&tab=What+if&vary=peak=300:1500:5&of=peak_displacement"
 MAP = f"{TINY}&tab=what+if&vary=friction=0.1:0.7:7&vary=peak=300:1500:7&of=peak_displacement"
 SLOW = f"{ENDLESS}&elements=400&instants=401&plots=Scene"
+TOLD = re.compile("40 elements: .*(no mesh of ours|This mesh is within)")
 ENDED = re.compile(r"(\d+) of \1 runs: ")
 
 
@@ -163,6 +164,17 @@ def test_a_foolish_range_is_refused(curve: Page) -> None:
     upper.fill(before)
     upper.press("Enter")
     expect(curve).to_have_url(re.compile("vary=peak%3D300%3A1500%3A5"))
+
+
+def test_three_meshes_say_whether_one_is_fine_enough(curve: Page) -> None:
+    button = curve.get_by_role("button", name="Is the mesh fine enough?")
+    button.click()
+    expect(curve.get_by_text("10 elements: ")).to_contain_text(TOLD)
+    of = curve.get_by_role("combobox", name="Quantity")
+    of.select_option("seconds")
+    expect(button).to_be_disabled()
+    of.select_option("peak_displacement")
+    expect(button).to_be_enabled()
 
 
 def test_the_tab_is_accessible_and_needs_no_scrolling(mapped: Page) -> None:

@@ -21,14 +21,16 @@ class Asked:
 
     Attributes
     ----------
-    figures, study, stability, inquiry
-        Three reports, and a sweep.
+    figures, study, stability, mesh, inquiry
+        Three reports, a quantity on three meshes, and a sweep.
     """
 
     def __init__(self, executor: ReportExecutor, began: Callable[[], None]) -> None:
-        self.figures, self.study, self.stability = (ReportJob(executor, began) for _ in range(3))
+        self.figures, self.study, self.stability, self.mesh = (
+            ReportJob(executor, began) for _ in range(4)
+        )
         self.inquiry = Inquiry(began=began)
-        self._all = self.figures, self.study, self.stability, self.inquiry
+        self._all = self.figures, self.study, self.stability, self.mesh, self.inquiry
 
     @property
     def is_busy(self) -> bool:

@@ -16,10 +16,12 @@ from solver.study.crossover import crossover
 from solver.study.error_against_time import error_against_time
 from solver.study.figure_page import figure_sections
 from solver.study.growth import growth
+from solver.study.mesh import Refinement, answer, meshes_around, size_of, value_on
 from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
 from solver.study.progress import Tell
+from solver.study.quantities import reading
 from solver.study.study_page import study_sections, write_study
 
 PARTS = {"curves": 1.0, "growth": 4.0, "map": 1.0}
@@ -71,6 +73,25 @@ def stability_of(quick: bool, folder: Path) -> None:
     report = stability_report(rows, invariance())
     growing.publish(report.write)
     growing.show(report.sections())
+
+
+def mesh_of_run(scene: str, values: dict[str, Any], of: str, folder: Path) -> None:
+    """Take a quantity on three meshes, show each value as it comes, and say what they tell."""
+    growing, settings, asked = (
+        ReportFolder(folder),
+        CATALOGUE[scene].settings.checked(values),
+        reading(of),
+    )
+    meshes, own = meshes_around(settings)
+    found, told = list[float](), list[str]()
+    for number, mesh in enumerate(meshes):
+        growing.tell(f"{size_of(mesh)} elements", number / len(meshes))
+        found.append(value_on(mesh, asked))
+        value = f"{found[-1]:.4g} {asked.quantity.unit}".rstrip()
+        told.append(f"{size_of(mesh)} elements: <b>{value}</b>")
+        growing.show([" · ".join(told)])
+    said = answer(Refinement((found[0], found[1], found[2]), own), asked.quantity.unit)
+    growing.show([" · ".join(told), f"<br>{said}"])
 
 
 def figures_of_the_paper(folder: Path) -> None:

@@ -73,9 +73,11 @@ export function render({model}) {
   const start = button("Start", "Run all of it.", () => tell("start"))
   start.className = "start"
   const cancel = button("Cancel", "End it; what has come stays.", () => tell("cancel"))
-  const rest = make("span")
+  const mesh = button("Is the mesh fine enough?", "Take the quantity on three meshes: half as " +
+    "fine, as it is, and twice as fine.", () => tell("mesh"))
+  const rest = make("span"), meshes = make("div", {className: "meshes", ariaLive: "polite"})
   const asked = make("div", {className: "row"}, make("b", {}, "Show"), quantity, words, at, start,
-    cancel, rest, refused)
+    cancel, mesh, rest, refused)
   const bar = make("progress", {ariaLabel: "Share of the runs"}), far = make("span")
   const seen = () => Bokeh.index.find_one_by_id(model.chart.id)
   const picture = () => pictured(seen(), model.chart.legend, "")
@@ -87,7 +89,7 @@ export function render({model}) {
   const progress = make("div", {className: "row"}, bar, far, exports)
   const legend = make("div", {className: "legend title"})
   const ended = make("span", {role: "status", className: "unseen"})
-  const root = make("div", {className: "all"}, ready, ...spans.map(({row}) => row), asked, progress,
+  const root = make("div", {className: "all"}, ready, ...spans.map(({row}) => row), asked, meshes, progress,
     legend, ended)
   let wasBusy = false
   const follow_chart = () => {
@@ -126,12 +128,22 @@ export function render({model}) {
     if (wasBusy && !busy) { ended.textContent = words }
     wasBusy = busy
   }
+  const follow_meshes = () => {
+    const {can, busy, words, found} = model.mesh
+    mesh.disabled = !can && !busy
+    mesh.textContent = busy ? "Cancel the meshes" : "Is the mesh fine enough?"
+    meshes.innerHTML = found ?? ""
+    meshes.append(words ? ` ${words}` : "")
+    meshes.hidden = !found && !words
+  }
   model.on("form", show)
+  model.on("mesh", follow_meshes)
   model.on("progress", follow)
   model.on("chart", follow_chart)
   model.on("file", () => save(model.file[1], new Blob([model.file[0]], {type: "text/csv"})))
   show()
   follow()
+  follow_meshes()
   follow_chart()
   return root
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, ClassVar
 
 import param
@@ -13,6 +14,7 @@ from app.components.innards import Plain
 from app.components.panes import STATIC, column, script
 from app.picture.labels import label_of
 from app.session.session import Session
+from app.session.studies import mesh_of_run
 from app.whatif.charted import is_comparable, is_of, stands
 from app.whatif.question import (
     READY,
@@ -28,7 +30,8 @@ from app.whatif.question import (
 from solver.definitions import SettingError, about
 from solver.settings import Settings
 from solver.study.chart import Chart, Map
-from solver.study.quantities import QUANTITIES
+from solver.study.mesh import decides
+from solver.study.quantities import QUANTITIES, reading
 from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of
 from solver.study.sweep.report import counts
@@ -47,6 +50,9 @@ class Asker(Plain):
         What can be chosen, what is, and what of it is refused.
     progress
         How far the runs are.
+    mesh
+        Whether one `can` ask if the mesh is fine enough, is `busy` with it, what is said of that in
+        `words`, and the `found` HTML.
     chart
         The `id` of its figure, its `legend`, and a `label` for those who do not see it.
     file
@@ -55,6 +61,7 @@ class Asker(Plain):
 
     form = param.Dict(default={})
     progress = param.Dict(default={})
+    mesh = param.Dict(default={})
     chart = param.Dict(default={})
     file = param.List(default=[])
 
@@ -84,6 +91,7 @@ class WhatIf:
         self._waits = session.question is not None
         self._asker: Asker | None = None
         self._drawn: Plan | None = None
+        self._meshed: tuple[dict[str, Any], str] | None = None
         self._filling = Filling(session.turns.soon, self.put_drawn)
         self._scene = session.wanted.scene
         self.view = column(role="paper what-if", margin=(4, 10), visible=False)
@@ -121,6 +129,7 @@ class WhatIf:
             "ready": lambda: self._on_ready(value),
             "start": self.start,
             "cancel": self._session.asked.inquiry.cancel,
+            "mesh": self._on_mesh,
             "there": lambda: self._filling.go_on(value),
             "run": lambda: self._on_run(value),
             "table": self._on_table,
@@ -160,6 +169,33 @@ class WhatIf:
                 return
             self._show(settings)
 
+    def _on_mesh(self) -> None:
+        """Have the quantity taken on three meshes, or no more."""
+        job, settings = self._session.asked.mesh, self._session.wanted
+        if job.is_busy:
+            job.cancel()
+        elif self._can_ask_of_meshes():
+            self._meshed = settings.values(), self._session.question.of
+            of = self._session.question.of
+            work = partial(mesh_of_run, settings.scene, settings.values(), of)
+            job.ask(reading(of).title, work)
+
+    def _can_ask_of_meshes(self) -> bool:
+        try:
+            return decides(self._session.wanted, reading(self._session.question.of))
+        except SettingError:
+            return False
+
+    def _mesh(self) -> dict[str, Any]:
+        job = self._session.asked.mesh
+        stands = self._meshed == (self._session.wanted.values(), self._session.question.of)
+        return {
+            "can": self._can_ask_of_meshes(),
+            "busy": job.is_busy,
+            "words": job.doing if job.is_busy else job.notice if stands else "",
+            "found": "".join(str(one) for one in job.growing.sections) if stands else "",
+        }
+
     def _on_table(self) -> None:
         inquiry = self._session.asked.inquiry
         if self._asker is not None and inquiry.plan is not None:
@@ -181,7 +217,7 @@ class WhatIf:
             chart = chart_of(plan, inquiry.rows)
             self._filling.show(chart, self._ghost(plan), stands(plan, chart, settings))
         form, progress = form_of(self._session.question, settings), self._progress()
-        self._asker.param.update(form=form, progress=progress)
+        self._asker.param.update(form=form, progress=progress, mesh=self._mesh())
 
     def _keep_to(self, settings: Settings) -> None:
         """Propose something else where another scene knows nothing of what is asked."""

@@ -12,15 +12,17 @@ from dataclasses import dataclass
 from solver.definitions import SettingError
 from solver.scenes import mesh_of
 from solver.settings import Settings
+from solver.study.finished import finished_run
+from solver.study.quantities import Reading
 
 SAFETY = 1.25
 """Roache's factor on what is still missing, for three meshes."""
-LEAST_ORDER, LARGEST_ORDER = 0.5, 2.0
+LEAST_ORDER, LARGEST_ORDER = 0.5, 2.1
 """Between which an order is believed: a smaller one has shown no limit yet, and a larger one is
 luck, as no quantity of ours has one from linear elements."""
 UNSURE = 3.0
-"""Times the largest difference, where there is no order to believe (Eca and Hoekstra, J. Comput.
-Phys. 262, 104, 2014)."""
+"""Times the largest difference, where there is no limit to believe. Where the order is luck it is
+`SAFETY` times (both: Eca and Hoekstra, J. Comput. Phys. 262, 104, 2014)."""
 EQUAL = 1e-6
 """Relative difference up to which two values are one."""
 
@@ -58,8 +60,10 @@ class Refinement:
     def limit(self) -> float:
         """What the quantity tends to, or that on the finest mesh where nothing tells it."""
         _, middle, fine = self.values
-        order = self._believed
-        return fine if order is None else fine + (fine - middle) / (2.0**order - 1.0)
+        order = self.order
+        if order is None or not LEAST_ORDER <= order <= LARGEST_ORDER:
+            return fine
+        return fine + (fine - middle) / math.expm1(order * math.log(2.0))
 
     @property
     def margin(self) -> float:
@@ -67,9 +71,10 @@ class Refinement:
         coarse, middle, fine = self.values
         if self._is_settled:
             return 0.0
-        if self._believed is None:
-            return UNSURE * max(abs(middle - coarse), abs(fine - middle))
-        return SAFETY * abs(self.limit - fine)
+        order, widest = self.order, max(abs(middle - coarse), abs(fine - middle))
+        if order is None or order < LEAST_ORDER:
+            return UNSURE * widest
+        return SAFETY * (widest if order > LARGEST_ORDER else abs(self.limit - fine))
 
     @property
     def deviation(self) -> float:
@@ -81,13 +86,6 @@ class Refinement:
     def _is_settled(self) -> bool:
         largest = max(map(abs, self.values))
         return max(self.values) - min(self.values) <= EQUAL * largest
-
-    @property
-    def _believed(self) -> float | None:
-        order = self.order
-        if order is None or order < LEAST_ORDER:
-            return None
-        return min(order, LARGEST_ORDER)
 
 
 def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
@@ -111,6 +109,22 @@ def _refined(settings: Settings, factor: float) -> Settings:
     return settings.replace(
         **{name: int(count) if count == int(count) else count for name, count in counts}
     )
+
+
+def decides(settings: Settings, asked: Reading) -> bool:
+    """Tell whether a mesh decides a quantity: not how a run went, but what it came to."""
+    return not asked.quantity.is_of_course and asked.quantity.applies(settings)
+
+
+def value_on(settings: Settings, asked: Reading) -> float:
+    """Take a quantity of the solution on a mesh; NaN where no run certifies one."""
+    run = finished_run(settings.replace(finish="at-once"), errors=False, indicators=False)
+    return asked(run) if run.solution.is_certified else math.nan
+
+
+def size_of(settings: Settings) -> str:
+    """Say how fine a mesh is."""
+    return " x ".join(str(getattr(settings, name)) for name in mesh_of(settings))
 
 
 def answer(found: Refinement, unit: str) -> str:
@@ -137,5 +151,7 @@ def answer(found: Refinement, unit: str) -> str:
             f"It changes with the power {order:.2f} of an element's size, which shows no limit: "
             f"{limit}, if there is one. {own}"
         )
+    if order > LARGEST_ORDER:
+        return f"It hardly changes any more: {limit}. {own}"
     goes = f"Its error goes with the power {order:.2f} of an element's size"
     return f"{goes}, and with ever smaller ones it becomes {limit}. {own}"
