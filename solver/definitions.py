@@ -42,8 +42,6 @@ class About:
         Whether a slider over it should be logarithmic.
     applies
         Whether it does anything, given all the settings.
-    essential
-        Whether it stands in the open on the page, not behind "more".
     aliases
         What files and scripts may say for one of its values.
     """
@@ -53,7 +51,6 @@ class About:
     unit: str = ""
     logarithmic: bool = False
     applies: Callable[[Any], bool] = lambda settings: True
-    essential: bool = False
     aliases: Mapping[str, str] = field(default_factory=dict)
 
 

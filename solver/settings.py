@@ -52,7 +52,6 @@ class Settings(Checked):
         "Number of pieces (substructures) that a body is cut into.",
         group="Decomposition",
         title="Substructures",
-        essential=True,
     )
     multiscale = switch(
         True,
@@ -61,7 +60,6 @@ class Settings(Checked):
         group="Decomposition",
         title="Multiscale (coarse problem)",
         applies=lambda settings: settings.n_substructures > 1,
-        essential=True,
     )
     method = choice(
         "fast",
@@ -71,7 +69,6 @@ class Settings(Checked):
         "changed afterwards.",
         group="Method",
         title="Method",
-        essential=True,
     )
     search_direction = choice(
         "auto",
@@ -82,7 +79,6 @@ class Settings(Checked):
         "from their depth.",
         group="Method",
         title="Search direction",
-        essential=True,
     )
     k_scale = quantity(
         1.0,
@@ -92,7 +88,6 @@ class Settings(Checked):
         group="Method",
         title="Factor on k",
         logarithmic=True,
-        essential=True,
     )
     k_friction_scale = quantity(
         1.0,
@@ -111,7 +106,6 @@ class Settings(Checked):
         "half of it (Douglas-Rachford). Less is slower and safer.",
         group="Method",
         title="Relaxation",
-        essential=True,
     )
     linear_stage = choice(
         "full",
@@ -121,7 +115,6 @@ class Settings(Checked):
         "fraction of the memory; full fields come sooner to any error.",
         group="Method",
         title="Linear stage",
-        essential=True,
     )
     pgd_modes = count(
         10,
@@ -132,7 +125,6 @@ class Settings(Checked):
         group="Method",
         title="Most PGD modes",
         applies=_on_modes,
-        essential=True,
     )
     pgd_tolerance = quantity(
         1e-7,
@@ -173,7 +165,6 @@ class Settings(Checked):
         group="Method",
         title="Acceleration",
         applies=_on_fields,
-        essential=True,
     )
     start = choice(
         "nested",
@@ -182,7 +173,6 @@ class Settings(Checked):
         "incremental solver finds; the run time includes that.",
         group="Method",
         title="Start",
-        essential=True,
     )
     k_update = choice(
         "none",
@@ -213,7 +203,6 @@ class Settings(Checked):
         group="Stop",
         title="Accuracy",
         logarithmic=True,
-        essential=True,
     )
     tolerance = quantity(
         1e-3,

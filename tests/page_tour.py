@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any
 
 import param
-from pages import Visit, choose, slider
+from pages import Visit, choose_scene, open_sheets, slider
 from playwright.sync_api import Page, TimeoutError, expect
 from processes import wait_for
 from tour import SIZES, Move, back, described, has_choice, one_end, small
@@ -91,10 +91,10 @@ class Tour:
         self.base = small(scene).replace(max_iterations=ITERATIONS)
         self.page: Page = visit(f"?scene={scene}&{query}", height=400)
         self._await("over()")
+        open_sheets(self.page)
         # What all views make of it is tested without a browser, which has more to do than to paint.
         self.page.get_by_role("checkbox", name="Scene").press("Space")
         expect(self.page.locator(".card")).to_have_count(0)
-        self.page.get_by_text("More settings").click()
         slider(self.page, "Most iterations").wait_for()
         self._evaluate(WATCH)
 
@@ -116,7 +116,7 @@ class Tour:
 
     def assert_there_is_a_control_for_all_that_applies(self, scene: Entry[Any]) -> None:
         """Choose a scene, and wait until its controls are there."""
-        choose(self.page.get_by_role("combobox", name="Scene"), scene.title)
+        choose_scene(self.page, scene.title)
         base = scene.settings.checked({})
         names, expected = list(base.definitions()), applying(base)
         place = self.page.locator(".sidebar [class*=setting-]:visible")

@@ -100,6 +100,18 @@ def choose(box: Locator, option: str) -> None:
     box.page.get_by_role("menuitem", name=option).click()
 
 
+def choose_scene(page: Page, title: str) -> None:
+    """Choose a scene by the beginning of its title."""
+    page.get_by_role("radio", name=re.compile(rf": {re.escape(title)}")).click()
+
+
+def open_sheets(page: Page) -> None:
+    """Open the sheets of the sidebar: what stands in one that is closed is not to be reached."""
+    closed = page.locator(".sidebar details:not([open]):visible > summary")
+    for sheet in closed.element_handles():
+        sheet.click()
+
+
 def press(page: Page, name: str) -> None:
     page.get_by_role("button", name=name, exact=True).locator("visible=true").click()
 

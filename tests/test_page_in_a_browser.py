@@ -11,9 +11,11 @@ from pages import (
     bodies_drawn,
     card,
     choose,
+    choose_scene,
     comes_true,
     iteration,
     one_page,
+    open_sheets,
     press,
     slider,
     status,
@@ -65,6 +67,7 @@ def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_rese
     expect(status(page)).to_contain_text("paused at iteration 2")
     page.get_by_role("button", name="Run or pause").click()
     expect(status(page)).to_contain_text("running")
+    open_sheets(page)
     for number in (5, 6):
         page.get_by_role("checkbox", name="Singular values").click()
         expect(page.locator(".card")).to_have_count(number)
@@ -167,17 +170,17 @@ def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_go
 
 def test_scenes_are_chosen_and_keep_their_settings(page: Page) -> None:
     take(page, substructures=5)
-    box = {name: page.get_by_role("combobox", name=name) for name in ("Scene", "Interface")}
+    interface = page.get_by_role("combobox", name="Interface")
     expect(status(page)).to_contain_text("5 substructures")
     expect(slider(page, "Substructures")).to_be_visible()
     for title, parts in SCENES:
-        choose(box["Scene"], title)
+        choose_scene(page, title)
         expect(status(page)).to_contain_text(f"{parts} substructures")
         expect(status(page)).to_contain_text("friction force error")
         expect(page.locator(".card")).to_have_count(6)
         expect(page.get_by_text("Friction coefficient").first).to_be_visible()
-        expect(box["Interface"]).to_have_count(1)
-    choose(box["Scene"], "Clamped bar")
+        expect(interface).to_have_count(1)
+    choose_scene(page, "Clamped bar")
     expect(status(page)).to_contain_text("5 substructures")
     expect(page.locator(".figures")).not_to_contain_text("before")
 

@@ -9,7 +9,7 @@ from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
-from pages import Visit, card, one_page, slider, status
+from pages import Visit, card, one_page, open_sheets, slider, status
 from PIL import Image
 from playwright.sync_api import Page, expect
 
@@ -77,6 +77,7 @@ def test_a_table_and_a_program_are_saved(page: Page) -> None:
 def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -> None:
     page = open_page("?elements=20&instants=21&max_iterations=60&plots=Friction+force")
     expect(status(page)).to_contain_text("✓ converged")
+    open_sheets(page)
     compared = page.get_by_role("combobox", name="Compare with")
     compared.select_option("monoscale | multiscale")
     expect(page.locator(".figures")).to_contain_text("A (multiscale off)")

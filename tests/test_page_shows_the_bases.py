@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pages import ENDLESS, Visit, at_rest, card, choose, slider, status
+from pages import ENDLESS, Visit, at_rest, card, choose, open_sheets, slider, status
 from playwright.sync_api import Page, expect
 from test_the_scene_is_pictured_in_a_browser import MIDDLE
 
@@ -22,6 +22,7 @@ def test_views_of_the_bases_come_and_go_and_are_of_the_substructure_and_iteratio
     tabs = card(page, "Singular values").get_by_role("button")
     expect(card(page, "Singular values")).to_be_visible()
     expect(tabs).to_have_count(0)
+    open_sheets(page)
     choose_linear_stage(page, "pgd")
     expect(tabs).to_have_text(VIEWS)
     expect(status(page)).to_contain_text(re.compile("modes? a substructure, [0-9]+ in all"))

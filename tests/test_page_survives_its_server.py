@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from browser import Chrome, Server
-from pages import choose, comes_true, press, slider, status
+from pages import choose, comes_true, open_sheets, press, slider, status
 from playwright.sync_api import Page, expect
 from proxy import Proxy
 
@@ -35,6 +35,7 @@ class Network:
         self.page.clock.install()
         self.page.goto(f"http://localhost:{self.proxy.port}/app?{SMALL}")
         expect(status(self.page)).to_contain_text("iteration")
+        open_sheets(self.page)
 
 
 @pytest.fixture(scope="module")

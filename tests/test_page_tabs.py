@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from pages import at_rest, choose, comes_true, one_page, open_report, press
+from pages import at_rest, choose, comes_true, one_page, open_report, open_sheets, press
 from playwright.sync_api import Page, expect
 
 TINY = "?elements=4&substructures=2&instants=5&plots=Load+path"
@@ -59,6 +59,7 @@ def test_a_study_of_other_settings_says_so_and_is_done_again(page: Page) -> None
     if not page.get_by_text("How it was measured").count():
         press(page, "Start")
     expect(page.get_by_text("How it was measured")).to_be_visible()
+    open_sheets(page)
     expect(page.get_by_role("combobox", name="Method", exact=True)).to_be_hidden()
     pressure = page.get_by_role("textbox", name="Pressure p (N/m)")
     pressure.fill("6000")

@@ -148,7 +148,7 @@ def test_what_a_control_is_for_is_said_to_the_keyboard(page: Page) -> None:
     help_of = {name: one.doc for name, one in BarSettings.definitions().items()}
     note = page.get_by_role("tooltip")
     slider(page, "Peak load").focus()
-    for _ in range(4):
+    for _ in range(3):
         page.keyboard.press("Tab")
         place = page.locator(".sidebar [class*=setting-]").filter(has=page.locator(":focus"))
         name = (place.get_attribute("class") or "").removeprefix("setting-")

@@ -12,7 +12,9 @@ function controls(model) {
   const slider = (row, item) => {
     const step = item.whole && !item.log ? 1 : "any"
     const range = named(item, make("input", {type: "range", step}))
-    const field = named(item, make("input", {className: "number", inputMode: "decimal"}))
+    // One stop of the Tab key for both: Enter, or a digit, goes from the slider to its number.
+    const field = named(item,
+      make("input", {className: "number", inputMode: "decimal", tabIndex: -1}))
     const label = make("label", {className: "typed"}, make("span", {}, item.label), field)
     let {start, end} = item
     const place = (value) => item.log ? Math.log10(value) : value
@@ -31,8 +33,15 @@ function controls(model) {
     }
     range.onchange = () => tell(row, null)
     range.onkeydown = (event) => {
-      if (["Delete", "Backspace"].includes(event.key)) { reset() }
+      const {key} = event, types = !event.ctrlKey && !event.metaKey && /^[-.\d]$/.test(key)
+      if (["Delete", "Backspace"].includes(key)) { reset() }
+      else if (types) { field.focus() }
+      else if (key === "Enter") {
+        event.preventDefault()
+        field.focus()
+      }
     }
+    field.onkeydown = ({key}) => { if (key === "Enter") { range.focus() } }
     range.ondblclick = label.firstElementChild.ondblclick = reset
     field.onfocus = () => field.select()
     field.oninput = () => { field.typed = true }

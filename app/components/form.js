@@ -1,7 +1,8 @@
 export function render({model}) {
   const {tell, named, show: put, kinds} = controls(model)
-  const root = make("div")
-  let rows = new Map()
+  const NAMED = "the-named", OPENED = "slipfront-sheets"
+  const root = make("div"), sheets = new Map()
+  let rows = new Map(), pointed = ""
   const checks = (row, item) => {
     const list = make("div")
     row.show = ([options, value]) => list.replaceChildren(...options.map((name) => {
@@ -11,6 +12,21 @@ export function render({model}) {
       return make("label", {}, box, " " + name)
     }))
     return [list]
+  }
+  const scenes = (row, item) => {
+    const radios = item.options.map(([value]) =>
+      make("input", {type: "radio", name: "scene", value, onchange: () => tell(row, value)}))
+    const labels = item.options.map(([name, title, strokes], place) => {
+      radios[place].ariaLabel = `${name}: ${title}`
+      const picture = drawn("svg", {viewBox: "0 0 48 32", "aria-hidden": true})
+      const kinds = ["ground", "body", "load"]
+      picture.append(...strokes.map((d, kind) => drawn("path", {d, class: kinds[kind]})))
+      return make("label", {title}, radios[place], picture, name)
+    })
+    const group = named(item, make("div", {className: "scenes"}, ...labels))
+    group.setAttribute("role", "radiogroup")
+    row.show = (value) => { for (const one of radios) { one.checked = one.value === value } }
+    return [group]
   }
   const share = (row, item) => {
     const text = (bytes) => {
@@ -35,9 +51,9 @@ export function render({model}) {
     row.show = (text) => { words.textContent = text }
     return [words]
   }
-  Object.assign(kinds, {checks, share, note})
-  const helped = (item) => (item.help || "") +
-    (item.usual ? " Double click, or Delete, brings back the usual value." : "")
+  Object.assign(kinds, {checks, scenes, share, note})
+  const helped = (item) => (item.help || "") + (item.usual
+    ? " Enter types a value; Delete, or a double click, brings back the usual one." : "")
   const added = (item) => {
     const written = JSON.stringify(item), kept = rows.get(item.name)
     if (kept && kept.written === written) { return kept }
@@ -46,31 +62,40 @@ export function render({model}) {
       ...kinds[item.kind](row, item))
     return row
   }
-  const heads = []
+  // A browser may refuse to keep anything.
+  const opened = () => {
+    try { return JSON.parse(localStorage.getItem(OPENED)) ?? [] } catch { return [] }
+  }
+  const remember = () => {
+    const open = [...sheets].filter(([, one]) => one.open).map(([title]) => title)
+    try { localStorage.setItem(OPENED, JSON.stringify(open)) } catch {}
+  }
+  const sheet = (title) => {
+    if (!sheets.has(title)) {
+      const says = make("small"), head = make("summary", {}, title, says)
+      const one = make("details", {className: "sheet", open: opened().includes(title)}, head)
+      // One that words on the page have opened is not what somebody wants open from now on.
+      head.onclick = () => setTimeout(remember)
+      sheets.set(title, Object.assign(one, {head, says}))
+    }
+    return sheets.get(title)
+  }
+  let heads = []
   const build = () => {
-    const open = root.querySelector("details")?.open
-    const more = make("details", {open}, make("summary", {}, "More settings"))
     const made = new Map(), parts = []
-    heads.length = 0
-    more.rows = []
+    heads = []
+    for (const one of sheets.values()) { one.replaceChildren(one.head) }
     for (const item of model.items) {
-      const row = added(item)
+      const row = added(item), place = item.sheet ? sheet(item.sheet) : null
       made.set(item.name, row)
-      if (item.more) {
-        if (!parts.includes(more)) { parts.push(more) }
-        more.append(row.box)
-        more.rows.push(row.box)
-        continue
-      }
+      if (place && !parts.includes(place)) { parts.push(place) }
       if (item.group && heads.at(-1)?.textContent !== item.group) {
-        heads.push(make("h4", {}, item.group))
-        heads.at(-1).rows = []
-        parts.push(heads.at(-1))
+        heads.push(Object.assign(make("h4", {}, item.group), {rows: []}))
+        place ? place.append(heads.at(-1)) : parts.push(heads.at(-1))
       }
       if (item.group) { heads.at(-1).rows.push(row.box) }
-      parts.push(row.box)
+      place ? place.append(row.box) : parts.push(row.box)
     }
-    if (parts.includes(more)) { heads.push(more) }
     rows = made
     root.replaceChildren(...parts)
     show()
@@ -78,6 +103,21 @@ export function render({model}) {
   const show = () => {
     put(rows)
     for (const head of heads) { head.hidden = head.rows.every((box) => box.hidden) }
+    for (const one of sheets.values()) {
+      const seen = heads.filter((head) => head.parentNode === one && !head.hidden)
+      one.hidden = !seen.length
+      one.says.textContent = seen.map((head) => head.textContent.toLowerCase()).join(", ")
+    }
+    point(model.shown[NAMED] ?? [])
+  }
+  const point = (names) => {
+    const now = JSON.stringify(names)
+    if (now === pointed) { return }
+    pointed = now
+    for (const name of names) {
+      const place = rows.get(name)?.box.closest("details")
+      if (place) { place.open = true }
+    }
   }
   model.on("file", () =>
     save("slipfront.toml", new Blob([model.file[0]], {type: "application/toml"})))

@@ -19,6 +19,8 @@ POINTS, USUAL = "table of points", "usual value"
 """What stands for values that the browser does not know."""
 ENDS = "the-ends"
 """Among what is shown, the largest value that other settings leave to a slider, by its name."""
+NAMED = "the-named"
+"""Among what is shown, the names of controls that words on the page speak of: their sheets open."""
 MOST_LISTED = 200
 """Points that a table on the page has; of more there is a drawing."""
 STYLE = """
@@ -27,8 +29,26 @@ h4 { margin: 14px 0 2px; font-size: 12px; font-weight: 400; letter-spacing: 0.08
   text-transform: uppercase; }
 div[title] { margin: 6px 0; }
 label { display: block; }
+.scenes { display: grid; grid-template-columns: repeat(auto-fit, minmax(50px, 1fr)); gap: 4px; }
+.scenes label { position: relative; padding: 2px 1px 1px; text-align: center; font-size: 12px;
+  text-transform: capitalize; border: 1px solid transparent; border-radius: 6px; }
+.scenes label:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
+.scenes label:has(:checked) { border-color: var(--accent); font-weight: 600;
+  background: color-mix(in srgb, var(--accent) 14%, transparent); }
+.scenes label:has(:focus-visible) { outline: 2px solid var(--accent); outline-offset: 1px; }
+.scenes input { position: absolute; inset: 0; margin: 0; opacity: 0; cursor: pointer; }
+.scenes svg { display: block; width: 48px; height: 32px; margin: auto; fill: none;
+  stroke: currentColor; stroke-width: 1.6; stroke-linejoin: round; stroke-linecap: round; }
+.scenes .body { fill: color-mix(in srgb, var(--accent) 40%, transparent); }
+.scenes .ground { opacity: 0.65; }
+.scenes .load { stroke: #D55E00; }
 .typed { display: flex; align-items: baseline; justify-content: space-between; gap: 8px; }
-summary { margin-top: 14px; cursor: pointer; }
+.sheet { margin-top: 8px;
+  border-top: 1px solid color-mix(in srgb, currentColor 20%, transparent); }
+summary { cursor: pointer; }
+.sheet summary { padding: 6px 0 4px; font-weight: 500; }
+summary small { display: block; padding-left: 18px; overflow: hidden; font-weight: 400;
+  text-overflow: ellipsis; white-space: nowrap; opacity: 0.75; }
 input[type=range] { display: block; width: 100%; margin: 4px 0 8px; cursor: pointer; }
 input { accent-color: var(--accent); }
 select { display: block; width: 100%; margin-top: 2px; }
@@ -52,7 +72,7 @@ svg.path circle { cursor: grab; }
 
 
 class Form(Plain):
-    """Controls below each other under the headings of their groups.
+    """Controls below each other, some in sheets that open, under the headings of their groups.
 
     Messages from the browser are `{name, value, hand, count}`: `hand` tells that more of the same
     drag may come, and a value of None that it has ended.
@@ -60,7 +80,7 @@ class Form(Plain):
     Attributes
     ----------
     items
-        What each control is, as `item_of` says it.
+        What each control is, as `item_of` says it, with the titles of its sheet and its group.
     shown
         The value of each control that applies, by name; "" has the number of the newest message
         that was obeyed.
@@ -93,8 +113,7 @@ def item_of(name: str, definition: Parameter) -> dict[str, Any] | None:
     """Say what the control of a setting is; None where there is nothing to choose."""
     record = about(definition)
     label = f"{record.title} ({record.unit})" if record.unit else record.title
-    item = {"name": name, "label": label, "help": definition.doc, "more": not record.essential}
-    item["group"] = record.group if record.essential else ""
+    item = {"name": name, "label": label, "help": definition.doc}
     if isinstance(definition, CurveParameter):
         titles = zip((definition.abscissa, definition.ordinate), definition.units, strict=True)
         columns = [f"{title} ({unit})" if unit else title for title, unit in titles]

@@ -8,49 +8,55 @@ from typing import Any
 from app.components.form import item_of
 from app.controls.comparing import CHOICES
 from app.lessons.lesson import LESSONS
-from solver.scenes import CATALOGUE
+from solver.definitions import about
+from solver.scenes import CATALOGUE, chief_of
 from solver.settings import Settings
 
 METHOD = "Method"
-ORDER = (
-    "Load",
-    "Top",
-    "Left",
-    "Right",
-    "Contact",
-    "Bar",
-    "Strand",
-    "Body",
-    "Body force",
-    "Decomposition",
-    METHOD,
-    "Stop",
+WHAT = (
+    "What the scene is",
+    (
+        "Load",
+        "Top",
+        "Left",
+        "Right",
+        "Contact",
+        "Bar",
+        "Strand",
+        "Body",
+        "Body force",
+    ),
 )
+HOW = "How it is solved", ("Decomposition", METHOD, "Stop")
+SEEN = "What is seen"
+"""Sheets, and the groups of settings in them, but for what the scene is about."""
 
 # None of these is the name of a setting.
 SCENE, LESSON, WARM = "the-scene", "the-lesson", "start-from-before"
 VIEWS, SHARE, COMPARE, NOTE = "the-views", "share", "compare", "note"
-SCENE_ITEM = {
+SCENE_ITEM: dict[str, Any] = {
     "name": SCENE,
-    "kind": "choice",
+    "kind": "scenes",
     "label": "Scene",
     "help": "What is solved; each scene keeps its settings until the page is closed.",
-    "options": [[entry.title, name] for name, entry in CATALOGUE.items()],
+    "options": [[name, entry.title, list(entry.emblem)] for name, entry in CATALOGUE.items()],
 }
-LESSON_ITEM = {
+LESSON_ITEM: dict[str, Any] = {
     "name": LESSON,
     "kind": "choice",
     "label": "Lesson",
     "help": "A question: predict the answer, change one thing, and see why.",
     "options": [["none", ""], *([one.title, one.name] for one in LESSONS.values())],
 }
-COMPARE_ITEM = {
+COMPARE_ITEM: dict[str, Any] = {
     "name": COMPARE,
     "kind": "choice",
     "label": "Compare with",
     "help": "Two runs in step, on the same axes. Keep the present settings as run A and change "
     "those of run B, or choose a pair.",
     "options": [[title, name] for title, name in CHOICES.items()],
+    "sheet": SEEN,
+    "group": "Second run",
 }
 WARM_ITEM = {
     "name": WARM,
@@ -59,12 +65,19 @@ WARM_ITEM = {
     "help": "When a setting changes, start from the last solution, if that saves iterations: one "
     "iteration from either start shows which is nearer, and both are part of the run time. Reset "
     "always takes the usual start.",
+    "sheet": HOW[0],
     "group": METHOD,
 }
-VIEWS_ITEM = {"name": VIEWS, "kind": "checks", "help": "Which plots are drawn.", "group": "Views"}
-NOTE_ITEM = {"name": NOTE, "kind": "note"}
+VIEWS_ITEM: dict[str, Any] = {
+    "name": VIEWS,
+    "kind": "checks",
+    "help": "Which plots are drawn.",
+    "sheet": SEEN,
+    "group": "Plots",
+}
+NOTE_ITEM: dict[str, Any] = {"name": NOTE, "kind": "note"}
 LINK, SAVE, DEFAULTS, CLASS = "Link", "Save", "Defaults", "Class"
-SHARE_ITEM = {
+SHARE_ITEM: dict[str, Any] = {
     "name": SHARE,
     "kind": "share",
     "group": "Share",
@@ -80,22 +93,30 @@ SHARE_ITEM = {
 
 @cache
 def items(settings: type[Settings]) -> list[dict[str, Any]]:
-    """Say what controls there are, those behind "more" before the choice of views."""
-    made = [item_of(name, definition) for name, definition in settings.definitions().items()]
-    found = [item for item in made if item is not None]
-    open_ones = [item for item in found if not item["more"]]
-    groups = [*ORDER, *(item["group"] for item in open_ones)]
-    open_ones.sort(key=lambda item: groups.index(item["group"]))
-    after = max(i for i, item in enumerate(open_ones) if item["group"] == METHOD) + 1
-    open_ones.insert(after, WARM_ITEM)
-    more = [item for item in found if item["more"]]
+    """Say what controls there are: the chief ones, and in sheets all others."""
+    definitions = settings.definitions()
+    chief = [name for name in chief_of(settings) if name in definitions]
+    # What is a scene's own comes first in its groups.
+    own = dict.fromkeys(name for kind in settings.__mro__ for name in vars(kind))
+    what = _sheet(settings, *WHAT, [name for name in own if name not in chief])
+    how = _sheet(settings, *HOW, [name for name in definitions if name not in chief])
+    after = max(place for place, item in enumerate(how) if item["group"] == METHOD) + 1
+    how.insert(after, WARM_ITEM)
+    first = [item for name in chief if (item := item_of(name, definitions[name]))]
+    others = [COMPARE_ITEM, VIEWS_ITEM, LESSON_ITEM, SHARE_ITEM]
+    return [NOTE_ITEM, SCENE_ITEM, *first, *what, *how, *others]
+
+
+def _sheet(
+    settings: type[Settings], title: str, groups: tuple[str, ...], names: list[str]
+) -> list[dict[str, Any]]:
+    """Say which controls stand in a sheet: those of its groups, one group after the other."""
+    definitions = settings.definitions()
     return [
-        NOTE_ITEM,
-        SCENE_ITEM,
-        LESSON_ITEM,
-        COMPARE_ITEM,
-        *open_ones,
-        *more,
-        VIEWS_ITEM,
-        SHARE_ITEM,
+        {**item, "sheet": title, "group": group}
+        for group in groups
+        for name in names
+        if name in definitions
+        and about(definitions[name]).group == group
+        and (item := item_of(name, definitions[name]))
     ]

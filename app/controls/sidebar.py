@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from typing import Any
 
-from app.components.form import ENDS, POINTS, USUAL, Form, shown_value
+from app.components.form import ENDS, NAMED, POINTS, USUAL, Form, shown_value
 from app.controls.comparing import choice_of, pair
 from app.controls.items import (
     CLASS,
@@ -71,7 +72,7 @@ class Sidebar:
         self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
         self.view.on_msg(lambda message: self.hear(**message.data))
-        shown = ["wanted", "twin", "warm_start", "chosen", "lesson"]
+        shown = ["wanted", "twin", "warm_start", "chosen", "lesson", "refusal"]
         session.param.watch(lambda *events: self._show(), shown)
         self._show()
 
@@ -102,15 +103,23 @@ class Sidebar:
             SHARE: None,
             "": self._answered,
             ENDS: ends_of(settings),
+            NAMED: [*(lesson.controls if lesson else ()), *self._told_of(acting)],
         }
         if self._report is not None:
-            kept = {SCENE, SHARE, ENDS, ""} if acting else {SHARE, ""}
+            kept = {SCENE, SHARE, ENDS, NAMED, ""} if acting else {SHARE, ""}
             own = {NOTE: self._report.note, **{name: own[name] for name in kept}}
         changes: dict[str, Any] = {"shown": {**values, **own}}
         # Param takes longer to compare the controls with themselves than to pass on the values.
         if (controls := items(type(settings))) is not self.view.items:
             changes["items"] = controls
         self.view.param.update(**changes)
+
+    def _told_of(self, names: Iterable[str]) -> list[str]:
+        """Give the settings of which the page says that they are refused, or in the way."""
+        definitions = self._session.wanted.definitions()
+        said = f"{self._session.refusal} {self._session.look.complaint}".lower()
+        titles = {name: re.escape(about(definitions[name]).title.lower()) for name in names}
+        return [name for name in names if re.search(rf"(?<!\w){titles[name]}(?!\w)", said)]
 
     def hear(self, name: str, value: Any, hand: bool, count: float) -> None:
         """Follow what the user does with a control."""

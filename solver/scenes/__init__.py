@@ -86,6 +86,12 @@ def points_of(settings: Settings, name: str) -> Pairs:
     return settings.points(name)
 
 
+def chief_of(settings: type[Settings]) -> Sequence[str]:
+    """Name the settings that a scene is about, in the order in which one thinks of them."""
+    assert issubclass(settings, SceneSettings)
+    return settings.chief()
+
+
 def loads_of(settings: Settings) -> Sequence[str]:
     """Name the settings that say how much a scene is loaded; the first that applies counts."""
     assert isinstance(settings, SceneSettings)

@@ -15,7 +15,7 @@ from solver.discrete.rods import Rods
 from solver.loads import PRESETS, interpolate
 from solver.reference.closed_form import closed_form
 from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Entry
+from solver.scenes.entry import Emblem, Entry
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -46,7 +46,6 @@ class BarSettings(SceneSettings):
         "Axial force at the free end over time: a preset, or points (s, N).",
         group="Load",
         title="Load path",
-        essential=True,
     )
     peak = quantity(
         900.0,
@@ -57,9 +56,8 @@ class BarSettings(SceneSettings):
         title="Peak load",
         unit="N",
         applies=lambda settings: isinstance(settings.load, str),
-        essential=True,
     )
-    seed = shared.seed(lambda settings: settings.load == "random", essential=True)
+    seed = shared.seed(lambda settings: settings.load == "random")
     duration = shared.duration()
     instants = shared.instants(101)
     support_displacement = quantity(
@@ -125,7 +123,6 @@ class BarSettings(SceneSettings):
         "Number of linear elements, equal in length.",
         group="Bar",
         title="Elements",
-        essential=True,
     )
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the bar.", "Bar")
     young = shared.young("Bar")
@@ -254,6 +251,11 @@ def _coarser(settings: BarSettings) -> Iterator[Problem]:
 BAR = Entry(
     title="Clamped bar on a rough support",
     source="paper, section 3, Table 1",
+    emblem=Emblem(
+        ground="M5 9V28M5 23H46M12 23l-3 4M19 23l-3 4M26 23l-3 4M33 23l-3 4M40 23l-3 4",
+        body="M5 14H36V22H5Z",
+        load="M37 18H46M42 14L46 18L42 22",
+    ),
     settings=BarSettings,
     kind="rod",
     structure=bar,

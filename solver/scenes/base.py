@@ -70,8 +70,15 @@ class SceneSettings(Settings):
     """Numbers of elements: twice each is a mesh of half the size."""
     LOADS: ClassVar[Sequence[str]] = ()
     """Settings that say how much it is loaded; the first that applies counts."""
+    PATH: ClassVar[str] = "load"
+    """Setting that says how that goes on over time."""
     SHAPES: ClassVar[Mapping[str, Callable[[Array, int], Array]]] = PRESETS
     """What the presets of paths over time stand for."""
+
+    @classmethod
+    def chief(cls) -> tuple[str, ...]:
+        """Name what a scene is about: the path and size of its load, friction, cuts, and k."""
+        return (cls.PATH, "seed", *cls.LOADS, "friction", "substructures", "k_scale")
 
     def law(self) -> FrictionLaw:
         """Give the law of friction; its attributes are named like settings."""

@@ -15,7 +15,7 @@ from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
-from solver.scenes.entry import Entry
+from solver.scenes.entry import Emblem, Entry
 from solver.scenes.sides import SideSettings
 
 GAPS = ("flat", "parabola")
@@ -26,6 +26,7 @@ class BlockSettings(SideSettings):
 
     scene = "block"
     LOADS: ClassVar = ("top_tangential_displacement",)
+    PATH = "top_tangential_load"
 
     gap = curve(
         "parabola",
@@ -36,7 +37,6 @@ class BlockSettings(SideSettings):
         "Opening between the undeformed body and its support: a preset, or points (m, m).",
         group="Contact",
         title="Gap",
-        essential=True,
     )
     radius = quantity(
         5.0,
@@ -48,7 +48,6 @@ class BlockSettings(SideSettings):
         unit="m",
         logarithmic=True,
         applies=lambda settings: settings.gap == "parabola",
-        essential=True,
     )
     length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", "Body")
     height = shared.size(
@@ -147,6 +146,11 @@ def _body_force(settings: BlockSettings) -> Array | None:
 BLOCK = Entry(
     title="Block pressed and sheared",
     source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
+    emblem=Emblem(
+        ground="M4 25H44M11 25l-3 4M18 25l-3 4M25 25l-3 4M32 25l-3 4M39 25l-3 4",
+        body="M12 11H36V24H12Z",
+        load="M24 1V9M20 5L24 9L28 5M32 7H44M40 3L44 7L40 11",
+    ),
     settings=BlockSettings,
     kind="plane",
     structure=block,

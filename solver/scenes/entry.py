@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Generic, Literal, TypeVar
+from typing import Generic, Literal, NamedTuple, TypeVar
 
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
@@ -16,6 +16,20 @@ S = TypeVar("S", bound=SceneSettings)
 Kind = Literal["rod", "wires", "plane"]
 
 
+class Emblem(NamedTuple):
+    """A small picture by which a scene is known: paths as in SVG, on a field of 48 times 32.
+
+    Attributes
+    ----------
+    ground, body, load
+        What holds and supports it, what is deformed, and what acts on it.
+    """
+
+    ground: str
+    body: str
+    load: str
+
+
 @dataclass(frozen=True)
 class Entry(Generic[S]):
     """One scene of the catalogue, and what it can.
@@ -24,6 +38,8 @@ class Entry(Generic[S]):
     ----------
     title, source
         What it is called, and where it comes from.
+    emblem
+        Its small picture.
     settings
         Its settings.
     kind
@@ -43,6 +59,7 @@ class Entry(Generic[S]):
 
     title: str
     source: str
+    emblem: Emblem
     settings: type[S]
     kind: Kind
     structure: Callable[[S], Structure]

@@ -17,7 +17,7 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
-from solver.scenes.entry import Entry
+from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
 
 
@@ -26,6 +26,7 @@ class InclineSettings(PlaneSettings):
 
     scene = "incline"
     LOADS: ClassVar = ("slope",)
+    PATH = "slope_load"
     SHAPES: ClassVar = PULLS
 
     slope = quantity(
@@ -37,7 +38,6 @@ class InclineSettings(PlaneSettings):
         group="Load",
         title="Slope θ",
         unit="°",
-        essential=True,
     )
     slope_load = curve(
         "triangle",
@@ -48,7 +48,6 @@ class InclineSettings(PlaneSettings):
         "Angle of the slope over time: a preset between 0 and the largest, or points (s, °).",
         group="Load",
         title="Path of the slope",
-        essential=True,
     )
     weight = quantity(
         1000.0,
@@ -58,7 +57,6 @@ class InclineSettings(PlaneSettings):
         group="Load",
         title="Weight W",
         unit="N",
-        essential=True,
     )
     slack = quantity(
         2e-4,
@@ -68,7 +66,6 @@ class InclineSettings(PlaneSettings):
         group="Contact",
         title="Slack",
         unit="m",
-        essential=True,
     )
     spring = quantity(
         2e6,
@@ -79,7 +76,6 @@ class InclineSettings(PlaneSettings):
         title="Spring stiffness",
         unit="N/m",
         logarithmic=True,
-        essential=True,
     )
     length = shared.size(0.1, (0.01, 1.0), "Length b", "Length of the block's base.", "Body")
     height = shared.size(
@@ -133,6 +129,11 @@ def incline(settings: InclineSettings) -> Stack:
 INCLINE = Entry(
     title="Block on an inclined plane",
     source="closed form: Coulomb, Théorie des machines simples, 1785",
+    emblem=Emblem(
+        ground="M3 29L45 10V29Z",
+        body="M15 22L28 16L25 8L12 14Z",
+        load="M27 12L30 13L30 8L35 11L35 6L40 9L46 6M20 15V26M17 23L20 26L23 23",
+    ),
     settings=InclineSettings,
     kind="plane",
     structure=incline,

@@ -12,7 +12,7 @@ from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
-from solver.scenes.entry import Entry
+from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
 
 
@@ -21,6 +21,7 @@ class LayersSettings(PlaneSettings):
 
     scene = "layers"
     LOADS: ClassVar = ("deflection", "moment")
+    PATH = "bend_load"
     across = "thickness"
 
     pressure = quantity(
@@ -32,7 +33,6 @@ class LayersSettings(PlaneSettings):
         title="Pressure",
         unit="Pa",
         applies=lambda settings: isinstance(settings.pressure_load, str),
-        essential=True,
     )
     pressure_load = curve(
         "hold",
@@ -53,7 +53,6 @@ class LayersSettings(PlaneSettings):
         title="Pull",
         unit="Pa",
         applies=lambda settings: isinstance(settings.pull_load, str),
-        essential=True,
     )
     pull_load = curve(
         "hold",
@@ -72,7 +71,6 @@ class LayersSettings(PlaneSettings):
         "moment: a given moment, which all layers share.",
         group="Load",
         title="Bending",
-        essential=True,
     )
     deflection = quantity(
         2e-3,
@@ -83,7 +81,6 @@ class LayersSettings(PlaneSettings):
         title="Deflection",
         unit="m",
         applies=lambda settings: settings.bends_by("deflection"),
-        essential=True,
     )
     moment = quantity(
         1e3,
@@ -94,7 +91,6 @@ class LayersSettings(PlaneSettings):
         title="Moment",
         unit="N·m/m",
         applies=lambda settings: settings.bends_by("moment"),
-        essential=True,
     )
     bend_load = curve(
         "delayed",
@@ -105,7 +101,6 @@ class LayersSettings(PlaneSettings):
         "Deflection or moment over time: a preset, or points (s, m or N·m/m).",
         group="Load",
         title="Path of the bending",
-        essential=True,
     )
     layers = count(
         4,
@@ -114,7 +109,6 @@ class LayersSettings(PlaneSettings):
         "Number of layers.",
         group="Body",
         title="Layers",
-        essential=True,
     )
     length = shared.size(0.5, (0.05, 5.0), "Length", "Length of the stack.", "Body")
     thickness = shared.size(
@@ -186,6 +180,12 @@ def layers(settings: LayersSettings) -> Stack:
 LAYERS = Entry(
     title="Stack of layers, bent",
     source="a leaf spring, or the section of a cable laid flat",
+    emblem=Emblem(
+        ground="M5 3V27",
+        body="M5 6C18 6 28 8 40 14L38 18C28 12 18 11 5 11ZM5 11C18 11 28 12 38 18L36 22"
+        "C28 17 18 16 5 16ZM5 16C18 16 28 17 36 22L34 26C28 22 18 21 5 21Z",
+        load="M44 6V20M40 16L44 20L48 16",
+    ),
     settings=LayersSettings,
     kind="plane",
     structure=layers,

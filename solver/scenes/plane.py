@@ -30,7 +30,7 @@ class PlaneSettings(SceneSettings):
 
     duration = shared.duration()
     instants = shared.instants(81)
-    seed = shared.seed(lambda settings: settings.is_random, essential=False)
+    seed = shared.seed(lambda settings: settings.is_random)
     friction = shared.friction("mu", largest=10.0)
     plane = choice(
         "strain",
@@ -55,7 +55,6 @@ class PlaneSettings(SceneSettings):
         "Number of elements along a body, equal in size.",
         group="Body",
         title="Elements along",
-        essential=True,
     )
     elements_up = count(
         24,
@@ -85,7 +84,6 @@ class PlaneSettings(SceneSettings):
         "Number of pieces (substructures) over the height of a body.",
         group="Decomposition",
         title="Substructures up",
-        essential=True,
     )
     macro_degree = count(
         1,

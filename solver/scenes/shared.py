@@ -24,7 +24,7 @@ PLANE_SIZES = {
 PLANE_GROWS = ("elements", "elements_up", "substructures", "substructures_up")
 
 
-def seed(applies: Callable[[Any], bool], *, essential: bool) -> param.Integer[int]:
+def seed(applies: Callable[[Any], bool]) -> param.Integer[int]:
     """Define the seed of random load paths."""
     return count(
         1,
@@ -34,7 +34,6 @@ def seed(applies: Callable[[Any], bool], *, essential: bool) -> param.Integer[in
         group="Load",
         title="Seed",
         applies=applies,
-        essential=essential,
     )
 
 
@@ -61,7 +60,6 @@ def instants(default: int) -> param.Integer[int]:
         "Number of instants at which the problem is solved; the load is linear between them.",
         group="Load",
         title="Instants",
-        essential=True,
     )
 
 
@@ -74,7 +72,6 @@ def friction(which: str, *, largest: float = 1e6) -> param.Number[float]:
         f"Coefficient of friction {which}.",
         group="Contact",
         title="Friction coefficient μ",
-        essential=True,
     )
 
 
@@ -88,7 +85,6 @@ def pressure(which: str, slider: float) -> param.Number[float]:
         group="Contact",
         title="Pressure p",
         unit="N/m",
-        essential=True,
     )
 
 

@@ -47,27 +47,27 @@ def _sizes(side: str, component: str) -> dict[str, Parameter]:
     """Define how large a traction and a displacement are."""
     along = "x" if side == "top" else "y"
     towards = "outward" if component == "normal" else f"along {along}"
-    common = {"group": side.capitalize(), "essential": True}
+    group = side.capitalize()
     return {
         f"{side}_{component}_traction": quantity(
             0.0,
             (-1e15, 1e15),
             (-2e8, 2e8),
             f"Mean {component} traction on the {side} side, positive {towards}.",
-            title=f"{component.capitalize()} traction",
+            title=f"{group} {component} traction",
             unit="Pa",
             applies=_has_size(side, component, prescribed=False),
-            **common,
+            group=group,
         ),
         f"{side}_{component}_displacement": quantity(
             0.0,
             (-1e12, 1e12),
             (-1e-4, 1e-4),
             f"Mean {component} displacement of the {side} side, positive {towards}.",
-            title=f"{component.capitalize()} displacement",
+            title=f"{group} {component} displacement",
             unit="m",
             applies=_has_size(side, component, prescribed=True),
-            **common,
+            group=group,
         ),
     }
 
@@ -151,7 +151,6 @@ def _define(side: str) -> None:
             "traction.",
             group=side.capitalize(),
             title=f"{side.capitalize()} side",
-            essential=True,
         ),
     )
     for component in COMPONENTS:

@@ -15,7 +15,7 @@ from solver.discrete.rods_data import COARSEST, neighbours
 from solver.loads import PULLS
 from solver.reference.broken_wire import broken_wire
 from solver.scenes.base import SceneSettings
-from solver.scenes.entry import Entry
+from solver.scenes.entry import Emblem, Entry
 
 
 class StrandSettings(SceneSettings):
@@ -38,7 +38,6 @@ class StrandSettings(SceneSettings):
         "Tension of a wire over time: a preset between 0 and the peak, or points (s, N).",
         group="Load",
         title="Tension path",
-        essential=True,
     )
     peak = quantity(
         600.0,
@@ -49,7 +48,6 @@ class StrandSettings(SceneSettings):
         title="Peak tension",
         unit="N",
         applies=lambda settings: isinstance(settings.load, str),
-        essential=True,
     )
     grip = choice(
         "force",
@@ -58,9 +56,8 @@ class StrandSettings(SceneSettings):
         "same displacement for all, that which an unbroken wire needs for this force.",
         group="Load",
         title="Grip",
-        essential=True,
     )
-    seed = shared.seed(lambda settings: settings.load == "random", essential=True)
+    seed = shared.seed(lambda settings: settings.load == "random")
     duration = shared.duration()
     instants = shared.instants(101)
     friction = shared.friction("mu between neighbouring wires")
@@ -72,7 +69,6 @@ class StrandSettings(SceneSettings):
         "Number of wires side by side; each rubs on the one before it and the one after it.",
         group="Strand",
         title="Wires",
-        essential=True,
     )
     broken = count(
         2,
@@ -81,7 +77,6 @@ class StrandSettings(SceneSettings):
         "Which wire is broken, counted from 1; 0: none.",
         group="Strand",
         title="Broken wire",
-        essential=True,
     )
     break_position = quantity(
         0.5,
@@ -91,7 +86,6 @@ class StrandSettings(SceneSettings):
         group="Strand",
         title="Position of the break",
         applies=lambda settings: settings.broken > 0,
-        essential=True,
     )
     elements = count(
         60,
@@ -100,7 +94,6 @@ class StrandSettings(SceneSettings):
         "Number of linear elements of a wire, equal in length.",
         group="Strand",
         title="Elements per wire",
-        essential=True,
     )
     substructures = count(
         6,
@@ -110,7 +103,6 @@ class StrandSettings(SceneSettings):
         "broken: all wires are cut at the break, and alike.",
         group="Decomposition",
         title="Substructures per wire",
-        essential=True,
     )
     length = shared.size(1.0, (0.1, 10.0), "Length L", "Length of the wires.", "Strand")
     young = shared.young("Strand")
@@ -229,6 +221,11 @@ def _coarser(settings: StrandSettings) -> Iterator[Problem]:
 STRAND = Entry(
     title="Parallel wires, one broken",
     source="closed form: force regained over T / (mu p)",
+    emblem=Emblem(
+        ground="M5 3V29",
+        body="M5 6H37V11H5ZM5 14H18V19H5ZM23 14H37V19H23ZM5 22H37V27H5Z",
+        load="M38 16H47M43 12L47 16L43 20",
+    ),
     settings=StrandSettings,
     kind="wires",
     structure=strand,
