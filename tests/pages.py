@@ -145,7 +145,7 @@ def bodies_drawn(page: Page, number: str) -> None:
           const documents = window.Bokeh ? Bokeh.documents : []
           const models = documents.flatMap(({{_all_models}}) => [..._all_models.values()])
           for (const {{type, data}} of models) {{
-            if (type === "ColumnDataSource" && data.xs && data.ys && data.value) {{
+            if (type === "ColumnDataSource" && data.xs && data.value && !data.setting) {{
               return (data.xs.length && data.xs[0].length === 4 ? data.xs.length : 0) {number}
             }}
           }}

@@ -77,14 +77,16 @@ OTHERS: dict[str, dict[str, Any]] = {
 def outside(drawing: Drawing) -> list[str]:
     """Give the colours of all curves and bodies that leave the axes."""
     if drawing.bodies is not None:
-        (left, right, low, high), (x, y) = drawing.bodies.box, drawing.bodies.places.T
+        box, (x, y) = drawing.bodies.box, drawing.bodies.places.T
+        left, right, low, high = box.left, box.right, box.low, box.high
         places = [("bodies", x, y), *((c.color, c.x, c.y) for c in drawing.curves)]
     else:
         assert drawing.x is not None
         assert drawing.y is not None
         left, right, low, high = drawing.x.low, drawing.x.high, drawing.y.low, drawing.y.high
         places = [(curve.color, curve.x, curve.y) for curve in drawing.curves]
-    slack_x, slack_y = 1e-5 * (right - left), 1e-5 * (high - low)
+    # Iterates move a little where they are held.
+    slack_x, slack_y = 2e-4 * (right - left), 2e-4 * (high - low)
     return [
         name
         for name, x, y in places

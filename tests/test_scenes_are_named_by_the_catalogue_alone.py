@@ -22,7 +22,7 @@ EXPERIMENTS = (
 """They measure scenes of their choice."""
 STRUCTURES = "solver/discrete/"
 """Interfaces are made, and so named, there."""
-PICTURE = "/picture.py"
+PICTURE = "/picture.py", "/held.py"
 """It draws what holds bodies, by its kind."""
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -10,14 +12,19 @@ import pytest
 from shown_pages import ALL, SMALL, Shown
 from test_views_say_what_they_draw import looked_at
 
+from app.shell.figures import LINE
 from app.views import load_path, picture, sketch
+from app.views.acting import ARROW
 from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN
-from app.views.drawing import Curve, Drawing, Scene
+from app.views.drawing import Curve, Drawing, Scene, Word
+from solver.arrays import Array
 from solver.scenes import CATALOGUE, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings
 
 LENGTH = BarSettings.checked({}).length
+LETTER = 7.6
+"""Mean width of a letter of the words in a picture, px."""
 
 
 def pictured(scene: Scene) -> Drawing:
@@ -33,21 +40,140 @@ def says(drawing: Drawing) -> dict[str, str]:
     return dict(word.text.split(" = ") for word in drawing.words)
 
 
+class Page:
+    """A drawing on a page of so many pixels, laid out as `app.shell.figures.FIT` does it."""
+
+    def __init__(self, drawing: Drawing, wide: float, tall: float) -> None:
+        assert drawing.bodies is not None
+        self.drawing, self.size, box = drawing, (wide, tall), drawing.bodies.box
+        across, up = box.right - box.left, box.high - box.low
+        inner = tall - LINE * sum(box.lines)
+        wanted = 0.45 * inner if box.flattest else up * wide / across
+        aside = box.room[2] + box.room[3]
+        self.unit = max(min((inner - wanted) / aside, wide / 400, 1.6), 0.5)
+        lines = (0, 0, *box.lines)
+        rooms = [self.unit * room + LINE * own for room, own in zip(box.room, lines, strict=True)]
+        inside = wide - rooms[0] - rooms[1], tall - rooms[2] - rooms[3]
+        per = [across / inside[0], max(up / inside[1], box.flattest / self.unit)]
+        self.per = per if box.flattest else [max(per)] * 2
+        slack = [
+            whole - first - last - size / one
+            for whole, first, last, size, one in zip(
+                (wide, tall), rooms[::2], rooms[1::2], (across, up), self.per, strict=True
+            )
+        ]
+        self.start = (
+            box.left - self.per[0] * (rooms[0] + 0.5 * slack[0]),
+            box.low - self.per[1] * (rooms[2] + 0.5 * slack[1]),
+        )
+
+    def at(self, one: Curve | Word) -> Array:
+        """Give where points are, shape (n, 2), px, from the lower left corner."""
+        pairs = ((one.x, one.dx), (one.y, one.dy))
+        found = [
+            (np.asarray(place, float) - start) / per + self.unit * np.asarray(shift, float)
+            for (place, shift), start, per in zip(pairs, self.start, self.per, strict=True)
+        ]
+        return np.stack([np.atleast_1d(axis) for axis in found], axis=1)
+
+    def word(self, word: Word) -> tuple[float, float, float, float]:
+        """Give the left, right, low and high end of a word."""
+        ((x, y),) = self.at(word)
+        lines = word.text.split("\n")
+        wide, tall = LETTER * max(map(len, lines)), LINE * len(lines)
+        left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[word.across] * wide
+        low = y - {"bottom": 0.0, "middle": 0.5, "top": 1.0}[word.up] * tall
+        return left, left + wide, low, low + tall
+
+
+CARDS = [(1590, 225), (940, 190), (940, 165), (356, 170), (290, 120), (490, 460)]
+"""Sizes of plots that a picture has room in, px."""
+
+
 @pytest.mark.parametrize("scene", list(CATALOGUE))
-def test_all_that_is_drawn_lies_in_what_is_seen(scene: str) -> None:
+def test_all_that_is_drawn_is_seen_at_any_size_and_no_word_lies_on_another(scene: str) -> None:
     shown = looked_at(scene)
     for instant in (0, 5, len(shown.run.stand.instants) - 1):
-        drawing = pictured(Scene(**{**vars(shown), "instant": instant}))
+        drawing = pictured(replace(shown, instant=instant))
         assert drawing.bodies is not None
-        left, right, low, high = drawing.bodies.box
-        for x, y in [
-            *((curve.x, curve.y) for curve in drawing.curves),
-            *((word.x, word.y) for word in drawing.words),
-            drawing.bodies.places.T,
-        ]:
-            within = np.isnan(x) | ((np.asarray(x) >= left) & (np.asarray(x) <= right))
-            within &= np.isnan(y) | ((np.asarray(y) >= low) & (np.asarray(y) <= high))
-            assert within.all()
+        bodies = Curve(*drawing.bodies.places.T, "")
+        for size in CARDS:
+            page = Page(drawing, *size)
+            for curve in (bodies, *drawing.curves):
+                at = page.at(curve)
+                assert np.nanmin(np.append(at, 0.0)) > -1e-3
+                assert not np.any(at > np.array(size) + 1e-3)
+            ends = [page.word(word) for word in drawing.words]
+            for left, right, low, high in ends:
+                assert left >= 0.0
+                assert right <= size[0]
+                assert low >= 0.0
+                assert high <= size[1] + 1e-3
+            for one, other in combinations(ends, 2):
+                apart = one[1] <= other[0] or other[1] <= one[0]
+                assert apart or one[3] <= other[2] or other[3] <= one[2]
+
+
+@pytest.mark.parametrize("scene", ["bar", "strand", "layers"])
+@pytest.mark.parametrize("size", CARDS)
+def test_long_bodies_take_three_quarters_of_the_width(scene: str, size: tuple[int, int]) -> None:
+    assert np.ptp(undeformed(Page(pictured(looked_at(scene)), *size))[:, 0]) >= 0.75 * size[0]
+
+
+@pytest.mark.parametrize("scene", ["block", "incline"])
+def test_other_bodies_fill_a_tall_card(scene: str) -> None:
+    assert np.ptp(undeformed(Page(pictured(looked_at(scene)), 490, 460))[:, 0]) >= 0.6 * 490
+
+
+def undeformed(page: Page) -> Array:
+    """Give the outline of the bodies before they moved, px."""
+    return np.concatenate([page.at(one) for one in page.drawing.curves if one.dash == "dotted"])
+
+
+@pytest.mark.parametrize("scene", ["bar", "block"])
+def test_slip_is_drawn_below_the_body_that_slips(scene: str) -> None:
+    drawing = pictured(looked_at(scene))
+    bands = of_color(drawing, BACKWARD) + of_color(drawing, FORWARD)
+    shifts = np.concatenate([np.stack([one.dx, one.dy], axis=1) for one in bands])
+    known = shifts[np.isfinite(shifts).all(axis=1)]
+    assert len(known)
+    assert np.all(known[:, 1] < -0.5 * min(one.width for one in bands))
+
+
+def test_slip_of_wires_is_drawn_between_them() -> None:
+    drawing = pictured(looked_at("strand"))
+    assert drawing.bodies is not None
+    heights = np.unique(drawing.bodies.places[:, 1])
+    bands = of_color(drawing, BACKWARD) + of_color(drawing, FORWARD)
+    found = np.concatenate([np.asarray(one.y) for one in bands])
+    found = found[np.isfinite(found)]
+    assert len(found)
+    assert np.all(np.searchsorted(heights, found) % 2 == 0)
+
+
+def test_a_picture_keeps_its_scale_while_a_slider_is_dragged() -> None:
+    shown = Shown()
+    shown.run(1, "bar", SMALL["bar"])
+    first = pictured(shown.scene())
+    shown.run(2, "bar", {**SMALL["bar"], "peak": 90.0}, follows_hand=True)
+    dragged = picture.draw(shown.scene(), first.kept)
+    shown.run(3, "bar", {**SMALL["bar"], "peak": 90.0})
+    let_go = picture.draw(shown.scene(), dragged.kept)
+    assert dragged.kept == first.kept
+    assert dragged.bodies is not None
+    assert first.bodies is not None
+    assert dragged.bodies.box == first.bodies.box
+    assert let_go.kept.factor > 2.0 * first.kept.factor
+
+
+def test_a_hand_that_pulls_farther_than_there_is_room_has_more() -> None:
+    shown = Shown()
+    shown.run(1, "bar", SMALL["bar"])
+    first = pictured(shown.scene())
+    shown.run(2, "bar", {**SMALL["bar"], "peak": 9000.0}, follows_hand=True)
+    drawing = picture.draw(shown.scene(), first.kept)
+    assert drawing.kept.factor == first.kept.factor
+    assert drawing.kept.reach > first.kept.reach
 
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
@@ -67,9 +193,11 @@ def test_the_load_arrow_follows_the_load_and_says_its_value(instant: int) -> Non
     drawing = pictured(scene)
     assert abs(load) == pytest.approx(900.0)
     assert says(drawing)["F"] == f"{load / 1e3:.3g} kN".replace("-", "−")
-    tail, head = np.asarray(of_color(drawing, FORCE)[0].x, float)[:2]
-    assert np.sign(head - tail) == np.sign(load)
-    assert min(tail, head) > 0.9 * LENGTH
+    arrow = of_color(drawing, FORCE)[0]
+    tail, head = np.asarray(arrow.dx)[:2]
+    assert head - tail == pytest.approx(ARROW * load / 900.0, rel=1e-6)
+    assert np.asarray(arrow.x)[0] > 0.9 * LENGTH
+    assert min(tail, head) >= 0.0
 
 
 def test_an_unloaded_instant_has_no_arrow_but_its_value() -> None:
@@ -113,8 +241,8 @@ def test_a_slope_is_drawn_as_steep_as_it_is_and_the_weight_points_down() -> None
     first, last = drawing.bodies.places[[0, np.argmax(mesh.nodes @ [1.0, -10.0])]]
     assert np.arctan2(*(last - first)[::-1]) == pytest.approx(angle, abs=0.02)
     arrow = of_color(drawing, FORCE)[0]
-    assert np.asarray(arrow.x)[0] == pytest.approx(np.asarray(arrow.x)[1], abs=1e-9)
-    assert np.asarray(arrow.y)[1] < np.asarray(arrow.y)[0]
+    assert np.asarray(arrow.dx)[:2] == pytest.approx([0.0, 0.0], abs=1e-6)
+    assert np.asarray(arrow.dy)[:2] == pytest.approx([0.0, -ARROW])
     assert says(drawing) == {"W": "1 kN"}
 
 
@@ -128,7 +256,7 @@ def test_displacements_are_magnified_as_one_chooses() -> None:
     assert fitted.bodies is not None
     assert chosen.bodies is not None
     moved = [drawing.bodies.places[:, 0] - mesh.nodes[:, 0] for drawing in (fitted, chosen)]
-    assert moved[1] == pytest.approx(moved[0] * 1000.0 / fitted.kept, rel=1e-3, abs=1e-6)
+    assert moved[1] == pytest.approx(moved[0] * 1000.0 / fitted.kept.factor, rel=1e-3, abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -159,11 +287,11 @@ def test_sides_are_held_as_they_say(kind: str, how: set[str]) -> None:
 
 
 def test_a_hatch_lies_behind_its_edge() -> None:
-    edge = sketch.line((0.0, 0.0), (1.0, 0.0))
-    below, above = (sketch.hatched(edge, 0.1, behind) for behind in (-1.0, 1.0))
-    assert np.nanmin(below[:, 1]) == pytest.approx(-0.1)
-    assert np.nanmax(below[:, 1]) == 0.0
-    assert np.nanmax(above[:, 1]) == pytest.approx(0.1)
+    edge = sketch.line([(0.0, 0.0), (1.0, 0.0)])
+    below, above = (sketch.hatched(edge, 5, behind) for behind in (-1.0, 1.0))
+    assert np.nanmin(below[:, 3]) == pytest.approx(-sketch.DEPTH)
+    assert np.nanmax(below[:, 3]) == 0.0
+    assert np.nanmax(above[:, 3]) == pytest.approx(sketch.DEPTH)
 
 
 def marks(drawing: Drawing | None) -> Sequence[Any]:

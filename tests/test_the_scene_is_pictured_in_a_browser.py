@@ -34,18 +34,19 @@ def place(page: Page, name: str, share: float) -> tuple[float, float]:
 def load_arrow(page: Page) -> list[float]:
     """Give the tail and the head of the handle of the peak load, on the screen."""
     comes_true(
-        page, f"() => {{{MODEL}; return model('scene.handles')?.data.setting.includes('peak')}}"
+        page,
+        f"() => {{{MODEL}; return model('scene.handles.drawn')?.data.setting.includes('peak')}}",
     )
     found: list[float] = page.evaluate(
         f"() => {{{MODEL}"
         """
-          const source = model("scene.handles"), {ends, setting} = source.data
+          const source = model("scene.handles.drawn"), {xs, ys, setting} = source.data
           const [figure] = source.document.roots()
           const view = Bokeh.index.find_one_by_id(figure.id)
           const {left, top} = view.canvas_view.el.getBoundingClientRect()
-          const {x_scale, y_scale} = view.frame, first = 4 * setting.indexOf("peak")
-          return [...ends.slice(first, first + 4)].map((place, i) =>
-            i % 2 ? top + y_scale.compute(place) : left + x_scale.compute(place))
+          const {x_scale, y_scale} = view.frame, own = setting.indexOf("peak")
+          return [0, 1].flatMap((end) =>
+            [left + x_scale.compute(xs[own][end]), top + y_scale.compute(ys[own][end])])
         }"""
     )
     return found
@@ -152,12 +153,12 @@ def test_a_narrow_window_sees_the_run_first_with_all_tabs_and_no_word_is_cut_bef
         page,
         f"() => {{{MODEL}"
         """
-          const words = model("scene.words"), [figure] = words.document.roots()
+          const words = model("scene.words.drawn"), [figure] = words.document.roots()
           const view = Bokeh.index.find_one_by_id(figure.id), {y, up} = words.data
           const {glyph} = figure.renderers.find(({glyph}) => glyph.type === "Text")
           const size = parseInt(glyph.text_font_size.value), {y_scale} = view.frame
           const above = {bottom: 1, middle: 0.5, top: 0}
           return size >= 20 && y.length
-            && [...y].every((at, i) => y_scale.compute(at) >= above[up[i]] * 1.4 * size)
+            && [...y].every((at, i) => y_scale.compute(at) >= above[up[i]] * 1.25 * size)
         }""",
     )

@@ -100,7 +100,7 @@ def test_handles_end_at_the_heads_of_arrows_and_grow_along_them(
     settings = {name for _, name in acts_of(shown.run.settings)}
     heads = np.concatenate(
         [
-            np.stack([curve.x, curve.y], axis=1)
+            np.stack([curve.x, curve.y, curve.dx, curve.dy], axis=1)
             for curve in drawing.curves
             if curve.color in (FORCE, GIVEN)
         ]
@@ -128,7 +128,7 @@ def test_the_break_is_where_its_handle_is() -> None:
 def test_a_deeper_gap_is_a_smaller_radius() -> None:
     drawing = picture.draw(looked_at("block"), None)
     for handle in (one for one in drawing.handles if one.setting == "radius"):
-        assert handle.ends[1, 1] > handle.ends[0, 1]
+        assert handle.ends[1, 3] > handle.ends[0, 3]
         assert handle.rate > 0.0
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from bokeh.models import (
@@ -34,22 +35,46 @@ from app.views.drawing import View
 from app.views.legend import card_title
 
 FIT = """
-const [left, right, low, high] = box.data.edge
+const [left, right, low, high, ...rooms] = box.data.edge
 if (figure.properties.inner_width.is_unset) { return }
 const wide = figure.inner_width, tall = figure.inner_height
 if (!(wide > 1 && tall > 1 && right > left)) { return }
-const scale = Math.max((right - left) / wide, (high - low) / (tall - above))
-const x = 0.5 * (left + right), y = 0.5 * (low + high + scale * above)
-const put = (range, middle, size) => {
-  const values = {start: middle - 0.5 * scale * size, end: middle + 0.5 * scale * size}
+// Words have the size of type; of the rest, what is beside the bodies takes what these leave.
+const line = words ? LINE * parseFloat(words.text_font_size.value) / 13 : 0
+const [, , under = 0, over = 0, lines_under = 0, lines_over = 0, flattest = 0] = rooms
+const aside = under + over, inner = tall - line * (lines_under + lines_over)
+const wanted = flattest ? 0.45 * inner : (high - low) * wide / (right - left)
+const unit = Math.max(Math.min((inner - wanted) / (aside || 1), wide / 400, 1.6), 0.5)
+const [before, after, below, above] = [0, 0, lines_under, lines_over].map((count, side) =>
+  unit * rooms[side] + line * count)
+const fits = (size, whole, room) => size / Math.max(whole - room, 0.2 * whole)
+let across = fits(right - left, wide, before + after), up = fits(high - low, tall, below + above)
+if (flattest) { up = Math.max(up, flattest / unit) }
+else { across = up = Math.max(across, up) }
+const put = (range, low, high, scale, whole, first, last) => {
+  const start = low - scale * (first + 0.5 * (whole - first - last - (high - low) / scale))
+  const values = {start, end: start + scale * whole}
   if (range.held) { range.held = values } else { range.setv(values, {sync: false}) }
 }
-put(figure.x_range, x, wide)
-put(figure.y_range, y, tall)
+put(figure.x_range, left, right, across, wide, before, after)
+put(figure.y_range, low, high, up, tall, below, above)
+box.per = [unit * across, unit * up]
+for (const one of shifted) { one.properties.data.change.emit() }
 """
 """Makes both axes of one scale, however large the plot is; not while one has zoomed in."""
-LINE = 10
-"""Pixels left above, as words do not shrink with a picture and are larger for a projector."""
+LINE = 17
+"""Height of a line of words, px, in type of 13."""
+SHIFT = """
+if (!box.per) { return }
+const {dx, dy, ...data} = given.data, [x, y] = "xs" in data ? ["xs", "ys"] : ["x", "y"]
+const moved = (own, by, per) =>
+  own.map((at, i) => at + per * (by.length === 1 ? by[0] : by[i]))
+const put = (own, by, per) => x === "x" ? moved(own, by, per)
+  : own.map((one, i) => moved(one, by[i], per))
+drawn.setv({data: {...data, [x]: put(data[x], dx, box.per[0]), [y]: put(data[y], dy, box.per[1])}},
+  {sync: false})
+"""
+"""Puts what a picture gives beside its place to where it is drawn, in the scale that there is."""
 SHADES = 180
 FONT = "Roboto, sans-serif"
 """The colours of words follow the theme: the style sheet has them."""
@@ -61,21 +86,37 @@ def make_figure(view: View) -> Plot:
     made = _axes(view)
     if plot.palette:
         _add_colors(made, view)
-    if plot.equal:
-        box = ColumnDataSource({"edge": []}, name=f"{slug}.box")
-        above = LINE if plot.words else 0
-        fit = CustomJS(args={"figure": made, "box": box, "above": above}, code=FIT)
-        box.js_on_change("data", fit)
-        made.js_on_change("inner_width", fit)
-        made.js_on_change("inner_height", fit)
-    _add_curves(made, view)
-    if plot.words:
-        _add_words(made, view)
+    drawn = {"curves": _add_curves(made, view)}
+    words = _words() if plot.words else None
+    if words is not None:
+        drawn["words"] = _empty(f"{slug}.words.drawn", "x", "y", "text", "across", "up")
+        made.add_glyph(drawn["words"], words)
     if plot.is_touched:
-        held = _empty(f"{slug}.handles", "ends", "setting", "value", "rate")
+        names = "xs", "ys", "setting", "value", "rate", "is_metric"
+        held = drawn["handles"] = _empty(f"{slug}.handles.drawn", *names)
         contacts = _empty(f"{slug}.contacts", "xs", "ys", "name")
         made.tags = [*made.tags, held, contacts, _empty(f"{slug}.along", "x")]
+    if plot.equal:
+        _fit(made, view, words, drawn if plot.words else {})
     return made
+
+
+def _fit(made: Plot, view: View, words: Text | None, drawn: Mapping[str, ColumnDataSource]) -> None:
+    """Have what is to be seen fill the figure, and what is drawn beside its place keep its size."""
+    box = ColumnDataSource({"edge": []}, name=f"{view.slug}.box")
+    shifted = []
+    for name, source in drawn.items():
+        given = _empty(f"{view.slug}.{name}", *map(str, source.data), "dx", "dy")
+        args = {"given": given, "drawn": source, "box": box}
+        given.js_on_change("data", CustomJS(args=args, code=SHIFT))
+        shifted.append(given)
+    known: dict[str, Any] = {"figure": made, "box": box, "words": words, "shifted": shifted}
+    fit = CustomJS(args=known, code=FIT.replace("LINE", str(LINE)))
+    box.js_on_change("data", fit)
+    for name in ("inner_width", "inner_height"):
+        made.js_on_change(name, fit)
+    if words is not None:
+        words.js_on_change("text_font_size", fit)
 
 
 def _axes(view: View) -> Plot:
@@ -134,12 +175,13 @@ def _axis(name: str, label: str, view: View) -> Axis:
     return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
 
 
-def _add_curves(made: Plot, view: View) -> None:
-    """Add one glyph for all curves, and one for each kind of marks."""
+def _add_curves(made: Plot, view: View) -> ColumnDataSource:
+    """Add one glyph for all curves, whose source is given, and one for each kind of marks."""
     slug = view.slug
     names = ("xs", "ys", "color", "width", "alpha", "dash", "name")
     lines = MultiLine(line_color="color", line_width="width", line_alpha="alpha", line_dash="dash")
-    made.add_glyph(_empty(f"{slug}.curves", *names), lines)
+    drawn = _empty(f"{slug}.curves.drawn" if view.plot.words else f"{slug}.curves", *names)
+    made.add_glyph(drawn, lines)
     for marks in view.plot.marks:
         is_ring = marks.kind == "ring"
         glyph = Scatter(
@@ -150,18 +192,19 @@ def _add_curves(made: Plot, view: View) -> None:
             line_width=2,
         )
         made.add_glyph(_empty(f"{slug}.{marks.kind}", "x", "y"), glyph)
+    return drawn
 
 
-def _add_words(made: Plot, view: View) -> None:
-    source = _empty(f"{view.slug}.words", "x", "y", "text", "across", "up")
-    glyph = Text(
+def _words() -> Text:
+    return Text(
         text_align="across",
         text_baseline="up",
         text_font={"value": FONT},
         text_font_size="13px",
         text_font_style="bold",
+        text_line_height=1.25,
+        background_fill_alpha=0.75,
     )
-    made.add_glyph(source, glyph)
 
 
 def _add_colors(made: Plot, view: View) -> None:

@@ -108,7 +108,7 @@ export function render({model}) {
     words.properties.text.change.connect(write)
     write()
     describe(element, slug)
-    const [bodies, held, ...parts] = ["bodies", "handles", "along", "contacts"].map((one) =>
+    const [bodies, held, ...parts] = ["bodies", "handles.drawn", "along", "contacts"].map((one) =>
       made.get_model_by_name(`${slug}.${one}`))
     const choose = chooses ? listen(plot, chooses, bodies) : null
     if (held) {
@@ -181,11 +181,13 @@ export function render({model}) {
   // They do not reach glyphs and the scale of colours.
   const dress = (card) => {
     const size = `${Math.round(13 * model.magnified)}px`, {color} = getComputedStyle(root)
+    const paper = getComputedStyle(root).getPropertyValue("--mui-palette-background-paper").trim()
     const worn = `${size} ${color}`, {plot} = card
     if (card.worn === worn) { return }
     card.worn = worn
     for (const {glyph} of plot.renderers.filter(({glyph}) => glyph.type === "Text")) {
-      glyph.setv({text_font_size: {value: size}, text_color: {value: color}})
+      glyph.setv({text_font_size: {value: size}, text_color: {value: color},
+        background_fill_color: {value: paper}})
     }
     for (const one of plot.right) {
       one.setv({title_text_color: color, title_text_font_size: size,

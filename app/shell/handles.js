@@ -10,8 +10,8 @@ function handles(place, plot, source, model, tap) {
   const tell = (value) => model.send_msg({
     kind: "drag", value: {name: held.setting, value, hand: true, count: performance.now()},
   })
-  // Where ends in metres are on the screen: the first, the direction, the length, pixels a metre.
-  const placed = ([x, y, across, up]) => {
+  // Where ends are on the screen: the first, the direction, the length, pixels a metre.
+  const placed = ([[x, across], [y, up]]) => {
     const view = Bokeh.index.find_one_by_id(plot.id), {x_scale, y_scale} = view.frame
     const {left, top} = view.canvas_view.el.getBoundingClientRect()
     const from = [left + x_scale.compute(x), top + y_scale.compute(y)]
@@ -24,17 +24,18 @@ function handles(place, plot, source, model, tap) {
     (clientX - x) * unit[0] + (clientY - y) * unit[1]
   // Of all handles that the page has a slider for, the one at a pointer.
   const near = (event) => {
-    const {ends, setting, value, rate} = source.data
+    const {xs, ys, setting, value, rate, is_metric} = source.data
     let best = null, least = NEAR
     setting.forEach((name, i) => {
       if (!(name in model.sliders)) { return }
-      const own = ends.slice(4 * i, 4 * i + 4), {from, unit, length} = placed(own)
+      const own = [xs[i], ys[i]], {from, unit, length, metre} = placed(own)
       const on = Math.min(Math.max(way(event, from, unit), 0), length)
       const far = Math.hypot(
         event.clientX - from[0] - on * unit[0], event.clientY - from[1] - on * unit[1])
       if (far < least) {
         least = far
-        best = {setting: name, value: value[i], rate: rate[i], ends: own}
+        const per = is_metric[i] ? rate[i] / metre : rate[i]
+        best = {setting: name, value: value[i], per, ends: own}
       }
     })
     return best
@@ -61,9 +62,9 @@ function handles(place, plot, source, model, tap) {
   const move = (event) => {
     const item = model.sliders[held.setting]
     if (!item) { return release(event) }
-    const {unit, metre} = placed(held.ends), longer = way(event, held.at, unit)
+    const {unit} = placed(held.ends), longer = way(event, held.at, unit)
     const start = item.log ? Math.log10(held.value) : held.value
-    const value = settled(item, start + held.rate * longer / metre)
+    const value = settled(item, start + held.per * longer)
     const [low, high] = [Math.min(item.start, held.value), Math.max(item.end, held.value)]
     const wanted = Math.min(Math.max(value, low), high)
     show(event, {...held, value: wanted}, longer)

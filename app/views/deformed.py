@@ -7,7 +7,7 @@ import numpy as np
 from app.picture.portrait import rims
 from app.picture.shown import Mesh
 from app.views.colors import GHOST, GREY
-from app.views.drawing import Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, is_plane
+from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, is_plane
 from app.views.legend import Key
 from app.views.scales import around, decimal_scale, round_up
 from solver.arrays import Array
@@ -78,12 +78,14 @@ def sizes_of(scene: Scene) -> Array:
     return np.asarray(np.max([one.max(axis=0) for one in nodes], axis=0))
 
 
-def _box(scene: Scene, reach: float) -> tuple[float, float, float, float]:
+def _box(scene: Scene, reach: float) -> Box:
     """Give room for the bodies, and for where they may move to."""
     assert scene.run.stand.mesh is not None
     (left, low), (right, high) = scene.run.stand.mesh.nodes.min(axis=0), sizes_of(scene)
     margin = 0.02 * float(right - left) + reach
-    return float(left - margin), float(right + margin), float(low - margin), float(high + margin)
+    return Box(
+        float(left - margin), float(right + margin), float(low - margin), float(high + margin)
+    )
 
 
 def fitting(mesh: Mesh, largest: float, present: float = 1.0) -> float:

@@ -47,6 +47,8 @@ class Scene:
         Whether `before` is a run A, which goes in step with the run at work, B.
     shadow
         The iterate of `before` that is drawn beside that of the run at work.
+    is_held
+        Whether a hand moves a slider, so that what is seen is to keep its scale.
     """
 
     run: Recording
@@ -57,6 +59,7 @@ class Scene:
     look: Look
     is_paired: bool = False
     shadow: Frame | None = None
+    is_held: bool = False
 
     @property
     def name(self) -> str:
@@ -90,7 +93,13 @@ class Scene:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One line through points; a NaN interrupts it."""
+    """One line through points; a NaN interrupts it.
+
+    Attributes
+    ----------
+    dx, dy
+        Pixels that it lies right of and above them, one or one of each point.
+    """
 
     x: ArrayLike
     y: ArrayLike
@@ -99,6 +108,8 @@ class Curve:
     dash: str = "solid"
     alpha: float = 1.0
     name: str = ""
+    dx: ArrayLike = 0.0
+    dy: ArrayLike = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +124,21 @@ class Marks:
 
 @dataclass(frozen=True)
 class Word:
-    """A value beside what it belongs to, and how it is aligned there, across and up."""
+    """A value beside what it belongs to, and how it is aligned there, across and up.
 
-    x: ArrayLike
-    y: ArrayLike
+    Attributes
+    ----------
+    dx, dy
+        Pixels that it stands right of and above its place.
+    """
+
+    x: float
+    y: float
     text: str
     across: str = "left"
     up: str = "middle"
+    dx: float = 0.0
+    dy: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +152,31 @@ class Image:
     height: float
 
 
+@dataclass(frozen=True)
+class Box:
+    """What is to be seen of bodies, to one scale.
+
+    Attributes
+    ----------
+    left, right, low, high
+        Its ends, m.
+    room
+        Pixels left, right, below and above that are kept free for what has a size of its own.
+    lines
+        Lines of words below and above these.
+    flattest
+        Metres up in a pixel, at least, where heights are not to scale; 0 where they are.
+    """
+
+    left: float
+    right: float
+    low: float
+    high: float
+    room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    lines: tuple[int, int] = (0, 0)
+    flattest: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class QuadMesh:
     """Quadrilaterals: corners (n_quads, 4), places (n_nodes, 2), values (n_quads,).
@@ -140,7 +184,7 @@ class QuadMesh:
     Attributes
     ----------
     box
-        Left, right, low and high end of what is to be seen, to one scale.
+        What is to be seen.
     along
         Position of each along the undeformed body, shape (n_quads,), m, where it can be chosen.
     """
@@ -148,7 +192,7 @@ class QuadMesh:
     corners: NDArray[np.int32]
     places: NDArray[np.float32]
     values: NDArray[np.float32]
-    box: tuple[float, float, float, float]
+    box: Box
     along: NDArray[np.float32] | None = None
 
 

@@ -17,7 +17,7 @@ class Key:
     ----------
     mark
         "line", "dashed", "dotted", "thin", "band", "square", "front" (a line on a square), "dot",
-        "ring", "cross", or "bare" for none.
+        "ring", "cross", "strip" (of many colours), or "bare" for none.
     """
 
     color: str

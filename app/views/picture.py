@@ -2,283 +2,210 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.picture.portrait import Portrait, Pose
-from app.views import sketch
-from app.views.colors import BACKWARD, FORCE, FORWARD, GHOST, GIVEN, GREY, VERMILION, shaded
+from app.picture.portrait import THICKNESS, Portrait
+from app.views import acting
+from app.views.acting import Arrow
+from app.views.colors import (
+    BACKWARD,
+    FORCE,
+    FORWARD,
+    GHOST,
+    GIVEN,
+    GREY,
+    STICK,
+    VERMILION,
+    shaded,
+)
 from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
-from app.views.drawing import Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, Word
-from app.views.handles import Handle, choices, on_arrow, on_bodies
+from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, Scene, View
+from app.views.handles import Handle, on_arrow, on_bodies
+from app.views.held import WALL, held, room_of
 from app.views.legend import Key
-from app.views.scales import decimal_scale
+from app.views.posed import Posed
+from app.views.scales import decimal_scale, round_up
 from solver.arrays import Array
-from solver.discrete.structure import OUTWARD, Act, Hold, ends_of
+from solver.discrete.structure import OUTWARD, Act
 from solver.scenes import behind
 from solver.settings import Settings
 
-ARROW = 0.17
-"""Length of the largest arrow, as a share of the size of what is drawn."""
-LEAST = 0.02
-"""Share of its largest value below which an arrow is not drawn."""
-HATCH, ROOM, WORDS = 0.03, 0.06, 0.48
-"""Depth of a hatch, room around what is drawn, and for words beside it; shares of the size."""
-DEEPEST = 0.2
-"""Gap below a body that is drawn at most, as a share of the size."""
+MARGIN = 6.0
+"""Pixels that are left free on every side."""
+THICKEST, LAYER = 72.0, 32.0
+"""Pixels of the thickness of a rod, and of a layer, at most; neither is to scale."""
 SHADES = shaded(64)
-SLIPS = ((-1, BACKWARD), (1, FORWARD))
+STEPS = 0.01, 0.02, 0.03, 0.045, 0.06, 0.09
+"""Shares of the bodies' size that displacements usually take."""
+STATUSES = ((0, STICK, "stick"), (-1, BACKWARD, "slip −"), (1, FORWARD, "slip +"))
+FEW_BODIES = 8
+"""Bodies above each other with room for a broad band between them."""
 
 
-def draw(scene: Scene, kept: float | None) -> Drawing:
+@dataclass(frozen=True)
+class Scale:
+    """What a picture keeps for the next: the factor on displacements, and how far these reach, m.
+
+    The reach is a share of the bodies' size as it is drawn.
+    """
+
+    factor: float
+    reach: float
+
+
+def draw(scene: Scene, kept: Scale | None) -> Drawing:
     """Draw the scene at the chosen instant; displacements are magnified until they show."""
-    portrait, pose = scene.run.stand.portrait, scene.frame.pose
-    factor = scene.look.magnification
-    fit = fitting(portrait.mesh, pose.largest, kept or 1.0)
-    artist = _Artist(portrait, pose, factor or fit, float(scene.run.stand.instants[scene.instant]))
-    acts = portrait.described.acts
-    strokes = [Curve(*artist.placed(one), GREY, 1, "dotted") for one in artist.outlines()]
-    strokes += [Curve(*artist.placed(one), GREY, 1.5) for one in artist.held()]
-    last = int(portrait.mesh.parts.max())
-    words: list[Word] = []
-    arrows = []
-    for act in acts:
-        color = GIVEN if act.unit == "m" else FORCE
-        own, found = artist.arrows(act)
-        arrows.append((act, own))
-        drawn = sketch.joined(sketch.arrow(tail, head, artist.size) for tail, head in own)
-        strokes.append(Curve(*artist.placed(drawn), color, 2.5))
-        words += [Word(*artist.placed(place), text, *align) for place, text, align in found]
-    settings = scene.run.settings
-    if settings.applies("pgd_modes") and last:
-        chosen = scene.look.substructure
-        part = last if chosen is None else min(chosen, last)
-        strokes += [Curve(*artist.placed(one), VERMILION, 2.5) for one in artist.outline_of(part)]
-    outlines, ghosts = ghosts_of(scene, factor or fit)
-    strokes += [Curve(*artist.placed(one), GHOST, 1.5) for one in outlines]
-    place = scene.look.place
+    portrait = scene.run.stand.portrait
+    scale = _scale(scene, kept)
+    instant = float(scene.run.stand.instants[scene.instant])
+    posed = Posed(portrait, scene.frame.pose, scale.factor, instant)
+    acts = posed.described.acts
+    arrows = [(act, acting.arrows(posed, act)) for act in acts]
+    outlines, ghosts = ghosts_of(scene, scale.factor)
+    last, place = int(portrait.mesh.parts.max()), scene.look.place
     if place is not None:
-        strokes.append(Curve(*artist.placed(artist.across(place)), VERMILION, 1.5))
-        ghosts = [*ghosts, Key(VERMILION, "line", f"x = {place:.3g} m")]
-    width = 7 if portrait.chains.max() == 0 else 4
-    slips = [Curve(*artist.placed(artist.band(status)), color, width) for status, color in SLIPS]
+        unit, name = decimal_scale(posed.length, "m")
+        ghosts = [*ghosts, Key(VERMILION, "line", f"x = {place / unit:.3g} {name}")]
+    box = _box(posed, scale.reach * posed.size, sizes_of(scene))
     return Drawing(
         bodies=QuadMesh(
             portrait.mesh.quads,
-            np.stack(artist.placed(artist.nodes), axis=1).astype(np.float32),
+            posed.placed(posed.nodes).astype(np.float32),
             portrait.mesh.parts.astype(np.float32),
-            artist.box(acts, reach_of(scene), sizes_of(scene)),
+            box,
             portrait.mesh.nodes[portrait.mesh.quads, 0].mean(axis=1),
         ),
         colors=Colors(0, max(last, 1)),
-        curves=[*strokes, *slips],
-        words=words,
-        contacts=artist.contacts(scene.run.stand.interfaces),
-        handles=artist.handles(arrows, scene.run.settings),
-        keys=(*_keys(portrait, factor or fit), *ghosts),
-        kept=fit,
+        curves=[
+            *(posed.curve(one, GREY, 1, dash="dotted") for one in posed.outlines()),
+            *(posed.curve(one, GREY, 1.5) for one in held(posed)),
+            *_bands(posed),
+            *(posed.curve(one, GREY, 2.5) for one in posed.broken()),
+            *(
+                posed.curve(acting.stroke(own), GIVEN if act.unit == "m" else FORCE, 2.5)
+                for act, own in arrows
+            ),
+            *_chosen(posed, scene, last),
+            *(posed.curve(one, GHOST, 1.5) for one in outlines),
+        ],
+        words=acting.words(posed, box),
+        contacts=posed.contacts(scene.run.stand.interfaces),
+        handles=_handles(posed, portrait, arrows, scene.run.settings),
+        keys=(*_keys(posed, last + 1), *ghosts),
+        kept=scale,
     )
 
 
-def _keys(portrait: Portrait, factor: float) -> tuple[Key, ...]:
-    keys = [Key(BACKWARD, "square", "slip −"), Key(FORWARD, "square", "slip +")]
-    keys.append(Key(GREY, "bare", f"displacement × {factor:g}"))
-    if portrait.described.height is None:
+def _scale(scene: Scene, kept: Scale | None) -> Scale:
+    """Give the scale of what is seen; while a hand moves a slider, the one that there is."""
+    portrait, chosen = scene.run.stand.portrait, scene.look.magnification
+    size = max(portrait.size)
+    factor = chosen or (kept.factor if kept else 1.0)
+    if chosen is None and not (kept and scene.is_held):
+        factor = fitting(portrait.mesh, scene.frame.pose.largest, factor)
+    share = factor * reach_of(scene) / size
+    least = kept.reach if kept and (scene.is_held or share >= 0.4 * kept.reach) else 0.0
+    return Scale(factor, least if share <= least else _stepped(share))
+
+
+def _stepped(share: float) -> float:
+    """Give the next of a few values, so that what is seen changes seldom."""
+    return next((step for step in STEPS if share <= step), round_up(share))
+
+
+def _box(posed: Posed, moves: float, sizes: Array) -> Box:
+    """Give what is seen at any instant, of bodies that move so far and end at these sizes, m."""
+    described = posed.described
+    sides = dict.fromkeys(OUTWARD, moves)
+    if described.height is None:
+        sides["top"] = sides["bottom"] = 0.0
+    rooms = dict.fromkeys(OUTWARD, MARGIN)
+    for hold in described.holds:
+        rooms[hold.side] = max(rooms[hold.side], MARGIN + room_of(hold))
+        if hold.kind == "clamp" and hold.moved is None:
+            sides[hold.side] = 0.0
+        elif hold.kind == "support":
+            gap = posed.gap()
+            sides["bottom"] = 0.0 if gap is None else float(gap.max())
+        elif hold.kind == "spring":
+            sides["right"] += WALL * posed.size
+    for act in described.acts:
+        if (side := acting.side_of(act)) in rooms:
+            rooms[side] = max(rooms[side], MARGIN + acting.room_of(act))
+    left, low = -sides["left"], -sides["bottom"]
+    right = max(posed.length, float(sizes[0])) + sides["right"]
+    high = max(posed.height, float(sizes[1])) + sides["top"]
+    corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+    angles = np.linspace(float(posed.tilts.min()), float(posed.tilts.max()), 5)
+    found = np.concatenate([posed.turned(corners, float(angle)) for angle in angles])
+    (left, low), (right, high) = found.min(axis=0), found.max(axis=0)
+    if described.tilt is not None:
+        rooms["left"] = rooms["right"] = rooms["bottom"]
+    return Box(
+        float(left),
+        float(right),
+        float(low),
+        float(high),
+        room=(rooms["left"], rooms["right"], rooms["bottom"], rooms["top"]),
+        lines=acting.lines_of(described.acts),
+        flattest=_flattest(posed),
+    )
+
+
+def _flattest(posed: Posed) -> float:
+    """Give the metres up in a pixel at least, of long bodies."""
+    if posed.described.height is None:
+        return THICKNESS * posed.length / THICKEST
+    return posed.height / posed.described.bodies / LAYER if posed.is_long else 0.0
+
+
+def _bands(posed: Posed) -> list[Curve]:
+    """Give bands along contacts, beside a single body and between several."""
+    bodies, is_flat = posed.described.bodies, posed.described.height is None
+    width = 6 if bodies == 1 else 5 if is_flat and bodies <= FEW_BODIES else 3
+    return [posed.curve(posed.band(one), color, width) for one, color, _ in _statuses(posed)]
+
+
+def _statuses(posed: Posed) -> tuple[tuple[int, str, str], ...]:
+    """Give what has a colour: layers upon each other would be hidden by what sticks."""
+    is_stacked = posed.described.bodies > 1 and posed.described.height is not None
+    return STATUSES[1:] if is_stacked else STATUSES
+
+
+def _chosen(posed: Posed, scene: Scene, last: int) -> list[Curve]:
+    """Mark the substructure whose modes are looked at, and the chosen place."""
+    found, look = [], scene.look
+    if scene.run.settings.applies("pgd_modes") and last:
+        part = last if look.substructure is None else min(look.substructure, last)
+        found.append(posed.curve(posed.outline_of(part), VERMILION, 2.5))
+    if look.place is not None:
+        found.append(posed.curve(posed.across(look.place), VERMILION, 1.5))
+    return found
+
+
+def _handles(
+    posed: Posed,
+    portrait: Portrait,
+    arrows: Sequence[tuple[Act, Sequence[Arrow]]],
+    settings: Settings,
+) -> list[Handle]:
+    """Give what can be dragged, with the arrows of what acts, where it lies on the page."""
+    found, names = list(on_bodies(portrait, settings, posed.gap())), behind(settings)
+    for act, own in arrows:
+        if act.where in names:
+            found += [on_arrow(names[act.where], settings, one.stroke) for one in own]
+    return [replace(one, ends=posed.placed(one.ends)) for one in found]
+
+
+def _keys(posed: Posed, parts: int) -> tuple[Key, ...]:
+    keys = [Key(color, "square", text) for _, color, text in _statuses(posed)]
+    keys.append(Key(GREY, "bare", f"displacement × {posed.factor:g}"))
+    if posed.is_long:
         keys.append(Key(GREY, "bare", "thickness not to scale"))
-    return tuple(keys)
-
-
-class _Artist:
-    """Draws one instant, in the axes of the bodies; `placed` turns them as they lie."""
-
-    def __init__(self, portrait: Portrait, pose: Pose, factor: float, time: float) -> None:
-        self._portrait, self._pose, self._factor, self._time = portrait, pose, factor, time
-        self._described = portrait.described
-        self._length, self._height = portrait.size
-        self.size = max(portrait.size)
-        tilt = self._described.tilt
-        self._tilts = np.zeros(1) if tilt is None else tilt
-        self._tilt = float(self._now(tilt)) if tilt is not None else 0.0
-        self.nodes: Array = portrait.mesh.nodes + np.float32(factor) * pose.displacement
-
-    def placed(self, points: Array) -> tuple[Array, Array]:
-        """Give x and y of points on the page."""
-        found = sketch.turned(np.asarray(points, dtype=np.float64), self._tilt)
-        return found[..., 0], found[..., 1]
-
-    def box(
-        self, acts: Sequence[Act], reach: float, sizes: Array
-    ) -> tuple[float, float, float, float]:
-        """Give the ends of what is seen at any instant.
-
-        Nothing moves farther than the reach, m, and no body ends beyond the sizes, (2,), m.
-        """
-        moves = self._factor * reach
-        sides = dict.fromkeys(OUTWARD, (ROOM + HATCH) * self.size + moves)
-        gap = self._gap()
-        if gap is not None:
-            sides["bottom"] = float(gap.max()) + 2 * HATCH * self.size
-        for act in acts:
-            side = next(name for name, away in OUTWARD.items() if away == act.away)
-            words = WORDS * self.size if side in ("left", "right") else 0.0
-            sides[side] = max(sides[side], (ARROW + ROOM) * self.size + words + moves)
-        left, low = -sides["left"], -sides["bottom"]
-        right = max(self._length, float(sizes[0])) + sides["right"]
-        high = max(self._height, float(sizes[1])) + sides["top"]
-        corners = np.array([[left, low], [right, low], [right, high], [left, high]])
-        angles = np.linspace(float(self._tilts.min()), float(self._tilts.max()), 5)
-        found = np.concatenate([sketch.turned(corners, float(angle)) for angle in angles])
-        (left, low), (right, high) = found.min(axis=0), found.max(axis=0)
-        return float(left), float(right), float(low), float(high)
-
-    def outlines(self) -> Iterator[Array]:
-        """Give the undeformed bodies."""
-        nodes = self._portrait.mesh.nodes[self._portrait.mesh.quads]
-        for body in nodes.reshape(self._described.bodies, -1, 2):
-            (left, low), (right, high) = body.min(axis=0), body.max(axis=0)
-            yield sketch.line((left, low), (right, low), (right, high), (left, high), (left, low))
-
-    def outline_of(self, part: int) -> Iterator[Array]:
-        """Give the deformed edge of a substructure: sides that only one of its quads has."""
-        quads = self._portrait.mesh.quads[self._portrait.mesh.parts == part]
-        sides = np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2)
-        _, first, counts = np.unique(
-            np.sort(sides, axis=1), axis=0, return_index=True, return_counts=True
-        )
-        yield sketch.joined(self.nodes[sides[first[counts == 1]]])
-
-    def held(self) -> Iterator[Array]:
-        """Give what holds the bodies: supports, clamps, rollers, a spring."""
-        draws = {
-            "clamp": self._clamp,
-            "rollers": self._rollers,
-            "support": self._support,
-            "spring": self._spring,
-        }
-        for hold in self._described.holds:
-            yield from draws[hold.kind](hold)
-
-    def _ends(self, hold: Hold) -> Array:
-        """Give both ends of the part of a side that is held, undeformed, shape (2, 2), m."""
-        first, last = ends_of(hold.side) * [self._length, self._height]
-        return np.array([first + share * (last - first) for share in hold.stretch])
-
-    def _clamp(self, hold: Hold) -> Iterator[Array]:
-        depth, ends = HATCH * self.size, self._ends(hold)
-        if self._described.height is None:
-            ends += [[0.0, -depth], [0.0, depth]]
-        if hold.moved is not None:
-            ends[:, 0] += self._factor * float(self._now(hold.moved))
-        yield sketch.hatched(ends, depth, 1.0 if hold.side in ("left", "top") else -1.0)
-
-    def _rollers(self, hold: Hold) -> Iterator[Array]:
-        depth = HATCH * self.size
-        first, last = self._ends(hold) + 0.5 * depth * np.array(OUTWARD[hold.side])
-        yield sketch.rollers(first, last, 0.5 * depth)
-
-    def _support(self, hold: Hold) -> Iterator[Array]:
-        edge, gap = self._ends(hold), self._gap()
-        if gap is not None:
-            x = np.linspace(0.0, self._length, len(gap))
-            edge = np.stack([x, -gap], axis=1)
-            beyond = ROOM * self.size + self._factor * self._pose.largest
-            aside = np.array([[beyond, 0.0]])
-            edge = np.concatenate([edge[:1] - aside, edge, edge[-1:] + aside])
-        yield sketch.hatched(edge, HATCH * self.size)
-
-    def _spring(self, hold: Hold) -> Iterator[Array]:
-        depth, foot = HATCH * self.size, self._ends(hold)[:1]
-        wall = foot[0] + [0.25 * self.size, depth]
-        yield sketch.spring(self._moved(foot)[0] + [0.0, depth], wall, 0.5 * depth)
-        half = np.array([0.0, depth])
-        yield sketch.hatched(np.stack([wall - half, wall + half]), depth)
-
-    def across(self, place: float) -> Array:
-        """Give a line through all bodies at a place along them, m."""
-        return self._moved(np.array([[place, 0.0], [place, self._height]]))
-
-    def contacts(self, names: Sequence[str]) -> dict[str, Array]:
-        """Give where interfaces lie, as far as there are several to choose from."""
-        places = self._portrait.places + np.float32(self._factor) * self._pose.slid
-        found = {name: places[self._portrait.chains == number] for number, name in enumerate(names)}
-        return {name: np.stack(self.placed(one), axis=1) for name, one in choices(found).items()}
-
-    def handles(
-        self, arrows: Sequence[tuple[Act, Sequence[Array]]], settings: Settings
-    ) -> list[Handle]:
-        """Give what can be dragged, with the arrows of what acts, where it lies on the page."""
-        found = list(on_bodies(self._portrait, settings, self._gap()))
-        names = behind(settings)
-        for act, own in arrows:
-            if act.where in names:
-                found += [on_arrow(names[act.where], settings, arrow, self.size) for arrow in own]
-        if found:
-            x, y = self.placed(np.stack([one.ends for one in found]))
-            ends = np.stack([x, y], axis=2)
-            found = [replace(one, ends=own) for one, own in zip(found, ends, strict=True)]
-        return found
-
-    def arrows(self, act: Act) -> tuple[list[Array], list[tuple[Array, str, tuple[str, str]]]]:
-        """Give tails and heads of what acts, and the value beside it: place, words, alignment."""
-        peak = float(np.abs(act.values).max())
-        unit, name = decimal_scale(peak, act.unit)
-        now = self._now(act.values)
-        shares = np.broadcast_to(now / peak, len(act.places))
-        places = act.places * [self._length, self._height]
-        towards, away = np.array(act.towards), np.array(act.away)
-        if towards.ndim > 1:
-            towards = self._now(towards)
-        is_aside = np.ndim(act.towards) < 2 and abs(float(towards @ away)) < 0.5
-        ends, drawn, words = [], [], []
-        for place, share in zip(self._moved(places), shares, strict=True):
-            length = ARROW * self.size * float(share) * towards
-            base = place + (0.5 * ROOM * self.size) * away if is_aside else place
-            if is_aside:
-                tail, head = base - 0.5 * length, base + 0.5 * length
-            elif length @ away >= 0.0:
-                tail, head = base, base + length
-            else:
-                tail, head = base - length, base
-            if abs(share) > LEAST:
-                drawn.append(np.stack([tail, head]))
-            outer = base if is_aside else max((tail, head), key=lambda end: float(end @ away))
-            ends.append(outer + 0.25 * ROOM * self.size * away)
-        chosen = range(len(ends)) if np.ndim(now) else [len(ends) // 2]
-        for number in chosen:
-            value = float(np.broadcast_to(now, len(ends))[number]) / unit
-            says = f"{act.symbol} = {sketch.plain(value)} {name}"
-            words.append((ends[number], says, sketch.aligned(act.away)))
-        return drawn, words
-
-    def band(self, status: int) -> Array:
-        """Give the stretches of all contacts that have a status."""
-        pose, portrait = self._pose, self._portrait
-        places = portrait.places + np.float32(self._factor) * pose.slid
-        strokes = []
-        for chain in range(int(portrait.chains.max()) + 1):
-            own = portrait.chains == chain
-            strokes += sketch.stretches(places[own], pose.status[own] == status)
-        return sketch.joined(strokes)
-
-    def _gap(self) -> Array | None:
-        """Give the gap as it is drawn: magnified as displacements are, and at most so deep."""
-        gaps = [hold.gap for hold in self._described.holds if hold.gap is not None]
-        return np.minimum(self._factor * gaps[0], DEEPEST * self.size) if gaps else None
-
-    def _moved(self, places: Array) -> Array:
-        """Give where the nodes nearest to undeformed places have gone, as seen from there."""
-        nodes = self._portrait.mesh.nodes
-        nearest = [int(np.argmin(np.sum((nodes - place) ** 2, axis=1))) for place in places]
-        return np.asarray(places + self._factor * self._pose.displacement[nearest])
-
-    def _now(self, values: Array) -> Array:
-        """Give values over time at the chosen instant."""
-        instants = self._described.instants
-        flat = np.atleast_2d(values)
-        found = np.array([np.interp(self._time, instants, one) for one in flat])
-        return found if values.ndim > 1 else found[0]
+    return (Key(GREY, "strip", f"{parts} substructures"), *keys) if parts > 1 else tuple(keys)
 
 
 VIEW = View(

@@ -202,7 +202,17 @@ class PageRuns:
         if twin is not None:
             shadow, before = twin.keep_frame(look), twin.recording
         past = tuple(self._past)
-        return Scene(run.recording, before, past, frame, instant, look, twin is not None, shadow)
+        return Scene(
+            run.recording,
+            before,
+            past,
+            frame,
+            instant,
+            look,
+            is_paired=twin is not None,
+            shadow=shadow,
+            is_held=run.follows_hand,
+        )
 
     def _words(self, run: WorkerRun, scene: Scene) -> dict[str, str]:
         frame, state, complaint = scene.frame, run.state, self._look.complaint

@@ -12,7 +12,7 @@ import numpy as np
 from app.picture.shown import Look
 from app.views.catalogue import fitting
 from app.views.colors import VERMILION
-from app.views.drawing import POSITION, Axis, Drawing, Image, Marks, QuadMesh, Scene, View
+from app.views.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, Scene, View
 from app.views.legend import card_title
 from app.views.scales import upright
 from app.wire.block import Attributes, Packer, Quads
@@ -93,6 +93,7 @@ def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
         found.update(_axis(name, axis))
     found["curves"] = _curves(drawing)
     if view.plot.words:
+        found["curves"] = {**found["curves"], **_shifts(drawing.curves)}
         found["words"] = _words(drawing)
     if view.plot.is_touched:
         found["handles"], found["contacts"] = _handles(drawing), _contacts(drawing)
@@ -128,12 +129,20 @@ def _curves(drawing: Drawing) -> Attributes:
     }
 
 
+def _shifts(curves: Sequence[Curve]) -> Attributes:
+    """Give the pixels that curves lie beside their places."""
+    return {
+        "dx": [np.atleast_1d(curve.dx) for curve in curves],
+        "dy": [np.atleast_1d(curve.dy) for curve in curves],
+    }
+
+
 def _columns(marks: Sequence[Any], *names: str) -> Attributes:
     return {name: [getattr(mark, name) for mark in marks] for name in names}
 
 
 def _words(drawing: Drawing) -> Attributes:
-    places = _columns(drawing.words, "x", "y")
+    places = _columns(drawing.words, "x", "y", "dx", "dy")
     return {
         **{name: np.array(values, float) for name, values in places.items()},
         **_columns(drawing.words, "text", "across", "up"),
@@ -143,8 +152,11 @@ def _words(drawing: Drawing) -> Attributes:
 def _handles(drawing: Drawing) -> Attributes:
     handles = drawing.handles
     return {
-        "ends": np.array([one.ends for one in handles], float).ravel(),
-        **_columns(handles, "setting", "value"),
+        **{
+            name: [one.ends[:, axis] for one in handles]
+            for axis, name in enumerate(("xs", "ys", "dx", "dy"))
+        },
+        **_columns(handles, "setting", "value", "is_metric"),
         "rate": [float(f"{one.rate:.6g}") for one in handles],
     }
 
@@ -177,4 +189,6 @@ def _bodies(bodies: QuadMesh) -> Iterator[tuple[str, Attributes]]:
     yield "bodies", {"quads": Quads(bodies.corners, bodies.places), "value": bodies.values}
     if bodies.along is not None:
         yield "along", {"x": bodies.along}
-    yield "box", {"edge": list(bodies.box)}
+    box = bodies.box
+    ends = box.left, box.right, box.low, box.high
+    yield "box", {"edge": [*ends, *box.room, *box.lines, box.flattest]}
