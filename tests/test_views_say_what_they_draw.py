@@ -157,6 +157,7 @@ def test_what_is_told_of_a_plot_is_what_it_shows() -> None:
     errors = history.column("error_force")
     assert f"force error from {errors[0]:.2g} to {errors[-1]:.2g}." in said["Convergence"]
     assert "F = " in said["Scene"]
+    assert said["Scene"].startswith("A steel bar lies on a rough table")
 
 
 def test_loads_of_one_symbol_say_where_they_act() -> None:

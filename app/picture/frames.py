@@ -39,6 +39,8 @@ class Stand:
         Of plane bodies.
     wires
         Of a strand.
+    words
+        What the scene is, and what acts on it, in a sentence.
     is_idle
         Whether nothing acts on the structure, so that nothing moves.
     """
@@ -56,6 +58,7 @@ class Stand:
     closed_form: Floats | None
     closed_form_end: Floats | None
     portrait: Portrait
+    words: str
     mesh: Mesh | None = None
     wires: Wires | None = None
     is_idle: bool = False

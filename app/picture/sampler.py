@@ -32,7 +32,7 @@ from solver.discrete.loops import LoopFields
 from solver.latin import Checkpoint, Iterate
 from solver.reduction.svd import friction_spectra
 from solver.reference.solution import Reference
-from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of
+from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 
 
@@ -102,6 +102,7 @@ class Sampler:
             closed_form=None,
             closed_form_end=None,
             portrait=self._geometry.portrait,
+            words=words_of(self._settings),
             mesh=self._mesh.mesh if self._mesh else None,
             wires=self._wires.base if self._wires else None,
             is_idle=nothing_acts(problem),

@@ -124,7 +124,7 @@ def _axes(view: View) -> Plot:
     look, slug = view.plot, view.slug
     made = Plot(
         height=230,
-        min_height=100,
+        min_height=60 if look.words else 100,
         sizing_mode="stretch_both",
         title=None,
         toolbar_location=None,

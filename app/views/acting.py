@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,10 +66,10 @@ def arrows(posed: Posed, act: Act) -> list[Arrow]:
     return found
 
 
-def stroke(found: list[Arrow]) -> Array:
+def stroke(act: Act, found: list[Arrow]) -> Array:
     """Give arrows; what is spread over a side has a line over their tails."""
     strokes = [sketch.arrow(one.place, one.tail, one.head) for one in found]
-    if len(found) > 2:
+    if len(found) > 2 and act.unit != "N":
         outer = [max((one.tail, one.head), key=lambda end: float(np.hypot(*end))) for one in found]
         strokes.append(sketch.line([one.place for one in found], outer))
     return sketch.joined(strokes)
@@ -82,7 +81,7 @@ def words(posed: Posed, box: Box) -> list[Word]:
     rows = {"top": (box.high, above, "bottom"), "bottom": (box.low, -below, "top")}
     columns = {"left": (box.left, GAP - left), "right": (box.right, right - GAP)}
     found = []
-    for (row, column), acts in _said(posed.described.acts).items():
+    for (row, column), acts in _said(posed).items():
         y, dy, up = rows[row]
         texts = [_value(posed, act) for act in acts]
         if column:
@@ -99,20 +98,21 @@ def words(posed: Posed, box: Box) -> list[Word]:
     return found
 
 
-def lines_of(acts: Sequence[Act]) -> tuple[int, int]:
+def lines_of(posed: Posed) -> tuple[int, int]:
     """Give the lines of words below and above the bodies."""
     lines = {"bottom": 0, "top": 0}
-    for (row, column), own in _said(acts).items():
+    for (row, column), own in _said(posed).items():
         lines[row] = max(lines[row], len(own) if column else 1)
     return lines["bottom"], lines["top"]
 
 
-def _said(acts: Sequence[Act]) -> dict[tuple[str, str], list[Act]]:
+def _said(posed: Posed) -> dict[tuple[str, str], list[Act]]:
     """Give what is said in which row, by its column: "" is the middle.
 
-    What acts up or down on an end is said above, if there is room. What acts on the top and on the
-    bottom alike is said once.
+    What acts on an end is said above if that is long, or if it acts up or down, as far as there is
+    room. What acts on the top and on the bottom alike is said once.
     """
+    acts = posed.described.acts
     found: dict[tuple[str, str], list[Act]] = defaultdict(list)
     by_side = {side: [act for act in acts if side_of(act) == side] for side in OUTWARD}
     for act in by_side["top"]:
@@ -122,7 +122,7 @@ def _said(acts: Sequence[Act]) -> dict[tuple[str, str], list[Act]]:
             found["bottom", ""].append(act)
     for side in ("left", "right"):
         for act in by_side[side]:
-            is_above = _is_aside(act) and len(by_side["top"]) < 2
+            is_above = (_is_aside(act) or posed.is_long) and len(by_side["top"]) < 2
             found["top" if is_above else "bottom", side].append(act)
     return found
 

@@ -16,6 +16,8 @@ GHOST = "#9467BD"
 FORCE, GIVEN = "#C24E00", "#A8508A"
 """Of forces and of displacements that are given."""
 BACKWARD, STICK, FORWARD, OPEN = BLUE, "#D9D9D9", "#E69F00", "#4D4D4D"
+SLIP = "Blue slips one way, orange the other."
+"""What these mean, in a sentence."""
 FRONT = "#000000"
 """Of lines on these."""
 VIRIDIS = ("#470e61", "#433d84", "#33628d", "#25828e", "#1fa287", "#42be71", "#91d742", "#d8e219")

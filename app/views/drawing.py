@@ -223,6 +223,8 @@ class Drawing:
     ----------
     keys
         Its legend.
+    sentence
+        What it shows, for whoever sees it for the first time; stands below its name.
     handles
         What can be dragged.
     contacts
@@ -240,6 +242,7 @@ class Drawing:
     bodies: QuadMesh | None = None
     colors: Colors | None = None
     keys: Sequence[Key] = ()
+    sentence: str = ""
     handles: Sequence[Handle] = ()
     contacts: Mapping[str, Array] = field(default_factory=dict)
     kept: Any = None

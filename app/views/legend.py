@@ -25,11 +25,12 @@ class Key:
     text: str
 
 
-def card_title(name: str, keys: Sequence[Key]) -> str:
-    """Write a view's name with its legend beside it (HTML)."""
+def card_title(name: str, keys: Sequence[Key], sentence: str = "") -> str:
+    """Write a view's name with its legend beside it, and a sentence below (HTML)."""
     entries = "".join(
         f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
         f"{explained(escape(key.text))}</span>"
         for key in keys
     )
-    return f"<b>{explained(escape(name))}</b>{entries}"
+    below = f"<p>{escape(sentence)}</p>" if sentence else ""
+    return f"<b>{explained(escape(name))}</b>{entries}{below}"

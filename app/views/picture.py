@@ -17,6 +17,7 @@ from app.views.colors import (
     GHOST,
     GIVEN,
     GREY,
+    SLIP,
     STICK,
     VERMILION,
     shaded,
@@ -24,7 +25,7 @@ from app.views.colors import (
 from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
 from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, Scene, View
 from app.views.handles import Handle, on_arrow, on_bodies
-from app.views.held import WALL, held, room_of
+from app.views.held import BEYOND, WALL, held, room_of
 from app.views.legend import Key
 from app.views.posed import Posed
 from app.views.scales import decimal_scale, round_up
@@ -85,7 +86,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
             *_bands(posed),
             *(posed.curve(one, GREY, 2.5) for one in posed.broken()),
             *(
-                posed.curve(acting.stroke(own), GIVEN if act.unit == "m" else FORCE, 2.5)
+                posed.curve(acting.stroke(act, own), GIVEN if act.unit == "m" else FORCE, 2.5)
                 for act, own in arrows
             ),
             *_chosen(posed, scene, last),
@@ -94,6 +95,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
         words=acting.words(posed, box),
         contacts=posed.contacts(scene.run.stand.interfaces),
         handles=_handles(posed, portrait, arrows, scene.run.settings),
+        sentence=f"{scene.run.stand.words} {SLIP}",
         keys=(*_keys(posed, last + 1), *ghosts),
         kept=scale,
     )
@@ -125,6 +127,8 @@ def _box(posed: Posed, moves: float, sizes: Array) -> Box:
     rooms = dict.fromkeys(OUTWARD, MARGIN)
     for hold in described.holds:
         rooms[hold.side] = max(rooms[hold.side], MARGIN + room_of(hold))
+        if hold.side in ("left", "right"):
+            rooms |= {side: max(rooms[side], MARGIN + BEYOND) for side in ("bottom", "top")}
         if hold.kind == "clamp" and hold.moved is None:
             sides[hold.side] = 0.0
         elif hold.kind == "support":
@@ -150,7 +154,7 @@ def _box(posed: Posed, moves: float, sizes: Array) -> Box:
         float(low),
         float(high),
         room=(rooms["left"], rooms["right"], rooms["bottom"], rooms["top"]),
-        lines=acting.lines_of(described.acts),
+        lines=acting.lines_of(posed),
         flattest=_flattest(posed),
     )
 

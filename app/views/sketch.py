@@ -19,7 +19,7 @@ HEAD, LARGEST_HEAD = 0.45, 10.0
 """Of an arrow, as a share of its length, and in pixels at most."""
 DEPTH = 12.0
 """Of a hatch, px."""
-COILS = 6
+COILS = 4
 
 
 def joined(strokes: Iterable[Array]) -> Array:

@@ -88,7 +88,9 @@ def marked(view: View, drawing: Drawing, place: float | None) -> Drawing:
 
 def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
     """Give what the models of a view's figure are set to, by their names."""
-    found: dict[str, Attributes] = {"title": {"text": card_title(view.name, drawing.keys)}}
+    found: dict[str, Attributes] = {
+        "title": {"text": card_title(view.name, drawing.keys, drawing.sentence)}
+    }
     for name, axis in (("x", drawing.x), ("y", drawing.y)):
         found.update(_axis(name, axis))
     found["curves"] = _curves(drawing)

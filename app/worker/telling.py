@@ -17,7 +17,7 @@ def told(view: View, drawing: Drawing) -> str:
     plot, keys = view.plot, drawing.keys
     if plot.words:
         shown = [*(word.text for word in drawing.words), *(key.text for key in keys)]
-        return f"{', '.join(filter(None, shown))}."
+        return f"{drawing.sentence} {', '.join(filter(None, shown))}.".strip()
     if drawing.image is not None and not plot.scale:
         return f"{_axes(view, drawing)}: {_shares(drawing)}."
     if drawing.colors is not None and (drawing.image is not None or drawing.bodies is not None):

@@ -14,6 +14,8 @@ from solver.discrete.structure import OUTWARD, Act, Description, Hold
 
 PRESSED = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Where the pressure is shown, as far as anything rubs there."""
+SEVERAL = 8
+"""Wires up to which the load of each is shown."""
 
 
 class Rods(RodsData):
@@ -41,7 +43,9 @@ class Rods(RodsData):
         )
 
     def _acts(self) -> Iterator[Act]:
-        end, start = np.array([[1.0, 0.5]]), np.array([[0.0, 0.5]])
+        start, pulled = np.array([[0.0, 0.5]]), self.wires if self.wires <= SEVERAL else 1
+        heights = (np.arange(pulled) + 0.5) / pulled
+        end = np.stack([np.ones(pulled), heights], axis=1)
         right = OUTWARD["right"]
         if self.rigid_grip:
             moved = self.load * self.length / self.stiffness
@@ -51,7 +55,7 @@ class Rods(RodsData):
         if self.support is not None:
             yield Act("left x", "u", start, right, OUTWARD["left"], self.support, "m")
         if self.body_force is not None:
-            middle = np.array([[0.5, 1.0]])
+            middle = np.array([[0.5, 0.5]])
             yield Act("body", "b", middle, right, right, self.body_force, "N/m")
         x = PRESSED[np.interp(PRESSED, self.nodes / self.length, self.bound) > 0.0]
         if self.pressure is not None and len(x):

@@ -44,6 +44,11 @@ def structure_of(settings: Settings) -> Structure:
     return entry_of(settings).structure(settings)
 
 
+def words_of(settings: Settings) -> str:
+    """Say what checked settings describe, in a sentence."""
+    return entry_of(settings).words(settings)
+
+
 def discretise(settings: Settings) -> Problem:
     """Make the discrete problem that checked settings describe."""
     return structure_of(settings).discretise()

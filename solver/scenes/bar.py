@@ -16,6 +16,7 @@ from solver.loads import PRESETS, interpolate
 from solver.reference.closed_form import closed_form
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.words import acting, material, sentence
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -224,6 +225,19 @@ def bar(settings: BarSettings) -> Rods:
     )
 
 
+def _words(settings: BarSettings) -> str:
+    bound = bar(settings).bound
+    table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
+    ends = f"its right end is {acting(settings.path('load'), 'pulled', 'pushed')}"
+    if settings.support_displacement:
+        left = acting(settings.path("support_load"), "moved", "moved back")
+        ends += f", and its left end is {left}"
+    if settings.body_force:
+        ends += f"; all along it is {acting(settings.path('body_load'), 'pulled', 'pushed')}"
+    held = "" if settings.support_displacement else ", held at its left end"
+    return sentence(f"{material(settings.young)} bar lies on a {table} table{held}; {ends}")
+
+
 def _section(settings: BarSettings) -> tuple[float, Array | None]:
     """Give the harmonic mean of the section's factors, and every element's over that mean."""
     if settings.section_profile == "uniform":
@@ -259,6 +273,7 @@ BAR = Entry(
     settings=BarSettings,
     kind="rod",
     structure=bar,
+    words=_words,
     sizes=shared.ROD_SIZES,
     grows=("elements",),
     coarser=_coarser,

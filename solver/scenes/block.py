@@ -16,7 +16,8 @@ from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.sides import SideSettings
+from solver.scenes.sides import AT_REST, LOADED_SIDES, SideSettings
+from solver.scenes.words import acting, listed, material, sentence
 
 GAPS = ("flat", "parabola")
 
@@ -138,6 +139,27 @@ def _gap(settings: BlockSettings, x: Array) -> Array:
     return np.asarray((x - 0.5 * settings.length) ** 2 / (2.0 * settings.radius))
 
 
+def _words(settings: BlockSettings) -> str:
+    support = {"flat": "flat", "parabola": "round"}.get(str(settings.gap), "uneven")
+    rough = "rough" if settings.friction else "smooth"
+    acts = []
+    for side in LOADED_SIDES:
+        if getattr(settings, side) in AT_REST:
+            continue
+        inward = -settings.path(f"{side}_normal_load")
+        along = settings.path(f"{side}_tangential_load")
+        own = [acting(inward, "pressed", "pulled")] if inward.any() else []
+        own += [acting(along, "moved", "moved back")] if along.any() else []
+        acts += [f"{' and '.join(own)} at its {side}"] if own else []
+    if _body_force(settings) is not None:
+        acts.append("loaded all through")
+    held = [side for side in LOADED_SIDES if getattr(settings, side) == "clamped"]
+    acts += [f"held at its {side}" for side in held]
+    does = listed(acts) if acts else "left alone"
+    block = f"{material(settings.young)} block lies on a {support} {rough} support"
+    return sentence(f"{block}; it is {does}")
+
+
 def _body_force(settings: BlockSettings) -> Array | None:
     sizes = np.array([settings.body_force_x, settings.body_force_y])
     return sizes[:, None] * settings.path("body_load") if sizes.any() else None
@@ -154,6 +176,7 @@ BLOCK = Entry(
     settings=BlockSettings,
     kind="plane",
     structure=block,
+    words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
 )

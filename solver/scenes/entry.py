@@ -46,6 +46,9 @@ class Entry(Generic[S]):
         What there is to see: a rod on its support, wires beside each other, or plane bodies.
     structure
         Makes what the scene is made of.
+    words
+        Say of settings what there is, what acts on it, and what rubs, in a sentence for whoever
+        sees it for the first time.
     coarser
         Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
         where no run starts from them.
@@ -63,6 +66,7 @@ class Entry(Generic[S]):
     settings: type[S]
     kind: Kind
     structure: Callable[[S], Structure]
+    words: Callable[[S], str]
     sizes: Mapping[str, tuple[int, ...]]
     grows: tuple[str, ...]
     coarser: Callable[[S], Iterable[Problem]] | None = None

@@ -19,6 +19,7 @@ from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
+from solver.scenes.words import acting, sentence
 
 
 class InclineSettings(PlaneSettings):
@@ -126,6 +127,14 @@ def incline(settings: InclineSettings) -> Stack:
     )
 
 
+def _words(settings: InclineSettings) -> str:
+    slope = settings.path("slope_load")
+    moves = acting(slope, "rises", "falls", "and falls").replace("and let go", "and falls")
+    rough = "rough" if settings.friction else "smooth"
+    slides = "a spring catches it when it slides down"
+    return sentence(f"a block lies on a {rough} slope that {moves}; {slides}")
+
+
 INCLINE = Entry(
     title="Block on an inclined plane",
     source="closed form: Coulomb, Théorie des machines simples, 1785",
@@ -137,6 +146,7 @@ INCLINE = Entry(
     settings=InclineSettings,
     kind="plane",
     structure=incline,
+    words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
 )

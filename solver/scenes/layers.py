@@ -14,6 +14,7 @@ from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
+from solver.scenes.words import acting, counted, material, sentence
 
 
 class LayersSettings(PlaneSettings):
@@ -177,6 +178,16 @@ def layers(settings: LayersSettings) -> Stack:
     )
 
 
+def _words(settings: LayersSettings) -> str:
+    stuff = material(settings.young).partition(" ")[2]
+    layers = f"{counted(settings.layers, f'{stuff} layer')}, held at the left"
+    pressed = "are pressed together and rub" if settings.pressure else "lie on each other"
+    bent, pull = settings.path("bend_load"), settings.path("pull_load")
+    ends = acting(bent, "bent up", "bent down", "and down")
+    ends += f", and {acting(pull, 'pulled', 'pushed')}" if pull.any() else ""
+    return sentence(f"{layers}, {pressed}; the right end is {ends}")
+
+
 LAYERS = Entry(
     title="Stack of layers, bent",
     source="a leaf spring, or the section of a cable laid flat",
@@ -189,6 +200,7 @@ LAYERS = Entry(
     settings=LayersSettings,
     kind="plane",
     structure=layers,
+    words=_words,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
     grows=("layers",),
 )

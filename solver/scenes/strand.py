@@ -16,6 +16,7 @@ from solver.loads import PULLS
 from solver.reference.broken_wire import broken_wire
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.words import acting, counted, material, sentence
 
 
 class StrandSettings(SceneSettings):
@@ -211,6 +212,15 @@ def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
         )
 
 
+def _words(settings: StrandSettings) -> str:
+    stuff = material(settings.young).partition(" ")[2]
+    broken = f", number {settings.broken} broken," if settings.broken else ""
+    wires = f"{counted(settings.wires, f'{stuff} wire')}{broken} rub on each other"
+    pulled = acting(settings.path("load"), "pulled", "pushed")
+    grip = " by one grip" if settings.grip == "displacement" else ""
+    return sentence(f"{wires}; their right ends are {pulled}{grip}")
+
+
 def _coarser(settings: StrandSettings) -> Iterator[Problem]:
     coarse = settings.coarser()
     while coarse is not None:
@@ -229,6 +239,7 @@ STRAND = Entry(
     settings=StrandSettings,
     kind="wires",
     structure=strand,
+    words=_words,
     sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     grows=("wires",),
     coarser=_coarser,
