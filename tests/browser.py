@@ -76,7 +76,8 @@ class Chrome:
         self._used: dict[Page, list[Page]] = {}
 
     def new_page(self, width: int = 1280, height: int = 720, **device: Any) -> Page:
-        """Open an empty page of a size, on a device of a kind."""
+        """Open an empty page of a size, on a device of a kind; nothing moves by itself on it."""
+        device = {"reduced_motion": "reduce", **device}
         free = self._free.setdefault(tuple(sorted(device.items())), [])
         page = free.pop() if free else self._browser.new_page(**device)
         self._used[page] = free

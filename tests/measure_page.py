@@ -132,7 +132,9 @@ def main() -> None:
         server = Server(Path(folder) / "log")
         try:
             server.wait()
-            context = chrome.new_context(viewport={"width": 1280, "height": 720})
+            context = chrome.new_context(
+                viewport={"width": 1280, "height": 720}, reduced_motion="reduce"
+            )
             context.add_init_script(FIND)
             opened = []
             for repeat in range(6):

@@ -162,3 +162,15 @@ def test_a_narrow_window_sees_the_run_first_with_all_tabs_and_no_word_is_cut_bef
             && [...y].every((at, i) => y_scale.compute(at) >= above[up[i]] * 1.25 * size)
         }""",
     )
+
+
+def test_a_page_opens_in_motion_until_it_is_touched(open_page: Visit) -> None:
+    page = open_page(
+        "?elements=20&substructures=4&instants=21&plots=Scene", reduced_motion="no-preference"
+    )
+    instant = page.get_by_role("slider", name="Instant", exact=True)
+    expect(instant).to_have_value("15")
+    expect(instant).not_to_have_value("15")
+    page.keyboard.press("Shift")
+    expect(instant).to_have_value("15")
+    expect(page.get_by_role("button", name="Play through time")).to_be_visible()

@@ -183,6 +183,16 @@ export function render({model, view}) {
     const done = wrote ?? Promise.reject()
     done.then(() => { model.copied = count }, () => { model.copied = -count })
   })
+  // What moves by itself stops at the first touch of anything.
+  const touches = ["pointerdown", "keydown", "wheel"], options = {capture: true, passive: true}
+  const rest = () => {
+    for (const kind of touches) { window.removeEventListener(kind, rest, options) }
+    model.calm = true
+  }
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) {
+    for (const kind of touches) { window.addEventListener(kind, rest, options) }
+    model.calm = false
+  }
   const look = () => { model.hidden = document.visibilityState === "hidden" }
   document.addEventListener("visibilitychange", look)
   model.on("remove", () => {
@@ -190,6 +200,7 @@ export function render({model, view}) {
     clearInterval(timer)
     clearTimeout(due)
     themes.disconnect()
+    rest()
     window.removeEventListener("popstate", went)
     document.removeEventListener("visibilitychange", look)
   })

@@ -22,6 +22,7 @@ class Pulse(Plain):
     narrow = param.Boolean(default=False, doc="Whether the window has no room for a sidebar.")
     hidden = param.Boolean(default=False, doc="Whether the browser shows another page instead.")
     phone = param.Boolean(default=False, doc="Whether the header has no room for the tabs.")
+    calm = param.Boolean(default=True, doc="Whether nothing is to move by itself.")
     query = param.String(default="", doc="What an address has to say to come back to this.")
     entries = param.Integer(default=0, doc="Counts the tabs that one can go back from.")
     copy = param.Integer(default=0, doc="Counts how often the address was to be copied.")

@@ -34,6 +34,9 @@ class State(param.Parameterized):
     ticket = param.Integer(default=0, doc="Number of the run; 0 before the first.")
     facts = param.Parameter[Facts | None](doc="What its newest picture says, once there is one.")
     look = param.Parameter[Look](default=Look(), doc="Where one looks.")
+    opens = param.Boolean(
+        default=False, doc="Whether time goes by itself, until somebody touches the page."
+    )
     running = param.Boolean(default=True, doc="Whether iterations go on by themselves.")
     pace = param.Number(
         default=DEFAULT_PACE, allow_None=True, doc="How many a second; None: all it can."

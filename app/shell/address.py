@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from textwrap import shorten
 from typing import Any
 from urllib.parse import parse_qsl, quote
@@ -48,6 +48,8 @@ class Sight:
         "page" has controls, "present" is for a projector, "embed" for a frame in a course page.
     plots
         Names of the views that are drawn, separated by commas; empty has one on each card.
+    is_still
+        Whether it names an instant, or an iteration.
     """
 
     tab: str = TABS[0]
@@ -58,6 +60,7 @@ class Sight:
     theme: str = "light"
     view: str = VIEWS[0]
     plots: str = ""
+    is_still: bool = field(default=False, compare=False)
 
 
 SIGHT: dict[str, Any] = {
@@ -93,7 +96,9 @@ def sight_from_query(query: str) -> tuple[Sight, str]:
                 found[name] = checked_value(SIGHT[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
-    return replace(_first_sight(found.get("lesson", "")), **found), complaint_of(refused)
+    first = _first_sight(found.get("lesson", ""))
+    is_still = any(name in found for name in NUMBERS)
+    return replace(first, **found, is_still=is_still), complaint_of(refused)
 
 
 def _first_sight(lesson: str) -> Sight:

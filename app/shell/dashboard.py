@@ -20,6 +20,7 @@ from app.shell.gallery import gallery
 from app.shell.log import RunLog
 from app.shell.looks import Looks
 from app.shell.notes import Notes
+from app.shell.opening import Opening
 from app.shell.page_link import PageLink
 from app.shell.phone import Phone
 from app.shell.presence import Presence
@@ -89,6 +90,7 @@ class Dashboard:
         else:
             self._arrange()
         self._link = PageLink(session, self.pulse)
+        self._opening = Opening(session, self.pulse, self._transport, is_still=self._sight.is_still)
 
     def _furnish(self, *, on_phone: bool) -> None:
         """Make the page of its parts, in the theme and the view that are looked at first."""

@@ -113,7 +113,7 @@ class PageLink:
         session, lesson = self._session, self._session.lesson
         sight = Sight(
             tab=session.tab,
-            instant=round(session.look.phase, 4),
+            instant=Sight.instant if session.opens else round(session.look.phase, 4),
             pace=next(name for name, pace in PACES.items() if pace == session.pace),
             lesson=lesson.name if lesson else "",
             iteration=waits_at(session.facts, goes_on=session.goes_on),

@@ -42,6 +42,8 @@ class Transport:
     def __init__(self, session: Session) -> None:
         self._session = session
         self._played: tuple[float, float] | None = None
+        self._loops = 0
+        self._ends: Callable[[], None] | None = None
         self._next = session.turns.timer(self.play_on)
         self._make_buttons()
         self._make_sliders()
@@ -110,11 +112,30 @@ class Transport:
 
     def play(self) -> None:
         """Go through time from the chosen instant, or from the first; or stop."""
+        if self.plays:
+            self.stop()
+            return
         phase = self._session.look.phase
-        is_stopped = self._played is None
-        self._played = (time.monotonic(), phase if phase < 1.0 else 0.0) if is_stopped else None
-        self._instant.playing = is_stopped
+        self._played = time.monotonic(), phase if phase < 1.0 else 0.0
+        self._instant.playing = True
         self._next.set(0.0)
+
+    def loop(self, times: int, ends: Callable[[], None]) -> None:
+        """Go through time so often, from the first instant; then have something done."""
+        self._loops, self._ends = times, ends
+        self._played = time.monotonic(), 0.0
+        self._next.set(0.0)
+
+    def stop(self) -> None:
+        """Go through time no more."""
+        self._played, self._ends = None, None
+        self._instant.playing = False
+        self._next.stop()
+
+    @property
+    def plays(self) -> bool:
+        """Whether one goes through time at present."""
+        return self._played is not None
 
     def play_on(self) -> None:
         """Look at the instant that one has come to, and at the next when that has come."""
@@ -125,9 +146,18 @@ class Transport:
         phase += (time.monotonic() - began) / PLAYED_IN
         self._session.watch(phase=min(int(phase * last) / last, 1.0))
         if phase >= 1.0:
-            self.play()
+            self._come_to_the_end()
         else:
             self._next.set(max(((int(phase * last) + 1) / last - phase) * PLAYED_IN, SOONEST))
+
+    def _come_to_the_end(self) -> None:
+        ends, self._loops = self._ends, self._loops - 1
+        if ends is None:
+            self.stop()
+        elif self._loops > 0:
+            self.loop(self._loops, ends)
+        else:
+            ends()
 
     def choose_substructure(self, number: float) -> None:
         """Look at the modes of another substructure, counted from 1."""
@@ -227,8 +257,7 @@ class Transport:
 
     def _choose_phase(self, phase: float) -> None:
         """Look at a share of the interval; who chooses one plays no more."""
-        if self._played is not None:
-            self.play()
+        self.stop()
         self._session.watch(phase=min(max(phase, 0.0), 1.0))
 
     def _show_substructure(self, settings: Settings) -> None:
