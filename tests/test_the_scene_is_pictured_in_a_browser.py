@@ -104,7 +104,7 @@ def test_the_load_arrow_is_dragged_and_the_run_follows(page: Page) -> None:
     expect(label).to_be_hidden()
     page.mouse.move(middle + 3, height)
     page.mouse.move(middle, height)
-    expect(label).to_have_text("Peak load (N): 900")
+    expect(label).to_have_text("Peak load: 0.9 kN")
     page.mouse.down()
     peak = page.get_by_role("slider", name="Peak load (N)")
     # A hand that is held still is taken for one that has let go.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from app.picture.units import measured
 from solver.definitions import about
 from solver.settings import Settings
 
@@ -23,13 +24,17 @@ def label_of(settings: Settings, changed: dict[str, Any], most: int = FEW) -> st
     definitions = settings.definitions()
     parts = []
     for name, value in list(changed.items())[:most]:
-        unit = about(definitions[name]).unit
-        text = f"{value:.4g}" if isinstance(value, float) else str(value)
-        text = ("off", "on")[value] if isinstance(value, bool) else text
-        text = "points" if isinstance(value, tuple) else text
-        parts.append(f"{name.replace('_', ' ')} {text} {unit}".strip())
+        parts.append(f"{name.replace('_', ' ')} {_written(value, about(definitions[name]).unit)}")
     more = len(changed) - most
     return ", ".join(parts) + (f" and {more} more" if more > 0 else "")
+
+
+def _written(value: Any, unit: str) -> str:
+    if isinstance(value, bool):
+        return ("off", "on")[value]
+    if isinstance(value, tuple):
+        return "points"
+    return measured(value, unit, 4) if isinstance(value, float) else f"{value} {unit}".strip()
 
 
 def in_titles(settings: Settings, text: str, written: str = "{}") -> str:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from app.picture.units import measured
 from app.session.report_folder import ReportFolder
 from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, audit
@@ -87,7 +88,7 @@ def mesh_of_run(scene: str, values: dict[str, Any], of: str, folder: Path) -> No
     for number, mesh in enumerate(meshes):
         growing.tell(f"{size_of(mesh)} elements", number / len(meshes))
         found.append(value_on(mesh, asked))
-        value = f"{found[-1]:.4g} {asked.quantity.unit}".rstrip()
+        value = measured(found[-1], asked.quantity.unit, 4)
         told.append(f"{size_of(mesh)} elements: <b>{value}</b>")
         growing.show([" · ".join(told)])
     said = answer(Refinement((found[0], found[1], found[2]), own), asked.quantity.unit)

@@ -42,7 +42,8 @@ function handles(place, plot, source, model, tap) {
   }
   const label = ({clientX, clientY}, {setting, value}) => {
     const {left, top, width} = place.getBoundingClientRect(), item = model.sliders[setting]
-    said.textContent = `${item.label}: ${written(value, item)}`
+    const [, name, unit = ""] = /^(.*?)(?: \(([^()]*)\))?$/.exec(item.label)
+    said.textContent = `${name}: ${measured(value, unit)}`
     said.style.top = `${Math.max(clientY - top - 40, 2)}px`
     const room = width - said.offsetWidth - 4
     said.style.left = `${Math.max(Math.min(clientX - left + 10, room), 2)}px`

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.picture.units import decimal_scale
 from app.views import sketch
 from app.views.drawing import Box, Word
 from app.views.posed import Posed
-from app.views.scales import decimal_scale
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
 

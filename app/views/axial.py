@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.shown import Wires
+from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held, spanned
+from app.views.scales import Limits, held, spanned
 from solver.scenes import kind_of
 
 SHARED = 1.5

@@ -6,10 +6,11 @@ import numpy as np
 
 from app.picture.portrait import rims
 from app.picture.shown import Mesh
+from app.picture.units import decimal_scale
 from app.views.colors import GHOST, GREY
 from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import around, decimal_scale, round_up
+from app.views.scales import around, round_up
 from solver.arrays import Array
 
 FARTHEST = 5.0

@@ -11,10 +11,11 @@ import numpy as np
 from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.shown import Axes
+from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held, spanned
+from app.views.scales import Limits, held, spanned
 
 Pair = tuple[np.ndarray, np.ndarray]
 POINT = Marks((), (), VERMILION)

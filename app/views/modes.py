@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.picture.shown import ShownModes
+from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing import (
     POSITION,
@@ -20,7 +21,7 @@ from app.views.drawing import (
     is_plane,
 )
 from app.views.legend import Key
-from app.views.scales import decimal_scale, spanned, upright
+from app.views.scales import spanned, upright
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
 UP = Axis(-1.12, 1.12)

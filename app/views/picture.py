@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.picture.portrait import THICKNESS, Portrait
+from app.picture.units import decimal_scale
 from app.views import acting
 from app.views.acting import Arrow
 from app.views.colors import (
@@ -28,7 +29,7 @@ from app.views.handles import Handle, on_arrow, on_bodies
 from app.views.held import BEYOND, WALL, held, room_of
 from app.views.legend import Key
 from app.views.posed import Posed
-from app.views.scales import decimal_scale, round_up
+from app.views.scales import round_up
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
 from solver.scenes import behind

@@ -1,4 +1,4 @@
-"""Units, decades, limits and axes: how the values of a plot fill it."""
+"""Decades, limits and axes: how the values of a plot fill it."""
 
 from __future__ import annotations
 
@@ -9,19 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from app.views.drawing import Axis, Curve
-
-FACTORS = {"": 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "k": 1e3, "M": 1e6, "G": 1e9}
-
-
-def decimal_scale(size: float, unit: str) -> tuple[float, str]:
-    """Choose an SI prefix for values of a size; give the factor to divide by, and the unit."""
-    if not (np.isfinite(size) and size > 0.0):
-        return 1.0, unit
-    fitting = [(factor, prefix) for prefix, factor in FACTORS.items() if size >= 0.5 * factor] or [
-        (1e-9, "n")
-    ]
-    factor, prefix = max(fitting)
-    return factor, prefix + unit
 
 
 def decades(values: ArrayLike, floor: float) -> tuple[float, float]:

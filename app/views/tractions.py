@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.frames import DrawnFields
+from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREY, ORANGE, PURPLE
 from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View, is_plane
 from app.views.legend import Key
-from app.views.scales import Limits, decimal_scale, held, spanned, upright
+from app.views.scales import Limits, held, spanned, upright
 
 KEYS = (
     Key(PURPLE, "line", "pressure p"),

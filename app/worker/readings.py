@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from app.picture.units import measured
 from app.views.drawing import Scene
 from app.worker.words import number, percent
 from solver.latin import Solution
@@ -15,8 +16,6 @@ from solver.study.quantity import Quantity
 OPEN = "…"
 """What only the rest of the run will tell."""
 NONE = "–"
-PREFIXES = {-3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}
-"""Of units, by powers of a thousand."""
 
 
 def values(scene: Scene) -> list[tuple[str, str]]:
@@ -51,11 +50,3 @@ def written(value: float, quantity: Quantity, done: int) -> str:
     if quantity.is_share:
         return percent(value)
     return measured(value, quantity.unit) if quantity.unit else number(value)
-
-
-def measured(value: float, unit: str) -> str:
-    """Write a value with that prefix of its unit which needs the fewest zeros."""
-    power = math.floor((math.log10(abs(value)) + 1.0) / 3.0) if value else 0
-    if power not in PREFIXES:
-        return f"{number(value)} {unit}"
-    return f"{value / 1e3**power:.3g} {PREFIXES[power]}{unit}"
