@@ -31,7 +31,6 @@ from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
 
 from app.components.form import POINTS
-from app.controls.items import CLASS, SHARE
 from solver.scenes import CATALOGUE
 
 EXPIRY = 60.0
@@ -81,7 +80,7 @@ async def measure(server: Server, count: int, seconds: float, *, follow: bool) -
     if follow:
         await leader.open()
         leads = asyncio.create_task(leader.live())
-        await leader.move(SHARE, CLASS)
+        await leader.lead()
         await until(lambda: leader.code)
     query = f"?class={leader.code}" if follow else ENDLESS
     late: list[float] = []

@@ -67,6 +67,17 @@ def test_one_who_comes_late_or_has_lost_a_picture_gets_the_last_again() -> None:
     assert [one.block for one in late.given] == [b"\1", b"\1"]
 
 
+def test_a_run_that_begins_after_its_picture_came_is_given_that_again() -> None:
+    room = Room("ABCD", BAR)
+    follower = Follower(room)
+    follower.paint()
+    room.show(STEEPER, (), picture(1))
+    # Who leads has paused: no other picture comes.
+    follower.seat.send(Run(8, STEEPER))
+    follower.paint()
+    assert follower.given[-1] == Picture(8, picture(1).facts, b"\1")
+
+
 def test_who_leaves_is_given_nothing_more() -> None:
     room = Room("ABCD", BAR)
     one = Follower(room)
@@ -140,7 +151,7 @@ def test_a_follower_that_changes_a_setting_goes_on_alone_and_can_come_back(pages
     follower.attendance.follow(room)
     follower.start(room.settings)
     follower.ask()
-    assert follower.collect() == [b"\4"]
+    assert set(follower.collect()) == {b"\4"}
     assert own.is_closed
 
 

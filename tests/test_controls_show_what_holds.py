@@ -11,10 +11,11 @@ import pytest
 from lone_link import lone_session
 
 from app.components.form import ENDS, POINTS, USUAL, item_of
-from app.controls.items import SHARE
 from app.controls.refusals import refused
 from app.controls.sidebar import Sidebar
+from app.session.history import History
 from app.shell import notes
+from app.shell.actions import Actions
 from solver.definitions import CurveParameter, SettingError, about
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
@@ -26,7 +27,7 @@ TABLE = [(0.0, 0.0), (1.0, 500.0)]
 def sidebar() -> Sidebar:
     settings = BarSettings.checked({"method": "paper", "load": TABLE})
     session = lone_session(settings)
-    return Sidebar(session, lambda: None, lambda name: None)
+    return Sidebar(session, lambda name: None)
 
 
 def edited(sidebar: Sidebar, value: Any) -> Any:
@@ -72,7 +73,7 @@ def test_a_word_in_place_of_a_number_is_refused(sidebar: Sidebar) -> None:
 def strand() -> Sidebar:
     settings = CATALOGUE["strand"].settings.checked({})
     session = lone_session(settings)
-    return Sidebar(session, lambda: None, lambda name: None)
+    return Sidebar(session, lambda name: None)
 
 
 def test_what_was_moved_is_refused_and_not_what_it_does_not_go_with(strand: Sidebar) -> None:
@@ -170,10 +171,12 @@ def test_a_refusal_stays_until_something_changes(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_file_is_refused_in_titles_with_its_names_in_brackets(sidebar: Sidebar) -> None:
+    history = History(sidebar._session, lambda name: None)
+    actions = Actions(sidebar._session, sidebar.obey, history, *[lambda: None] * 2)
     for scene, name, said in (
         ("bar", "friction", "Friction coefficient μ (friction) cannot be -1: "),
         ("strand", "broken", "(broken) cannot be -1: "),
         ("bar", "frictoin", "did you mean friction?"),
     ):
-        sidebar.hear(SHARE, ["mine.toml", f'scene = "{scene}"\n{name} = -1'], False, 1)
+        actions.hear("open", ["mine.toml", f'scene = "{scene}"\n{name} = -1'])
         assert said in sidebar._session.refusal

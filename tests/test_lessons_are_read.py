@@ -16,6 +16,7 @@ from solver.lessons.reading import lesson_from_file
 PARTS: dict[str, str] = {
     "title": '"A title"',
     "order": "1",
+    "subject": '"method"',
     "question": '"What?"',
     "choices": '["this", "that"]',
     "right": "2",
@@ -82,6 +83,7 @@ def test_a_paragraph_falls_into_words_controls_and_values() -> None:
         ("why", None, ["why = null", "this key is needed"]),
         ("order", '"first"', ['order = "first"', "a whole number"]),
         ("order", "true", ["order = true", "a whole number"]),
+        ("subject", '"music"', ['subject = "music"', "mechanics, method"]),
         ("choices", '["this"]', ["right = 2", "at least two choices"]),
         ("choices", "[1, 2]", ["choices = [1, 2]", "a list of texts"]),
         ("right", "3", ["right = 3", "there are 2"]),

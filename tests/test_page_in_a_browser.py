@@ -128,14 +128,15 @@ def test_settings_are_saved_opened_and_brought_back(page: Page, tmp_path: Path) 
     take(page, substructures=5, **FOREVER)
     expect(status(page)).to_contain_text("5 substructures")
     with page.expect_download() as saved:
-        page.get_by_role("button", name="Save", exact=True).click()
+        press(page, "Share")
+        press(page, "Save settings")
     text = saved.value.path().read_text()
     assert "substructures = 5\n" in text
     file = tmp_path / "other.toml"
     file.write_text(text.replace("substructures = 5\n", "substructures = 7\n"))
     page.locator("input[type=file]").set_input_files(file)
     expect(status(page)).to_contain_text("7 substructures")
-    page.get_by_role("button", name="Defaults", exact=True).click()
+    press(page, "Defaults")
     expect(status(page)).to_contain_text("10 substructures")
     file.write_bytes(b"\xff\xfe\0")
     page.locator("input[type=file]").set_input_files(file)

@@ -51,7 +51,7 @@ def changed(session: Session, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str
 
 @pytest.fixture
 def sidebar(session: Session) -> Sidebar:
-    return Sidebar(session, lambda: None, lambda name: None)
+    return Sidebar(session, lambda name: None)
 
 
 def move(sidebar: Sidebar, name: str, value: Any) -> None:

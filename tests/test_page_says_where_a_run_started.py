@@ -8,13 +8,14 @@ from typing import Any
 import pytest
 from shown_pages import Shown
 
-from app.controls.sidebar import SAVE, SHARE, Sidebar
 from app.picture.recording import Recording
 from app.picture.sampler import Sampler
 from app.picture.shown import Look
+from app.session.history import History
 from app.session.pages import Pages
 from app.session.report_executor import ReportExecutor
 from app.session.session import Session
+from app.shell.actions import Actions
 from app.wire.reports import Facts
 from app.worker.words import start_line
 from solver.files import settings_from_toml
@@ -67,12 +68,13 @@ def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> Non
 def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     settings = BarSettings.checked({"method": "paper", "peak": 910.0})
     with closing(Session(Pages(1), ReportExecutor(), settings)) as session:
-        sidebar = Sidebar(session, lambda: None, lambda name: None)
-        sidebar.hear(SHARE, SAVE, hand=False, count=1.0)
-        plain, _ = sidebar.view.file
+        history = History(session, lambda name: None)
+        actions = Actions(session, lambda: None, history, *[lambda: None] * 2)
+        actions.hear("save")
+        plain, _ = actions.view.file
         session.facts = Facts(was_warm=True)
-        sidebar.hear(SHARE, SAVE, hand=False, count=2.0)
-        told, _ = sidebar.view.file
+        actions.hear("save")
+        told, _ = actions.view.file
     assert told.endswith(plain)
     assert "started from the solution of the run before it" in told.replace("\n# ", " ")
     assert "started" not in plain

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from lone_link import LoneLink
 
-from app.controls.items import NOTE, SCENE, SHARE
+from app.controls.items import NOTE, SCENE
 from app.controls.sidebar import Sidebar
 from app.reports.report import Report
 from app.reports.reports import PaperFigures, StabilityReport, StudyReport
@@ -31,7 +31,7 @@ def session() -> Iterator[Session]:
 
 @pytest.fixture
 def sidebar(session: Session) -> Sidebar:
-    return Sidebar(session, lambda: None, lambda name: None)
+    return Sidebar(session, lambda name: None)
 
 
 def shown_for(sidebar: Sidebar, report: Report | None) -> dict[str, Any]:
@@ -45,7 +45,7 @@ def test_a_report_that_no_setting_changes_shows_none_and_the_live_run_has_all_ag
 ) -> None:
     live = shown_for(sidebar, None)
     for report in (PaperFigures(session.asked.figures), StabilityReport(session.asked.stability)):
-        assert set(shown_for(sidebar, report)) == {NOTE, SHARE, ""}
+        assert set(shown_for(sidebar, report)) == {NOTE, ""}
     assert shown_for(sidebar, None) == live
 
 

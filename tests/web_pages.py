@@ -68,7 +68,7 @@ class WebPage:
         self._address = address
         self._socket: WebSocketClientConnection | None = None
         self._pulse = self._pulse_data = self._page = self._token = ""
-        self._form = self._form_data = ""
+        self._actions = self._form = self._form_data = ""
         self._count = self._told = 0
         self._writes = asyncio.Lock()
         self._text = 0
@@ -95,6 +95,7 @@ class WebPage:
             if kind == "PULL-DOC-REPLY":
                 self._pulse, self._pulse_data, data = _component(content, "Pulse")
                 self._page = data["page"]
+                self._actions, _, _ = _component(content, "ActionBar")
                 self._form, self._form_data, data = _component(content, "Form")
                 self._show(data)
         await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": READY})
@@ -132,6 +133,10 @@ class WebPage:
         self._told += 1
         data = {"name": name, "value": value, "hand": hand, "count": self._told}
         await self._tell(self._form, _mapped(data))
+
+    async def lead(self) -> None:
+        """Start a class."""
+        await self._tell(self._actions, _mapped({"kind": "class", "value": ""}))
 
     def close(self) -> None:
         if self._socket is not None:

@@ -63,9 +63,13 @@ function controls(model) {
     return [label, range]
   }
   const choice = (row, item) => {
-    const options = item.options.map(([text, value]) => new Option(text, value))
-    const select = named(item,
-      make("select", {onchange: () => tell(row, select.value)}, ...options))
+    const select = named(item, make("select", {onchange: () => tell(row, select.value)}))
+    for (const [text, value, group] of item.options) {
+      const heard = [...select.children].find(({label}) => group && label === group)
+      const place = heard ?? (group ? make("optgroup", {label: group}) : select)
+      if (place !== select) { select.append(place) }
+      place.append(new Option(text, value))
+    }
     row.show = (value) => { select.value = value }
     return [make("label", {}, item.label), select]
   }

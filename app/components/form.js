@@ -28,30 +28,12 @@ export function render({model}) {
     row.show = (value) => { for (const one of radios) { one.checked = one.value === value } }
     return [group]
   }
-  const share = (row, item) => {
-    const text = (bytes) => {
-      try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) } catch {}
-      // Spreadsheets write letters as old Windows did; no text has zeros.
-      const isText = !new Uint8Array(bytes).includes(0)
-      return isText ? new TextDecoder("windows-1252").decode(bytes) : null
-    }
-    const upload = named(item, make("input", {type: "file", accept: ".toml,.csv"}))
-    upload.onchange = async () => {
-      const [file] = upload.files
-      if (file) { tell(row, [file.name, text(await file.arrayBuffer())]) }
-      upload.value = ""
-    }
-    const buttons = item.buttons.map(([name, title]) =>
-      make("button", {title, className: "wide", onclick: () => tell(row, name)}, name))
-    row.show = () => {}
-    return [...buttons, make("label", {}, item.label, upload)]
-  }
   const note = (row) => {
     const words = make("p")
     row.show = (text) => { words.textContent = text }
     return [words]
   }
-  Object.assign(kinds, {checks, scenes, share, note})
+  Object.assign(kinds, {checks, scenes, note})
   const helped = (item) => (item.help || "") + (item.usual
     ? " Enter types a value; Delete, or a double click, brings back the usual one." : "")
   const added = (item) => {
@@ -119,8 +101,6 @@ export function render({model}) {
       if (place) { place.open = true }
     }
   }
-  model.on("file", () =>
-    save("slipfront.toml", new Blob([model.file[0]], {type: "application/toml"})))
   model.on("items", build)
   model.on("shown", show)
   build()

@@ -57,7 +57,7 @@ select, td input, .number, button { box-sizing: border-box; font: inherit; color
   border: 1px solid color-mix(in srgb, currentColor 30%, transparent); }
 select { padding: 6px 4px; }
 .number { width: 84px; padding: 1px 4px; font-weight: 600; text-align: right; }
-option { color: #222; background: #fff; }
+option, optgroup { color: #222; background: #fff; }
 table { width: 100%; border-collapse: collapse; }
 thead td { opacity: 0.75; }
 td input { width: 100%; padding: 3px 4px; }
@@ -84,13 +84,10 @@ class Form(Plain):
     shown
         The value of each control that applies, by name; "" has the number of the newest message
         that was obeyed.
-    file
-        A text that the browser is to save, and anything that tells it from the one before.
     """
 
     items = param.List(default=[])
     shown = param.Dict(default={})
-    file = param.List(default=[])
 
     _esm = script("elements.js", "values.js", "points.js", "controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]

@@ -46,15 +46,18 @@ export function render({model}) {
   show()
   const names = new Set([...model.keys.map(([name]) => name), ...model.own])
   const press = (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || !model.hears) { return }
-    const {key} = event, name = event.shiftKey && key.startsWith("Arrow") ? "Shift+" + key : key
+    if (event.altKey || !model.hears) { return }
+    const commands = event.ctrlKey || event.metaKey
+    const key = commands ? event.key.toLowerCase() : event.key
+    const shifts = event.shiftKey && (commands || key.startsWith("Arrow"))
+    const name = (commands ? "Ctrl+" : "") + (shifts ? "Shift+" : "") + key
     if (!names.has(name) || event.repeat && !key.startsWith("Arrow")) { return }
     const typed = event.composedPath()[0]
     const writes = typed.tagName === "INPUT" && !["range", "checkbox", "radio"].includes(typed.type)
     if (writes || typed.tagName === "TEXTAREA" || typed.isContentEditable) { return }
     if (key.startsWith("Arrow") && typed.matches?.(TAB)) { return go_on(typed, key, event) }
     const keeps = key.startsWith("Arrow") ? MOVED : key === " " ? PRESSED : LISTS
-    if (typed.closest && typed.closest(keeps) || dialog.open) { return }
+    if (!commands && typed.closest && typed.closest(keeps) || dialog.open) { return }
     event.preventDefault()
     if (name === "?") { open() }
     else if (model.own.includes(name)) {

@@ -17,6 +17,16 @@ APP = Path(__file__).resolve().parents[1]
 STATIC = APP.parent / "static"
 STYLE = (STATIC / "style.css").read_text(encoding="utf-8")
 
+HEADER = {
+    "& .header .MuiBox-root:has(> .child-wrapper)": {
+        "display": "flex",
+        "flex": "1",
+        "alignItems": "center",
+    },
+    "@media (max-width: 899px)": {"& .title": {"display": "none"}},
+}
+"""Its parts have all of its width; the name of the page goes where there is no room for it."""
+
 
 def column(*parts: Any, role: str, **options: Any) -> pn.Column:
     """Put parts one below the other."""
@@ -58,16 +68,17 @@ def script(*names: str) -> str:
     return "\n".join(file.read_text(encoding="utf-8") for file in files)
 
 
-def page(sidebar: list[Any], header: Any, main: Any) -> Page:
+def page(sidebar: Any, header: list[Any], main: Any) -> Page:
     """Make a page with its parts at their places."""
     made = Page(
         title="Slipfront",
         favicon=STATIC / "logo.svg",
         logo=STATIC / "logo.svg",
-        sidebar=sidebar,
+        sidebar=[sidebar],
         sidebar_width=310,
-        header=[header],
+        header=header,
         main=[main],
+        sx=HEADER,
         busy_indicator=None,
         template=TEMPLATE,
         meta_description="A laboratory for frictional contact: LATIN iterations, live.",

@@ -33,7 +33,7 @@ SEEN = "What is seen"
 
 # None of these is the name of a setting.
 SCENE, LESSON, WARM = "the-scene", "the-lesson", "start-from-before"
-VIEWS, SHARE, COMPARE, NOTE = "the-views", "share", "compare", "note"
+VIEWS, COMPARE, NOTE = "the-views", "compare", "note"
 SCENE_ITEM: dict[str, Any] = {
     "name": SCENE,
     "kind": "scenes",
@@ -46,7 +46,10 @@ LESSON_ITEM: dict[str, Any] = {
     "kind": "choice",
     "label": "Lesson",
     "help": "A question: predict the answer, change one thing, and see why.",
-    "options": [["none", ""], *([one.title, one.name] for one in LESSONS.values())],
+    "options": [
+        ["none", ""],
+        *([one.title, one.name, one.subject] for one in LESSONS.values()),
+    ],
 }
 COMPARE_ITEM: dict[str, Any] = {
     "name": COMPARE,
@@ -76,19 +79,6 @@ VIEWS_ITEM: dict[str, Any] = {
     "group": "Plots",
 }
 NOTE_ITEM: dict[str, Any] = {"name": NOTE, "kind": "note"}
-LINK, SAVE, DEFAULTS, CLASS = "Link", "Save", "Defaults", "Class"
-SHARE_ITEM: dict[str, Any] = {
-    "name": SHARE,
-    "kind": "share",
-    "group": "Share",
-    "buttons": [
-        [LINK, "Copy the address of this page: its settings and what you look at."],
-        [SAVE, "Save the settings as a file, which Open and the command line read."],
-        [DEFAULTS, "Bring all settings back to their defaults."],
-        [CLASS, "Begin a class: whoever joins by its code sees what you see."],
-    ],
-    "label": "Open settings (.toml) or load (.csv)",
-}
 
 
 @cache
@@ -103,7 +93,7 @@ def items(settings: type[Settings]) -> list[dict[str, Any]]:
     after = max(place for place, item in enumerate(how) if item["group"] == METHOD) + 1
     how.insert(after, WARM_ITEM)
     first = [item for name in chief if (item := item_of(name, definitions[name]))]
-    others = [COMPARE_ITEM, VIEWS_ITEM, LESSON_ITEM, SHARE_ITEM]
+    others = [COMPARE_ITEM, VIEWS_ITEM, LESSON_ITEM]
     return [NOTE_ITEM, SCENE_ITEM, *first, *what, *how, *others]
 
 

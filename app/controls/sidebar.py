@@ -1,4 +1,4 @@
-"""What stands at the side: the settings, the choice of views, and what carries settings away."""
+"""What stands at the side: the settings, and the choice of scene, views and lesson."""
 
 from __future__ import annotations
 
@@ -9,30 +9,22 @@ from typing import Any
 from app.components.form import ENDS, NAMED, POINTS, USUAL, Form, shown_value
 from app.controls.comparing import choice_of, pair
 from app.controls.items import (
-    CLASS,
     COMPARE,
-    DEFAULTS,
     LESSON,
-    LINK,
     NOTE,
-    SAVE,
     SCENE,
-    SHARE,
     VIEWS,
     WARM,
     items,
 )
-from app.controls.refusals import last_that_holds, refused, refused_by_name
+from app.controls.refusals import last_that_holds, refused
 from app.reports.report import Report
 from app.session.session import Session
-from app.session.uploads import load_in, saved
 from app.views.catalogue import drawn, fitting
 from solver.definitions import SettingError, about
-from solver.files import settings_from_toml
 from solver.scenes import ends_of, points_of
 from solver.settings import Settings
 
-NO_TEXT = "The file is not text: give a settings file (.toml) or a table (.csv)."
 MOMENT = 0.025
 """Seconds within which of several moves of a control the newest counts."""
 
@@ -44,8 +36,6 @@ class Sidebar:
     ----------
     session
         Is told what the user changes, and shown.
-    copy
-        Copies the page's address.
     teach
         Opens a lesson by its name; an empty one leaves that which is open.
 
@@ -58,11 +48,9 @@ class Sidebar:
     def __init__(
         self,
         session: Session,
-        copy: Callable[[], None],
         teach: Callable[[str], None],
     ) -> None:
         self._session = session
-        self._copy = copy
         self._teach = teach
         self._report: Report | None = None
         self._asked: dict[str, Any] = {}
@@ -100,13 +88,12 @@ class Sidebar:
             COMPARE: choice_of(session.twin, settings),
             WARM: session.warm_start,
             VIEWS: [views, seen],
-            SHARE: None,
             "": self._answered,
             ENDS: ends_of(settings),
             NAMED: [*(lesson.controls if lesson else ()), *self._told_of(acting)],
         }
         if self._report is not None:
-            kept = {SCENE, SHARE, ENDS, NAMED, ""} if acting else {SHARE, ""}
+            kept = {SCENE, ENDS, NAMED, ""} if acting else {""}
             own = {NOTE: self._report.note, **{name: own[name] for name in kept}}
         changes: dict[str, Any] = {"shown": {**values, **own}}
         # Param takes longer to compare the controls with themselves than to pass on the values.
@@ -135,8 +122,6 @@ class Sidebar:
             self._session.warm_start = value
         elif name == VIEWS:
             self._session.draw(value)
-        elif name == SHARE:
-            self._on_share(value)
         elif value is None:
             self._let_go(name)
         elif value == POINTS:
@@ -204,21 +189,6 @@ class Sidebar:
             session.refusal = refused(refusal, session.wanted)
         self._answer()
 
-    def _on_share(self, value: Any) -> None:
-        if value == LINK:
-            self._copy()
-        elif value == SAVE:
-            facts = self._session.facts
-            was_warm = facts is not None and facts.was_warm
-            self.view.file = [saved(self._session.settings, was_warm=was_warm), self._heard]
-        elif value == DEFAULTS:
-            self._adopt(type(self._session.settings).checked({}))
-        elif value == CLASS:
-            self._session.attendance.lead(self._session.wanted)
-            self._session.ask(afresh=True)
-        else:
-            self._open(*value)
-
     def _let_go(self, name: str) -> None:
         """Follow the end of a drag."""
         self._in_hand.discard(name)
@@ -237,26 +207,3 @@ class Sidebar:
         (self._in_hand.add if by_hand else self._in_hand.discard)(name)
         if not self._moment.is_set:
             self.obey()
-
-    def _adopt(self, settings: Settings) -> None:
-        self.obey()
-        self._session.refusal = ""
-        self._session.adopt(settings)
-        self._answer()
-
-    def _open(self, filename: str, text: str | None) -> None:
-        """Take the settings or the load path of a file."""
-        if text is None:
-            self._session.refusal = NO_TEXT
-            return
-        settings = self._session.wanted
-        try:
-            if filename.endswith(".toml"):
-                self._adopt(settings_from_toml(text))
-            else:
-                found, said = load_in(text, filename, settings)
-                self._adopt(found)
-                self._session.told = said
-        except SettingError as refusal:
-            say = refused_by_name if filename.endswith(".toml") else refused
-            self._session.refusal = say(refusal, settings)

@@ -7,16 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from app.components.form import item_of
-from solver.lessons.lesson import Control, Lesson, Value, pieces
+from solver.lessons.lesson import SUBJECTS, Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
 
 FOLDER = Path(__file__).parent
 LESSONS = {
     one.name: one
-    for one in sorted(map(lesson_from_file, FOLDER.glob("*.toml")), key=lambda one: one.order)
+    for one in sorted(
+        map(lesson_from_file, FOLDER.glob("*.toml")),
+        key=lambda one: (SUBJECTS.index(one.subject), one.order),
+    )
 }
-"""All lessons by their names, in order."""
-OFFERED = [[one.name, one.title, one.question] for one in LESSONS.values()]
+"""All lessons by their names, in order, those of one subject together."""
+OFFERED = [[one.name, one.title, one.question, one.subject] for one in LESSONS.values()]
 NO_CHOICE = -1
 """Stands for the choice of who wants to see and not to predict."""
 MARKS = re.compile(r"\*+(.+?)\*+|\^(\d+)")

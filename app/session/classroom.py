@@ -199,7 +199,8 @@ class Seat:
         """Heed that the page is ready, and the number that it gives to what it sees."""
         match order:
             case Run():
-                self._ticket = order.ticket
+                # Of the newest picture the run before may have had the news.
+                self._ticket, self._shown = order.ticket, 0
             case Ready():
                 self._is_ready = True
                 self._shown = 0 if order.afresh else self._shown

@@ -58,6 +58,9 @@ class State(param.Parameterized):
         default=False, doc="Whether its question waits, which nothing on the page may give away."
     )
     question = param.Parameter[Any](doc="What is asked over ranges of settings.")
+    steps = param.Parameter[tuple[bool, bool]](
+        default=(False, False), doc="Whether what was set can be undone, and done again."
+    )
     refusal = param.String(doc="What was refused and why; empty as soon as that is past.")
     told = param.String(doc="What was done.")
     room = param.Parameter[Room | None](doc="The class that is followed.")

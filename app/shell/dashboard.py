@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -11,8 +12,10 @@ from app.components.keys import Keys
 from app.components.panes import column, page, text
 from app.components.pulse import pulse
 from app.controls.sidebar import Sidebar
+from app.session.history import History
 from app.session.session import Session
 from app.session.state import TABS
+from app.shell.actions import Actions
 from app.shell.address import Sight, sight_from_query
 from app.shell.banner import Banner
 from app.shell.delivery import Delivery
@@ -33,6 +36,10 @@ from app.views.catalogue import drawn
 from app.whatif.whatif import WhatIf
 from solver.settings import Settings
 
+AT_RIGHT: dict[str, Any] = {"justify_content": "flex-end", "styles": {"margin-right": "44px"}}
+"""In the header, beside the button for keys and words."""
+UNDOING = {"Ctrl+z": "undo", "Ctrl+Shift+z": "redo", "Ctrl+y": "redo"}
+"""Keys, and what they do."""
 FIRST_ROW = 3
 """Plots that a projector, or a frame of a course page, has room for."""
 
@@ -73,8 +80,12 @@ class Dashboard:
         chosen = {**self._transport.chooses(), **self._looks.chooses()}
         self._gallery = gallery({**chosen, "drag": self._drag, "tab": self._turn})
         self._banner = Banner(session)
-        self._sidebar = Sidebar(session, lambda: self._link.copy(), self._teach)
+        self._sidebar = Sidebar(session, self._teach)
         self._teaching = Teaching(session, self._sidebar)
+        history = History(session, self._teaching.take)
+        self._actions = Actions(
+            session, self._sidebar.obey, history, lambda: self._link.copy(), self._present
+        )
         self._saver = Saver(session)
         self._live = self._make_live()
         self._tabs = Tabs(session, self._live, WhatIf(session, self._open_run))
@@ -94,8 +105,10 @@ class Dashboard:
 
     def _furnish(self, *, on_phone: bool) -> None:
         """Make the page of its parts, in the theme and the view that are looked at first."""
-        self.page = page([self._sidebar.view, self._saver.view], self._tabs.bar, self._tabs.main)
-        controls = [self._transport.view, self._sidebar.view, self._saver.view]
+        acts = self._actions.view, self._saver.view
+        beside = pn.FlexBox(*acts, flex_wrap="nowrap", **AT_RIGHT)
+        self.page = page(self._sidebar.view, [self._tabs.bar, beside], self._tabs.main)
+        controls = [self._transport.view, beside, self._sidebar.view]
         self._phone = Phone(self.page, self._tabs, self._live, self._figures, controls)
         if on_phone:
             self._phone.fit()
@@ -144,7 +157,9 @@ class Dashboard:
         self.pulse.on("leads", self._lead_again)
         self.pulse.on("went", self._go_to)
         self.pulse.param.watch(lambda event: self._on_narrow(), "narrow")
-        does = {**self._transport.keys(), "p": self._stage.toggle}
+        undoes = {key: partial(self._actions.hear, kind) for key, kind in UNDOING.items()}
+        does: dict[str, Callable[[], Any]] = {**self._transport.keys(), **undoes}
+        does["p"] = self._stage.toggle
         self._keys.on_msg(lambda message: does[message.data]())
         watch = self.session.param.watch
         watch(lambda event: self._on_tab(), "tab")
@@ -187,6 +202,10 @@ class Dashboard:
         attendance = self.session.attendance
         if attendance.follows is None and attendance.resume(ticket):
             self.session.ask(afresh=True)
+
+    def _present(self) -> None:
+        self.session.tab = TABS[0]
+        self._stage.toggle()
 
     def _go_to(self, query: str) -> None:
         """Show what the browser has gone back to, or on to; what was asked for is kept."""

@@ -30,7 +30,7 @@ WATCHED = (
 )
 Standing = tuple[Settings, Sight, Room | None, Settings | None, Question | None]
 COPIED = "Copied: the link to what stands here."
-WITHOUT = "It leaves out what is too long for a link: {}. Save gives a file that has all."
+WITHOUT = "It leaves out what is too long for a link: {}. Save settings gives a file that has all."
 REFUSED = "Not copied, as the browser does not let the page: take the link from the address bar."
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.components.lens import Lens
+from app.components.panes import HEADER
 from app.session.session import Session
 from app.session.state import VIEWS
 from app.shell.gallery import Gallery
@@ -60,6 +61,6 @@ class Stage:
         if event.old == PAGE:
             self._was_open = self._page.sidebar_open
         self._page.param.update(
-            sx=ALONE if self.is_bare else None,
+            sx=ALONE if self.is_bare else HEADER,
             sidebar_open=self._was_open and not self.is_bare,
         )

@@ -27,6 +27,7 @@ IN_HEADER = {
         "color": "#0b3d66",
         "backgroundColor": "#fff",
     },
+    "@media (max-width: 899px)": {"& button": {"padding": "3px 8px"}},
 }
 """White on the blue of the header, in both themes."""
 BELOW = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 0"}}

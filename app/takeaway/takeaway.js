@@ -39,7 +39,7 @@ export function render({model}) {
   tables.append(...model.tables.map((name) => new Option(name, name)))
   model.on("views", show)
   show()
-  return make("div", {}, make("h4", {}, "Take away"),
+  return menu("Take away", "Pictures, animations, tables, and the program of this run.",
     make("label", {}, "Plot", plots),
     button("PNG", "Save the picture, with its name, legend and units.",
       saved(save_png)),

@@ -10,6 +10,7 @@ import param
 
 from app.components.form import STYLE
 from app.components.innards import Plain
+from app.components.menu import STYLE as MENU
 from app.components.panes import script
 from app.picture.shown import thinned
 from app.session.session import Session
@@ -50,8 +51,8 @@ class TakeAway(Plain):
     caption = param.String(default="")
     shot = param.Integer(default=0)
 
-    _esm = script("elements.js", "takeaway/gif.js", "exports.js", "takeaway/takeaway.js")
-    _stylesheets: ClassVar[list[str]] = [STYLE]
+    _esm = script("elements.js", "menu.js", "takeaway/gif.js", "exports.js", "takeaway/takeaway.js")
+    _stylesheets: ClassVar[list[str]] = [STYLE, MENU]
 
 
 @dataclass
@@ -97,7 +98,7 @@ class Saver:
         self._session = session
         self._count = 0
         self._film: Film | None = None
-        self.view = TakeAway(name=TAKE_AWAY, sizing_mode="stretch_width", margin=(4, 10))
+        self.view = TakeAway(name=TAKE_AWAY, margin=0)
         self.view.on_msg(lambda message: self.hear(**message.data))
         session.param.watch(lambda *events: self._follow(), ["facts", "ticket"])
 

@@ -125,15 +125,22 @@ export function render({model}) {
     return [...boxes, make("nav", {ariaLabel: "Parts of the lesson"}, back, place, on)]
   }
   const offer = () => {
-    const list = model.offered.map(([name, title, question]) =>
-      make("li", {}, button(title, () => open(name)), make("span", {}, question)))
-    const words = `New here? ${list.length} short lessons: predict, change one thing, see why.`
+    const lists = new Map()
+    model.offered.forEach(([name, title, question, subject], place) => {
+      if (!lists.has(subject)) { lists.set(subject, make("ol", {start: place + 1})) }
+      lists.get(subject).append(
+        make("li", {}, button(title, () => open(name)), make("span", {}, question)))
+    })
+    const counts = [...lists].map(([subject, list]) => `${list.children.length} in ${subject}`)
+    const words = `New here? Short lessons, ${counts.join(" and ")}: ` +
+      "predict, change one thing, see why."
+    const parts = [...lists].flatMap(([subject, list]) => [make("h4", {}, subject), list])
     const away = () => {
       see()
       build()
     }
     return make("div", {className: "offer"},
-      make("details", {}, make("summary", {}, words), make("ol", {}, ...list)),
+      make("details", {}, make("summary", {}, words), ...parts),
       button("×", away, {ariaLabel: "Hide the lessons", title: "Hide; the sidebar has them."}))
   }
   const build = () => {

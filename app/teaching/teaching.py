@@ -61,6 +61,8 @@ nav button:disabled { opacity: 0.4; }
 .offer { display: flex; align-items: start; padding: 0 10px; font-size: 14px; line-height: 1.3; }
 .offer details { flex: 1; }
 .offer summary { margin: 2px 0; }
+.offer h4 { margin: 8px 0 0; }
+.offer ol { margin: 2px 0; }
 .offer li { margin: 4px 0; }
 .offer li button { padding: 2px 8px; font-weight: 600; }
 .offer > button { border: 0; padding: 0 10px; margin: 2px 0; }
@@ -76,7 +78,7 @@ class LessonPane(Plain):
     Attributes
     ----------
     offered
-        Name, title and question of every lesson.
+        Name, title, question and subject of every lesson.
     lesson
         What is shown of the one that is open, as `content` says it; empty if there is none.
     shown

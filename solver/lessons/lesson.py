@@ -9,6 +9,7 @@ from typing import Literal
 from solver.settings import Settings
 from solver.study.quantities import Reading, reading
 
+SUBJECTS = "mechanics", "method"
 PLACEHOLDER = re.compile(r"\{(.*?)\}")
 
 
@@ -89,6 +90,8 @@ class Lesson:
         That of its file, without the ending.
     order
         Its place among the lessons.
+    subject
+        What it is about: one of `SUBJECTS`.
     title, question
         What it is called, and what it asks.
     choices
@@ -113,6 +116,7 @@ class Lesson:
 
     name: str
     order: int
+    subject: str
     title: str
     question: str
     choices: tuple[str, ...]

@@ -14,6 +14,7 @@ from solver.disk import read_text, why
 from solver.files import scene_settings
 from solver.lessons.lesson import (
     PLACEHOLDER,
+    SUBJECTS,
     Claim,
     EndingClaim,
     Expected,
@@ -26,6 +27,7 @@ from solver.study.quantities import reading
 KEYS = {
     "title": str,
     "order": int,
+    "subject": str,
     "question": str,
     "choices": list,
     "right": int,
@@ -105,6 +107,10 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
     if not 0.0 <= values["instant"] <= 1.0:
         allowed = "a share of the interval, from 0 to 1"
         raise SettingError("instant", values["instant"], allowed, "say where its plots stand")
+    if values["subject"] not in SUBJECTS:
+        raise SettingError(
+            "subject", values["subject"], ", ".join(SUBJECTS), "say what it is about"
+        )
     _check_controls(controls, settings)
     with _in("text"):
         text = _paragraphs(values["text"], controls)
@@ -113,6 +119,7 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
     return Lesson(
         name=name,
         order=values["order"],
+        subject=values["subject"],
         title=values["title"],
         question=values["question"],
         choices=choices,

@@ -1,0 +1,49 @@
+export function render({model}) {
+  const tell = (kind, value = "") => model.send_msg({kind, value})
+  const wide = (text, title, onclick) =>
+    make("button", {type: "button", className: "wide", title, onclick}, text)
+  const text = (bytes) => {
+    try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) } catch {}
+    // Spreadsheets write letters as old Windows did; no text has zeros.
+    const isText = !new Uint8Array(bytes).includes(0)
+    return isText ? new TextDecoder("windows-1252").decode(bytes) : null
+  }
+  const upload = make("input", {type: "file", accept: ".toml,.csv"})
+  upload.onchange = async () => {
+    const [file] = upload.files
+    if (file) { tell("open", [file.name, text(await file.arrayBuffer())]) }
+    upload.value = ""
+  }
+  const share = menu("Share", "The link to what stands here; settings to and from a file.",
+    wide("Copy link", "The address of this page: its settings and what you look at.",
+      () => tell("link")),
+    wide("Save settings", "A file that this page and the command line read.",
+      () => tell("save")),
+    make("label", {}, "Open settings (.toml) or a load path (.csv)", upload),
+    wide("Defaults", "Bring all settings of this scene back.", () => tell("defaults")))
+  const lead = wide("Start a class", "Others see what you see.", () => {
+    lead.parentNode.hidePopover()
+    tell("class")
+  })
+  // The page of that class is another one, which says if there is none.
+  const code = make("input", {name: "class", required: true, size: 8, maxLength: 12,
+    autocomplete: "off", autocapitalize: "characters"})
+  const join = make("form", {action: location.pathname},
+    make("label", {}, "Code of a class ", code), make("button", {className: "wide"}, "Join"))
+  const lesson = menu("Class", "Lead a class, or join one by its code.",
+    make("p", {}, "Whoever joins by its code sees what you see."), lead, join)
+  const present = action("Present", "For a projector (p).", {onclick: () => tell("present")})
+  const steps = [
+    action("Undo", "Take back the last change (Ctrl Z).", {onclick: () => tell("undo")}),
+    action("Redo", "Make it again (Ctrl Shift Z).", {onclick: () => tell("redo")}),
+  ]
+  const show = () => steps.forEach((one, place) => {
+    one.classList.add("step")
+    one.disabled = !model.steps[place]
+  })
+  model.on("steps", show)
+  show()
+  model.on("file", () =>
+    save("slipfront.toml", new Blob([model.file[0]], {type: "application/toml"})))
+  return make("div", {className: "actions"}, ...steps, lesson, present, share)
+}
