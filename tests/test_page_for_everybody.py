@@ -211,7 +211,7 @@ def test_the_value_under_a_pointer_that_rests_is_that_of_the_plot_that_came_ther
 def test_keys_move_the_run_only_where_it_is_seen(page: Page) -> None:
     figures, instant = page.locator(".figures"), slider(page, "Instant")
     expect(figures).to_contain_text("this run")
-    seen = figures.inner_text()
+    seen = figures.text_content() or ""
     press(page, "Stability")
     expect(page.get_by_text("Stiff and extreme cases of every scene")).to_be_visible()
     page.locator("body").press("r")
@@ -220,6 +220,6 @@ def test_keys_move_the_run_only_where_it_is_seen(page: Page) -> None:
     before = instant.input_value()
     instant.press("ArrowLeft")
     expect(instant).not_to_have_value(before)
-    assert figures.inner_text() == seen
+    assert figures.text_content() == seen
     page.locator("body").press("r")
     expect(figures).not_to_have_text(seen)

@@ -25,7 +25,7 @@ def agreed(page: Page) -> str:
     expect(status(page)).to_contain_text("not converged")
     # There is none before the reference is there.
     expect(status(page)).to_contain_text(ERROR)
-    found = ERROR.search(status(page).locator("div").first.inner_text())
+    found = ERROR.search(status(page).locator("div").first.text_content() or "")
     assert found
     expect(value(page, "Error of the contact force")).to_have_text(found[1])
     return found[1]
@@ -60,6 +60,7 @@ def test_a_lesson_is_predicted_moved_read_reloaded_and_left(open_page: Visit) ->
     page.reload()
     expect(lesson(page)).to_contain_text("Not “3 to 5”, but: About 10.")
     expect(modes).not_to_have_js_property("ariaValueNow", "5")
+    agreed(page)
     with page.expect_download() as handed_out:
         press(page, "Handout")
     paper = handed_out.value.path().read_text(encoding="utf-8")

@@ -14,7 +14,7 @@ from shown_pages import SMALL, Shown, keys
 
 from app.picture.glossary import TERMS, explained
 from app.views.catalogue import fitting
-from app.worker.words import FIGURES
+from app.worker.key_figures import FIGURES
 from solver.scenes.bar import BarSettings
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -115,6 +115,7 @@ def test_what_is_explained_follows_a_finger_from_word_to_word(page: Page) -> Non
 
 def test_what_is_explained_follows_the_keyboard_from_word_to_word(page: Page) -> None:
     note, words = page.get_by_role("tooltip"), page.locator(".figures abbr")
+    page.get_by_role("button", name="Method").press("Enter")
     words.first.focus()
     for word in words.all_text_contents()[1:]:
         page.keyboard.press("Tab")
@@ -136,12 +137,12 @@ def test_all_words_are_in_a_list(page: Page) -> None:
 def test_a_term_keeps_the_focus_while_pictures_come(open_page: Visit) -> None:
     page = open_page(f"?elements=20&substructures=2&instants=11&{ENDLESS}&plots=Scene")
     expect(status(page)).to_contain_text("running")
-    page.locator(".figures abbr", has_text="Run time").focus()
+    page.locator(".figures abbr", has_text="Slips").focus()
     before = iteration(page)
     while iteration(page) < before + 5:
         page.wait_for_timeout(100)
-    expect(page.get_by_role("tooltip")).to_have_text(line_of("run time"))
-    expect(page.locator(".figures abbr", has_text="Run time")).to_be_focused()
+    expect(page.get_by_role("tooltip")).to_have_text(line_of("slip"))
+    expect(page.locator(".figures abbr", has_text="Slips")).to_be_focused()
 
 
 def test_what_a_control_is_for_is_said_to_the_keyboard(page: Page) -> None:

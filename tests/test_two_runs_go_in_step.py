@@ -17,7 +17,7 @@ from app.controls.comparing import PRESETS, pair
 from app.picture.sampler import Sampler
 from app.views import convergence, error_time, friction, loop, tractions
 from app.wire.orders import Pace, Seek, Step, Watch
-from app.worker.words import NONE_YET
+from app.worker.key_figures import NONE_YET
 from solver.files import scene_settings
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings

@@ -70,7 +70,8 @@ export function render({model, view}) {
     plain.innerHTML = named("status")?.text ?? ""
     const now = /<b>(.*?)<.b>/.exec(plain.value)?.[1] ?? ""
     if (now !== state && !/^(running|follows)/.test(now)) {
-      spoken.textContent = plain.value.replaceAll(/<[^>]*>/g, " ")
+      const [line] = plain.value.split('<span class="asks"')
+      spoken.textContent = line.replaceAll(/<[^>]*>/g, " ")
     }
     state = now
   }

@@ -8,6 +8,7 @@ from typing import Any
 
 import panel as pn
 
+from app.components.fold import Fold
 from app.components.keys import Keys
 from app.components.panes import column, page, text
 from app.components.pulse import pulse
@@ -109,7 +110,7 @@ class Dashboard:
         beside = pn.FlexBox(*acts, flex_wrap="nowrap", **AT_RIGHT)
         self.page = page(self._sidebar.view, [self._tabs.bar, beside], self._tabs.main)
         controls = [self._transport.view, beside, self._sidebar.view]
-        self._phone = Phone(self.page, self._tabs, self._live, self._figures, controls)
+        self._phone = Phone(self.page, self._tabs, self._live, controls)
         if on_phone:
             self._phone.fit()
         self.page.dark_theme = self._sight.theme == "dark"
@@ -171,9 +172,11 @@ class Dashboard:
         watch(lambda *events: self._arrange(), arranged)
 
     def _make_live(self) -> pn.Column:
-        words, self._figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
+        words, figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
+        whole = Fold(label="Method", css_classes=["whole"], width=76, kept_as="method-figures")
         heads = self._banner.view, self._teaching.view, self._transport.view
-        parts = *heads, words, self._figures, self._gallery, self.pulse, self._keys
+        folding = column(whole, figures, role="folding")
+        parts = *heads, words, folding, self._gallery, self.pulse, self._keys
         return column(*parts, role="live", margin=(4, 10))
 
     def _arrange(self) -> None:

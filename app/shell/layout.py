@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.picture.portrait import size_of
-from app.views import picture
+from app.views import deformed, picture
 from app.views.drawing import View
 from solver.scenes import structure_of
 from solver.settings import Settings
@@ -49,8 +49,8 @@ class Layout:
 
 
 def layout(views: Sequence[View], settings: Settings) -> Layout:
-    """Arrange views, of which the first may be the picture of the scene."""
-    has_picture = picture.VIEW in views[:1]
+    """Arrange views, of which the first may be a picture of the bodies."""
+    has_picture = bool(views) and views[0] in (picture.VIEW, deformed.VIEW)
     is_long = has_picture and _is_long(settings)
     if has_picture and not is_long:
         return _beside(len(views) - 1)
@@ -85,8 +85,8 @@ def _in_rows(count: int, *, has_band: bool) -> Layout:
     band = (30 if rows > 1 else 38) if has_band else 0
     seen = min(rows, ROWS)
     gaps = 8 * (seen - 1 + has_band) / seen
-    row = f"max(130px, {(100 - band) / seen:g}% - {gaps:g}px)"
-    first = f"max(120px, {band}%) " if has_band else ""
+    row = f"max(120px, {(100 - band) / seen:g}% - {gaps:g}px)"
+    first = f"max(110px, {band}%) " if has_band else ""
     areas = [f"auto / span {span}" for span in spans]
     return Layout(
         f"{first}repeat({rows}, {row}) / repeat(6, minmax(0, 1fr))",

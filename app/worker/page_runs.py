@@ -15,12 +15,13 @@ from app.picture.shown import Look, instant_of
 from app.views.drawing import Scene
 from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.wire.reports import Facts, File, Picture
+from app.worker.key_figures import key_figures
 from app.worker.painter import TAKE_AWAY, Painter
 from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
 from app.worker.tables import table
 from app.worker.twin import Twin
-from app.worker.words import before_a_run, before_it_is_agreed, key_figures, status_line
+from app.worker.words import before_a_run, before_it_is_agreed, status_line
 from solver.latin import Iterate
 from solver.refusal import RefusedError
 

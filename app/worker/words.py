@@ -1,18 +1,15 @@
-"""What the page says in words: the status line, and the key figures beside those before."""
+"""What the page says in words of a run: what it is at, how it ended, and what to try."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
 from html import escape
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from app.picture.glossary import explained
-from app.picture.labels import FEW, changes_of, in_titles, label_of
+from app.picture.labels import in_titles
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
-from app.picture.shown import has_reference
-from app.views.drawing import Scene
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost
 
@@ -23,22 +20,20 @@ ENDINGS = {
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
+DETAIL = '<span class="asks" tabindex="0">details<span class="detail">{}</span></span>'
+"""What is shown to a pointer, the focus, or a tap."""
 STATES = {
     "running": "<b>running</b>, iteration {}",
     "paused": "<b>paused</b> at iteration {}",
     "held": "<b>waits</b> for the study to be timed, at iteration {}",
 }
-AT_REST = "■ at rest"
+AT_REST, AT_WORK = "■ at rest", "at work"
 COUNTED = "iteration", "friction force error"
 """Stand beside their numbers in the status line, where scripts read them; the figures mark them."""
 PAUSED = "Run goes on, Step does one iteration."
-NONE_YET = "no iteration done by then"
 REPLAYED = "The run had ended, and begins anew."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
 UNKNOWN = "–"
-ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")
-CHIEF, ESTIMATE = "Friction force error", "Estimated force error"
-"""What is left where all is folded to a line, with a reference and without one."""
 
 
 def before_a_run(cost: RunCost) -> str:
@@ -67,41 +62,54 @@ def status_line(
     A run "by hand" is replayed once the slider is let go; one that is held waits for a study that
     is timed. A complaint comes before the advice.
     """
-    settings, parts = run.settings.values(), run.settings.n_substructures
-    scale = (
-        "one substructure"
-        if parts == 1
-        else f"{parts} substructures, {'multiscale' if settings['multiscale'] else 'monoscale'}"
-    )
     done = run.iteration or frame.iteration
-    counted = "iteration" if done == 1 else "iterations"
-    if state == "by hand":
-        ending = ENDINGS[run.status.ending] if run.status else "running"
-        line = f"<b>follows the slider</b>, {ending} at iteration {done} · {scale}"
-    elif run.status is not None:
-        ending = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending]
-        line = f"<b>{ending}</b> after {done} {counted} · {scale}"
-    else:
-        line = f"{STATES[state].format(done)} · {scale}"
-    if (bases := frame.bases) is not None:
-        counted = "1 mode" if bases.largest == 1 else f"up to {bases.largest} modes"
-        line += f" · {counted} a substructure, {bases.found.stored} in all"
-    if (last := run.last) is not None:
-        line += f" · η = {number(last.indicator)}"
-        if math.isfinite(last.error_force):
-            line += f" · friction force error {percent(last.error_force)}"
-        line += f" · {1e3 * per_iteration(run):.2f} ms per iteration"
+    line = _state(run, frame, state, done)
     if sought is not None:
         line += f" · <b>showing iteration {sought}</b>"
     more = [f"<b>{escape(complaint)}</b>"] if complaint else []
     more += [f"<b>{escape(run.notice)}</b>"] if run.notice else []
-    more += [start_line(run)] if run.is_warm else []
+    detail = [_detail(run, frame)]
+    detail += [start_line(run)] if run.is_warm else []
     if run.status is not None:
+        is_solved = run.status.ending is Ending.CONVERGED and not run.stand.is_idle
         advice = NOTHING_ACTS if run.stand.is_idle else run.status.advice
-        more.append(in_titles(run.settings, escape(advice), "<i>{}</i>"))
+        (detail if is_solved else more).append(in_titles(run.settings, escape(advice), "<i>{}</i>"))
     elif state == "paused":
         more.append(PAUSED)
-    return explained(f"{line}<br>{' '.join(more)}" if more else line, COUNTED)
+    whole = f"{' '.join([line, *more])} {DETAIL.format('<br>'.join(detail))}"
+    return explained(whole, COUNTED)
+
+
+def _state(run: Recording, frame: Frame, state: str, done: int) -> str:
+    """Say in plain words what a run is at, or what it came to."""
+    counted = "iteration" if done == 1 else "iterations"
+    if state == "by hand":
+        ending = ENDINGS[run.status.ending] if run.status else "running"
+        return f"<b>follows the slider</b>, {ending} at iteration {done}"
+    if run.status is None:
+        return STATES[state].format(done)
+    ending = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending]
+    proof = ": the answer is certified" if frame.iterate.residual is not None else ""
+    ending = ending.replace("converged", "solved")
+    return f"<b>{ending}</b> after {done} {counted}{proof}."
+
+
+def _detail(run: Recording, frame: Frame) -> str:
+    """Give what the method says of itself."""
+    settings, parts = run.settings.values(), run.settings.n_substructures
+    scale = "multiscale" if settings["multiscale"] else "monoscale"
+    ended = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending] if run.status else ""
+    found = [ended if run.status else AT_WORK]
+    found.append("one substructure" if parts == 1 else f"{parts} substructures, {scale}")
+    if (bases := frame.bases) is not None:
+        counted = "1 mode" if bases.largest == 1 else f"up to {bases.largest} modes"
+        found.append(f"{counted} a substructure, {bases.found.stored} in all")
+    if (last := run.last) is not None:
+        found.append(f"η = {number(last.indicator)}")
+        if math.isfinite(last.error_force):
+            found.append(f"friction force error {percent(last.error_force)}")
+        found.append(f"{1e3 * per_iteration(run):.2f} ms per iteration")
+    return " · ".join(found)
 
 
 def start_line(run: Recording) -> str:
@@ -114,84 +122,6 @@ def start_line(run: Recording) -> str:
     if run.choice.is_previous:
         return f"Started from the run before: {figures}."
     return f"Started from {own}. The run before is not clearly nearer: {figures}."
-
-
-def key_figures(scene: Scene) -> str:
-    """Set the figures of the shown iteration beside those of what it is compared with (HTML).
-
-    The run before stands there at its end, a run A at equal iteration and at equal run time.
-    Errors are those beside a reference; where there is none, they are left out.
-    """
-    run, before, iteration = scene.run, scene.before, scene.frame.iteration
-    rows = [_Row("this run", _cells(run, iteration))]
-    if before is not None and scene.is_paired:
-        rows = _paired(run, before, iteration)
-    elif before is not None:
-        name = f"run before ({escape(before.title)})"
-        rows.append(_Row(name, _cells(before, before.iteration)))
-    shown = [name for name in FIGURES if has_reference(run.settings) or name not in ERRORS]
-    chief = CHIEF if CHIEF in shown else ESTIMATE
-    head = "".join(f"<th{_mark(name, chief)}>{explained(name)}</th>" for name in shown)
-    body = "".join(
-        f'<tr><th title="{row.whole or row.name}" aria-label="{row.whole or row.name}">{row.name}'
-        f"</th>{_row(row.cells, shown, chief)}</tr>"
-        for row in rows
-    )
-    return f"<table><thead><tr><th></th>{head}</tr></thead><tbody>{body}</tbody></table>"
-
-
-def _row(cells: Mapping[str, str], shown: Sequence[str], chief: str) -> str:
-    if not cells:
-        return f'<td class="chief" colspan="{len(shown)}">{NONE_YET}</td>'
-    return "".join(f"<td{_mark(name, chief)}>{cells[name]}</td>" for name in shown)
-
-
-def _mark(name: str, chief: str) -> str:
-    return ' class="chief"' if name == chief else ""
-
-
-class _Row(NamedTuple):
-    """A run's name (HTML) and figures; its whole name, where that is longer than there is room."""
-
-    name: str
-    cells: Mapping[str, str]
-    whole: str = ""
-
-
-def _paired(run: Recording, twin: Recording, iteration: int) -> list[_Row]:
-    """Give the figures of run B, and of run A as far as B in iterations, and in time."""
-    return [
-        _compared("B", run, twin, "as A", iteration),
-        _compared("A", twin, run, "as B", twin.shown),
-        _at_equal_time(run, twin, iteration),
-    ]
-
-
-def _compared(name: str, run: Recording, other: Recording, alike: str, iteration: int) -> _Row:
-    """Give the figures of a run, which is called by what it has other than the other one."""
-    changes = changes_of(run.settings, other.settings)
-    few, all_of_them = (
-        f"{name} ({escape(label_of(run.settings, changes, most) or alike)})"
-        for most in (FEW, len(changes))
-    )
-    return _Row(few, _cells(run, iteration), all_of_them)
-
-
-def _at_equal_time(run: Recording, twin: Recording, iteration: int) -> _Row:
-    """Give A after the run time of B, or B after that of A where A has not run as long yet."""
-    now, last = run.figures_of(iteration), twin.figures_of(twin.iteration)
-    if now is None or last is None:
-        return _Row("at equal run time", _cells(twin, 0))
-    if twin.status is None and last["seconds"] < now["seconds"]:
-        name, slower, done = "B at A's run time", run, run.last_within(last["seconds"])
-    else:
-        name, slower, done = "A at B's run time", twin, twin.last_within(now["seconds"])
-    return _Row(name, _cells(slower, done) if done else {})
-
-
-def _cells(run: Recording, iteration: int) -> dict[str, str]:
-    found = run.figures_of(iteration)
-    return {name: write(found, run) if found else UNKNOWN for name, write in FIGURES.items()}
 
 
 def per_iteration(run: Recording) -> float:
@@ -221,16 +151,3 @@ def percent(value: float) -> str:
     if value >= 1.0:
         return f"{100.0 * value:.0f} %" if value < 100.0 else f"{number(100.0 * value)} %"
     return f"{100.0 * value:.2g} %" if value >= 1e-4 else f"{number(100.0 * value)} %"
-
-
-FIGURES: dict[str, Callable[[Mapping[str, float], Recording], str]] = {
-    "Iteration": lambda now, run: f"{now['iteration']:.0f}",
-    "LATIN indicator η": lambda now, run: number(now["indicator"]),
-    "k-free indicator": lambda now, run: number(now["behaviour"]),
-    ESTIMATE: lambda now, run: percent(now["estimated_error"]),
-    "Displacement error": lambda now, run: percent(now["error_displacement"]),
-    CHIEF: lambda now, run: percent(now["error_force"]),
-    "Run time": lambda now, run: f"{1e3 * now['seconds']:.1f} ms",
-    "Iterations to 1 %": lambda now, run: str(run.first_within(0.01) or UNKNOWN),
-}
-"""What is told of an iteration of a run."""

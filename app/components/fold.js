@@ -14,10 +14,16 @@ export function render({model, view}) {
     })
     seen?.scrollIntoView({block: "start"})
   }
+  const {kept_as: name} = model
   button.onclick = () => {
-    open(button.getAttribute("aria-expanded") !== "true")
+    const is = button.getAttribute("aria-expanded") !== "true"
+    open(is)
     if (model.keeps) { keep() }
+    try { if (name) { localStorage.setItem(name, is) } } catch {}
   }
-  open(false)
+  let was = null
+  try { was = name && localStorage.getItem(name) } catch {}
+  // What stands behind it is built after it.
+  requestAnimationFrame(() => open(was === "true"))
   return button
 }
