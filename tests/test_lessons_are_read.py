@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from app.lessons.lesson import LESSONS
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.lessons.lesson import Claim, Control, Value, pieces
@@ -68,6 +69,12 @@ def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
     assert one.settings.values() == {**found.settings.values(), "peak": 600.0}
 
 
+def test_a_curve_goes_through_the_checkpoints_that_change_its_setting_alone() -> None:
+    found = LESSONS["best-k"]
+    assert found.curve == [(0.01, math.inf), (0.1, 302), (1, 28), (10, 294), (100, math.inf)]
+    assert found.drawn_quantity.startswith("Iterations to an error of the contact force")
+
+
 def test_a_paragraph_falls_into_words_controls_and_values() -> None:
     first, value, second, control = pieces("At {value:error_force@3} move {control:peak}")
     assert (first, second) == ("At ", " move ")
@@ -97,6 +104,7 @@ def test_a_paragraph_falls_into_words_controls_and_values() -> None:
         ("instant", "1.5", ["instant = 1.5", "from 0 to 1"]),
         ("instant", None, ["instant = null", "needed"]),
         ("interface", "2", ["interface = 2", "text"]),
+        ("draw", '"peak"', ['draw = "peak"', "3 checkpoints"]),
         ("text", '"{control:friction}"', ["text: placeholder", "{control:peak}, {value:"]),
         ("text", '"{peak}"', ['placeholder = "peak"', "{control:peak}, {value:"]),
         ("text", '"{value:luck}"', ['quantity = "luck"', "iterations, seconds"]),

@@ -63,6 +63,7 @@ def drawn(page: Dashboard) -> set[str]:
 def test_before_the_choice_neither_answer_nor_control_is_on_the_page(lesson: Lesson) -> None:
     asked, told = content(lesson, None), content(lesson, NO_CHOICE)
     assert set(told) - set(asked) == {"choice", "right", "why", "explanation", "items", "next"}
+    assert not asked.get("curve", {}).get("values")
     assert not [part for paragraph in asked["text"] for part in paragraph if part[0] == "control"]
     assert [item["name"] for item in told["items"]] == list(lesson.controls)
     assert set(readings(lesson, None)) <= set(readings(lesson, NO_CHOICE))

@@ -91,3 +91,15 @@ def test_lessons_are_offered_until_one_has_seen_them_and_stay_in_the_sidebar(
     expect(slider(page, "Friction coefficient")).not_to_be_visible()
     expect(value(page, "Length over which a broken wire regains its force")).to_have_text("0.2 m")
     expect(page.get_by_text("New here?")).to_have_count(0)
+    page.goto(page.url.partition("?")[0] + "?lesson=best-k")
+    pad = lesson(page).get_by_role("img", name="over Factor on k")
+    box = pad.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.5 * box["height"])
+    page.mouse.up()
+    press(page, "One in between")
+    expect(lesson(page)).to_contain_text("Your curve, and what was measured")
+    expect(pad.locator("circle")).to_have_count(5)
+    assert len(re.findall("L", pad.locator("path").get_attribute("d") or "")) > 20

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
 
 from app.components.form import item_of
+from solver.definitions import about
 from solver.lessons.lesson import SUBJECTS, Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
 
@@ -38,7 +40,7 @@ def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
         Index of what was predicted, or `NO_CHOICE`; None before the choice.
     """
     place = list(LESSONS).index(lesson.name)
-    found = {
+    found: dict[str, Any] = {
         "name": lesson.name,
         "place": f"Lesson {place + 1} of {len(LESSONS)}",
         "title": lesson.title,
@@ -46,6 +48,8 @@ def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
         "question": lesson.question,
         "choices": list(lesson.choices),
     }
+    if lesson.draw:
+        found["curve"] = axes(lesson, is_answered=choice is not None)
     if choice is None:
         return found
     definitions = lesson.settings.definitions()
@@ -57,6 +61,23 @@ def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
         "explanation": [parts(one) for one in lesson.explanation],
         "items": [item_of(name, definitions[name]) for name in lesson.controls],
         "next": OFFERED[place + 1][:2] if place + 1 < len(LESSONS) else [],
+    }
+
+
+def axes(lesson: Lesson, *, is_answered: bool) -> dict[str, Any]:
+    """Say over what a curve is drawn, and once it is, what was measured.
+
+    Infinite values become null: they lie beyond the axis.
+    """
+    places, values = zip(*lesson.curve, strict=True)
+    largest = max(one for one in values if math.isfinite(one))
+    shown = [one if math.isfinite(one) else None for one in values]
+    return {
+        "across": about(lesson.settings.definitions()[lesson.draw]).title,
+        "up": lesson.drawn_quantity,
+        "places": list(places),
+        "top": 10.0 ** math.ceil(math.log10(largest)),
+        "values": shown if is_answered else [],
     }
 
 

@@ -4,7 +4,8 @@ const ON_PAPER = `
   body { max-width: 178mm; margin: 0 auto; font: 11pt/1.45 system-ui, sans-serif; color: #000; }
   h1 { font-size: 18pt; margin: 0; } h2 { font-size: 14pt; }
   .picture > svg { width: 100%; max-height: 75mm; }
-  .dark .picture > svg { filter: invert(1) hue-rotate(180deg); }
+  .picture > .pad { display: block; max-width: 100mm; margin: 0 auto; }
+  .dark .picture > svg:not(.pad) { filter: invert(1) hue-rotate(180deg); }
   .question { font-weight: 600; } ul { list-style: "☐  "; padding-left: 2em; }
   .room { height: 70mm; background: repeating-linear-gradient(#fff 0 9mm, #bbb 9mm 9.4mm); }
   .overleaf { break-before: page; }
@@ -25,18 +26,22 @@ const handout = (lesson, texts, address) => {
     plot.firstChild.setAttribute("fill", "none")
     return box
   }
+  const empty = () => sketchpad({...lesson.curve, values: []}, blank(), () => {})
+  const full = () => make("div", {className: "picture"}, sketchpad(lesson.curve, blank(), () => {}))
   const [thing, ...others] = lesson.slugs.filter(is_drawn)
   const front = [
     make("small", {}, `Slipfront, ${lesson.place}`), make("h1", {}, lesson.title),
     ...paragraphs(lesson.text), ...(thing ? [picture(thing)] : []),
     make("p", {className: "question"}, lesson.question),
     make("ul", {}, ...lesson.choices.map((choice) => make("li", {}, choice))),
+    ...(lesson.curve ? [make("div", {className: "picture"}, empty())] : []),
     make("p", {}, "Why?"), make("div", {className: "room"}),
   ]
   const back = make("section", {className: "overleaf"},
     make("h2", {}, `${lesson.choices[lesson.right]}.`), make("p", {}, lesson.why),
     ...paragraphs(lesson.explanation),
-    make("div", {className: "plots"}, ...others.map(picture)),
+    make("div", {className: "plots"},
+      ...(lesson.curve ? [full()] : []), ...others.map(picture)),
     make("p", {}, make("small", {}, `To try it: ${address}`)))
   const theme = document.documentElement.dataset.theme ?? ""
   const body = make("body", {className: theme}, ...front, back)

@@ -1,6 +1,7 @@
 export function render({model}) {
   const {tell, show: put, kinds} = controls(model)
-  const LESSON = "the-lesson", CHOICE = "the-choice", COUNT = "the-count", SEEN = "slipfront-lessons-seen"
+  const LESSON = "the-lesson", CHOICE = "the-choice", COUNT = "the-count"
+  const SEEN = "slipfront-lessons-seen"
   const root = make("section", {ariaLabel: "Lesson"})
   let rows = new Map(), places = [], taught_last = "", step = 0, turn = () => {}
   // A browser may refuse to keep anything.
@@ -14,6 +15,28 @@ export function render({model}) {
   const predict = (place) => {
     try { sessionStorage.setItem(PREDICTED, JSON.stringify([model.lesson.title, place])) } catch {}
     tell({name: CHOICE}, place)
+  }
+  // What was drawn by hand goes on being there as long as what was predicted.
+  const SKETCH = "slipfront-sketch"
+  const sketched = () => {
+    try {
+      const [title, sketch] = JSON.parse(sessionStorage.getItem(SKETCH)) ?? []
+      return title === model.lesson.title ? sketch : blank()
+    } catch { return blank() }
+  }
+  const keep = (sketch) => {
+    try { sessionStorage.setItem(SKETCH, JSON.stringify([model.lesson.title, sketch])) } catch {}
+  }
+  const curve = ({curve: axes}) => {
+    if (!axes) { return [] }
+    const sketch = sketched(), by_hand = sketch.some((one) => one !== null)
+    const pad = sketchpad(axes, sketch, keep)
+    if (!axes.values.length) {
+      const words = "Draw what you expect, with the mouse or a finger."
+      return [make("figure", {}, pad, make("figcaption", {}, words))]
+    }
+    const words = by_hand ? "Your curve, and what was measured" : "What was measured"
+    return [make("details", {open: by_hand}, make("summary", {}, words), make("figure", {}, pad))]
   }
   const button = (text, onclick, more = {}) =>
     make("button", {type: "button", onclick, ...more}, text)
@@ -97,15 +120,19 @@ export function render({model}) {
     const question = make("p", {className: "question"}, lesson.question)
     if (lesson.choice === undefined) {
       const ends = !lesson.follows ? [skip(), leave()] : lesson.alone ? [skip()] : []
-      const asked = [question, choices(lesson), ...polled(lesson), ...ends]
+      const ask = make("div", {className: "ask"}, ...curve(lesson), choices(lesson))
+      const asked = [question, ask, ...polled(lesson), ...ends]
       return is_strip() ? [...heads, ...asked, folded(text)] : [...heads, ...text, ...asked]
     }
     const ends = lesson.follows ? [] : [...go_on(lesson.next), on_paper(), leave()]
     const told = paragraphs(lesson.explanation), votes = counts(lesson), answer = verdict(lesson)
     if (!is_strip()) {
-      return [...heads, folded(text), question, ...votes, answer, ...told, ...ends]
+      const answered = [question, ...votes, answer, ...curve(lesson)]
+      return [...heads, folded(text), ...answered, ...told, ...ends]
     }
-    const first = votes.length ? [[question, ...votes], [answer]] : [[question, answer]]
+    const own = sketched().some((one) => one !== null) ? [curve(lesson)] : []
+    const said = votes.length ? [[question, ...votes], [answer]] : [[question, answer]]
+    const first = [...said, ...own]
     const last = ends.length ? [make("p", {}, ...ends)] : []
     return strip([...first, ...told.map((one) => [one]), ...last.map((one) => [one])])
   }

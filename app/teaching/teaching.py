@@ -40,6 +40,14 @@ button.main { color: #fff; background: #1565c0; border-color: #1565c0; }
 .counts { padding: 0; list-style: none; }
 .counts li { padding: 4px 12px; margin: 4px 0; }
 .choices button { display: block; width: 100%; padding: 7px 12px; margin: 6px 0; }
+figure { margin: 6px 0; max-width: 480px; }
+figcaption { font-size: 0.85em; opacity: 0.8; }
+.pad { display: block; width: 100%; cursor: crosshair; user-select: none; }
+.strip figure { max-width: 340px; }
+.ask { display: flex; flex-wrap: wrap; gap: 0 20px; }
+.ask figure { flex: 0 1 360px; }
+.ask .choices { flex: 1 1 220px; }
+.why ~ details .pad { cursor: default; }
 .value { font-weight: 600; white-space: nowrap; font-variant-numeric: tabular-nums; }
 sup { line-height: 0; }
 .control { display: inline-block; vertical-align: bottom; padding: 0 8px; border-radius: 6px;
@@ -104,7 +112,7 @@ class LessonPane(Plain):
 
     _esm = script(
         *("elements.js", "exports.js", "values.js", "points.js", "controls.js"),
-        *("teaching/handout.js", "teaching/lesson.js"),
+        *("teaching/curve.js", "teaching/handout.js", "teaching/lesson.js"),
     )
     _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
 

@@ -112,6 +112,8 @@ class Lesson:
         At which its plots stand, as a share of the interval.
     interface
         Name of that which its plots are of; empty is the first one.
+    draw
+        Name of the setting over which one may draw the answer as a curve; empty for none.
     """
 
     name: str
@@ -130,6 +132,32 @@ class Lesson:
     checkpoints: tuple[Claim | EndingClaim, ...]
     instant: float
     interface: str
+    draw: str = ""
+
+    @property
+    def curve(self) -> list[tuple[float, float]]:
+        """What is measured over the setting that one draws over, in its order.
+
+        Of the checkpoints that change nothing else and ask for the quantity of the first of them:
+        the middle of what is expected, infinite for never.
+        """
+        found: dict[float, float] = {}
+        own, asked = self.settings.values(), ""
+        for claim in self.checkpoints:
+            if not isinstance(claim, Claim):
+                continue
+            values = claim.settings.values()
+            same = all(values[name] == own[name] for name in own if name != self.draw)
+            if self.draw in values and same and asked in ("", claim.reading.name):
+                asked = claim.reading.name
+                found[values[self.draw]] = 0.5 * (claim.expected.low + claim.expected.high)
+        return sorted(found.items())
+
+    @property
+    def drawn_quantity(self) -> str:
+        """What that curve shows, in words."""
+        claims = (one for one in self.checkpoints if isinstance(one, Claim))
+        return next((one.reading.title for one in claims), "")
 
 
 def kind_of_place(place: str) -> tuple[Literal["control", "value", ""], str]:

@@ -40,9 +40,11 @@ KEYS = {
     "explanation": str,
     "instant": (int, float),
     "interface": str,
+    "draw": str,
     "checkpoints": list,
 }
-"""Keys of a lesson, and the type of each; `interface` alone may be left out."""
+"""Keys of a lesson, and the type of each; `OPTIONAL` may be left out."""
+OPTIONAL = "interface", "draw"
 OF_CHECKPOINT = {
     "claim": str,
     "settings": dict,
@@ -55,6 +57,8 @@ OF_VERDICT = {"claim": str, "settings": dict, "says": str}
 """Keys of one that tells with which words a run ends; `settings` may be left out."""
 WORDS = {str: "text", int: "a whole number", list: "a list", dict: "a table"}
 MOST_CONTROLS = 2
+FEWEST_POINTS = 3
+"""Of a curve that one may draw."""
 
 
 class LessonError(SettingError):
@@ -96,7 +100,7 @@ def _in(place: str) -> Iterator[None]:
 
 
 def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
-    _check_keys(values, KEYS, optional=("interface",))
+    _check_keys(values, KEYS, optional=OPTIONAL)
     kind = scene_settings(values["scene"])
     with _in("settings"):
         settings = kind.checked(values["settings"])
@@ -116,7 +120,7 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         text = _paragraphs(values["text"], controls)
     with _in("explanation"):
         explanation = _paragraphs(values["explanation"], controls)
-    return Lesson(
+    found = Lesson(
         name=name,
         order=values["order"],
         subject=values["subject"],
@@ -133,7 +137,13 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         checkpoints=tuple(_checkpoints(values["checkpoints"], settings)),
         instant=float(values["instant"]),
         interface=values.get("interface", ""),
+        draw=values.get("draw", ""),
     )
+    points = [place for place, value in found.curve if place > 0.0 and math.isfinite(value)]
+    if found.draw and len(points) < FEWEST_POINTS:
+        allowed = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
+        raise SettingError("draw", found.draw, allowed, "write more checkpoints, or leave it out")
+    return found
 
 
 def _check_keys(
