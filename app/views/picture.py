@@ -171,7 +171,7 @@ def _bands(posed: Posed) -> list[Curve]:
     """Give bands along contacts, beside a single body and between several."""
     bodies, is_flat = posed.described.bodies, posed.described.height is None
     width = 6 if bodies == 1 else 5 if is_flat and bodies <= FEW_BODIES else 3
-    return [posed.curve(posed.band(one), color, width) for one, color, _ in _statuses(posed)]
+    return [posed.band(one, color, width) for one, color, _ in _statuses(posed)]
 
 
 def _statuses(posed: Posed) -> tuple[tuple[int, str, str], ...]:

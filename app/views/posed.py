@@ -64,6 +64,20 @@ class Posed:
         dx, dy = found[2:] if len(found) == 4 else (0.0, 0.0)
         return Curve(found[0], found[1], color, width, dash, dx=dx, dy=dy)
 
+    def band(self, status: int, color: str, width: float) -> Curve:
+        """Give the stretches of all contacts that have a status, beside a single body."""
+        places, chains = self._contacts(), self._portrait.chains
+        is_straight = self.described.height is None
+        found = [np.full((1, 2), np.nan)]
+        for chain in range(int(chains.max()) + 1):
+            own = chains == chain
+            for one in sketch.stretches(places[own], self._pose.status[own] == status):
+                found += [one[[0, -1]] if is_straight else one, found[0]]
+        x, y = self.placed(np.concatenate(found[1:] or found)).T
+        beside = (0.0, -BESIDE if self.described.bodies == 1 else 0.0)
+        dx, dy = sketch.turned(np.array(beside), self._tilt)
+        return Curve(x, y, color, width, dx=dx, dy=dy)
+
     def outlines(self) -> Iterator[Array]:
         """Give the undeformed bodies."""
         nodes = self._portrait.mesh.nodes[self._portrait.mesh.quads]
@@ -101,16 +115,6 @@ class Posed:
         places, chains = self._contacts(), self._portrait.chains
         found = {name: places[chains == number] for number, name in enumerate(names)}
         return {name: self.placed(one) for name, one in choices(found).items()}
-
-    def band(self, status: int) -> Array:
-        """Give the stretches of all contacts that have a status, beside a single body."""
-        places, chains = self._contacts(), self._portrait.chains
-        strokes = []
-        for chain in range(int(chains.max()) + 1):
-            own = chains == chain
-            strokes += sketch.stretches(places[own], self._pose.status[own] == status)
-        beside = (0.0, -BESIDE if self.described.bodies == 1 else 0.0)
-        return sketch.joined(sketch.line(one, beside) for one in strokes)
 
     def _contacts(self) -> Array:
         """Give where contact points are; those of wires lie between them."""
