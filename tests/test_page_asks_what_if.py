@@ -11,7 +11,7 @@ from pages import ENDLESS, Visit, comes_true, press, status, visits
 from playwright.sync_api import Locator, Page, expect
 from test_page_for_everybody import violations
 
-TINY = "?elements=20&substructures=2&instants=11&plots=Scene"
+TINY = "?elements=20&substructures=2&instants=11&plots=Scene&finish=at+once"
 CURVE = f"{TINY}&tab=What+if&vary=peak=300:1500:5&of=peak_displacement"
 MAP = f"{TINY}&tab=what+if&vary=friction=0.1:0.7:7&vary=peak=300:1500:7&of=peak_displacement"
 SLOW = f"{ENDLESS}&elements=400&instants=401&plots=Scene"

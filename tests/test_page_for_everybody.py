@@ -41,7 +41,7 @@ def violations(page: Page) -> list[Any]:
     ]
 
 
-page = one_page("?elements=20&substructures=2&instants=11", "✓ converged")
+page = one_page("?elements=20&substructures=2&instants=11&finish=at+once", "✓ converged")
 """A page whose run has ended, which every test leaves as it found it."""
 
 

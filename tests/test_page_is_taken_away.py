@@ -84,7 +84,9 @@ def test_a_table_and_a_program_are_saved(page: Page) -> None:
 
 
 def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -> None:
-    page = open_page("?elements=20&instants=21&max_iterations=60&plots=Friction+force")
+    page = open_page(
+        "?elements=20&instants=21&max_iterations=60&plots=Friction+force&finish=at+once"
+    )
     expect(status(page)).to_contain_text("✓ converged")
     open_sheets(page)
     compared = page.get_by_role("combobox", name="Compare with")

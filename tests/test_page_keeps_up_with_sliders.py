@@ -15,6 +15,7 @@ from app.session.report_executor import ReportExecutor
 from app.session.session import HELD_STILL, Session
 from app.shell.dashboard import Dashboard
 from app.shell.transport import Transport
+from app.wire.orders import WHOLE
 from app.wire.reports import Facts, Picture
 from solver.scenes.bar import BarSettings
 
@@ -31,7 +32,7 @@ def link() -> LoneLink:
 
 @pytest.fixture
 def session(clock: Clock, link: LoneLink) -> Session:
-    settings = BarSettings.checked({"method": "paper"})
+    settings = BarSettings.checked({"method": "paper", "finish": "accuracy"})
     return Session(Pages(1), ReportExecutor(), settings, link.hire, clock)
 
 
@@ -129,6 +130,7 @@ def test_a_dragged_slider_hurries_and_let_go_it_replays(
     shown(session, link)
     move(sidebar, "peak", 910.0)
     assert (link.orders[-1].follows_hand, link.orders[-1].pace) == (True, None)
+    assert link.orders[-1].settings.finish == "at-once"
     move(sidebar, "peak", 920.0)
     clock.pass_(MOMENT)
     assert link.orders[-1].settings.peak == 910.0
@@ -137,7 +139,8 @@ def test_a_dragged_slider_hurries_and_let_go_it_replays(
     move(sidebar, "peak", None)
     shown(session, link)
     last = link.orders[-1]
-    assert (last.settings.peak, last.follows_hand, last.pace) == (920.0, False, session.pace)
+    assert (last.settings.peak, last.follows_hand, last.pace) == (920.0, False, WHOLE)
+    assert last.settings.finish == "accuracy"
     assert last.label == "peak 920 N"
     count = len(link.orders)
     shown(session, link)

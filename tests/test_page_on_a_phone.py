@@ -17,7 +17,7 @@ BELOW_THE_HEADER = 50.0
 @pytest.fixture(scope="module")
 def phone(server: Server, chrome: Chrome) -> Iterator[Page]:
     """Give a page on a phone, whose sheet every test leaves as it found it."""
-    query = "?elements=20&substructures=2&instants=11"
+    query = "?elements=20&substructures=2&instants=11&finish=at+once"
     with visits(server, chrome) as visit:
         page = visit(query, 390, 844, has_touch=True, is_mobile=True)
         expect(status(page)).to_contain_text("converged")

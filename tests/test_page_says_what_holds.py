@@ -10,6 +10,7 @@ import pytest
 from shown_pages import ALL, Shown
 
 from app.controls.comparing import CHOICES, choice_of, pair
+from app.picture.usual import changed, shown
 from app.server.serve import is_phone
 from app.shell.address import (
     Sight,
@@ -54,7 +55,7 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
 ) -> None:
     settings, complaint = settings_from_query(query)
     assert {name: settings.values()[name] for name in kept} == kept
-    assert set(settings.changed()) <= set(kept)
+    assert set(changed(settings)) <= set(kept)
     assert bool(complaint) == bool(refused)
     assert all(part in complaint for part in refused)
 
@@ -64,7 +65,8 @@ def test_what_is_valid_holds_and_all_that_is_not_is_named(
     [
         ("", Sight(), []),
         ("?instant=0.5&pace=5&tab=Study", Sight("Study", 0.5, "5"), []),
-        ("?pace=fastest&pace=100", Sight(pace="100"), []),
+        ("?pace=fastest&pace=20", Sight(pace="20"), []),
+        ("?pace=100", Sight(pace="fastest"), []),
         ("?iteration=7&theme=dark", Sight(iteration=7, theme="dark"), []),
         ("?iteration=1.5&theme=blue", Sight(), ["iteration = 1.5", 'theme = "blue"']),
         ("?tab=figures", Sight("Figures"), []),
@@ -87,6 +89,30 @@ def test_an_address_says_what_is_looked_at(query: str, sight: Sight, refused: li
     again = query_of(settings, found)
     assert sight_from_query(again) == (found, "")
     assert settings_from_query(again)[0].values() == settings.values()
+
+
+@pytest.mark.parametrize(
+    ("query", "finish", "said"),
+    [
+        ("?seed=2", "accuracy", ""),
+        ("?finish=at+once", "at-once", "at-once"),
+        ("?finish=status", "at-once", "at-once"),
+        ("?finish=none", "none", "none"),
+        ("?method=paper", "none", ""),
+        ("?method=paper&finish=accuracy", "accuracy", "accuracy"),
+    ],
+)
+def test_a_link_watches_unless_it_says_how_a_run_ends(query: str, finish: str, said: str) -> None:
+    settings, _ = settings_from_query(query)
+    assert settings.finish == finish
+    assert ("finish" in query_of(settings)) == bool(said)
+
+
+def test_another_method_brings_what_the_page_shows_of_it() -> None:
+    watched, _ = settings_from_query("")
+    only = shown(watched.replace(method="paper"), watched)
+    again = shown(only.replace(method="fast"), only)
+    assert (only.finish, again.finish) == ("none", "accuracy")
 
 
 @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def test_a_lesson_is_predicted_moved_read_reloaded_and_left(open_page: Visit) ->
 def test_lessons_are_offered_until_one_has_seen_them_and_stay_in_the_sidebar(
     open_page: Visit,
 ) -> None:
-    page = open_page("?elements=20&substructures=2&instants=11&plots=Scene")
+    page = open_page("?elements=20&substructures=2&instants=11&plots=Scene&finish=at+once")
     page.get_by_text("New here?").click()
     expect(lesson(page).get_by_role("listitem")).to_have_count(len(LESSONS))
     press(page, "Hide the lessons")

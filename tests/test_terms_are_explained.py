@@ -82,7 +82,9 @@ def test_a_term_is_marked_where_it_first_stands_and_nowhere_inside_another_or_a_
     assert TERM.sub(r"\1", explained(text)) == text
 
 
-page = one_page("?elements=20&substructures=2&instants=11", "✓ converged", has_touch=True)
+page = one_page(
+    "?elements=20&substructures=2&instants=11&finish=at+once", "✓ converged", has_touch=True
+)
 """A page whose run has ended, on a device with a mouse and a screen to touch."""
 
 

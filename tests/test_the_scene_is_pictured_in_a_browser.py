@@ -20,7 +20,7 @@ MODEL = """const model = (name) =>
   Bokeh.documents.map((one) => one.get_model_by_name(name)).find((one) => one)"""
 
 
-page = one_page("?elements=20&substructures=4&instants=21", "✓ converged")
+page = one_page("?elements=20&substructures=4&instants=21&finish=at+once", "✓ converged")
 """A page with a bar whose run has ended; the last test pulls it by another load."""
 
 

@@ -77,7 +77,7 @@ def test_a_long_table_is_no_part_of_an_address_which_says_so() -> None:
     assert again.changed() == {"duration": 10.0}
     assert complaint == "From the address: load is too long for it: open its file."
     assert (
-        query_of(settings_of("bar"), twin=settings)
+        query_of(settings_of("bar", finish="accuracy"), twin=settings.replace(finish="accuracy"))
         == "?scene=bar&compare=%7B%22duration%22%3A10.0%7D&file=load"
     )
 

@@ -18,6 +18,7 @@ from worker_line import SHORT, STALLING, Line
 
 from app.picture.recording import COLUMNS, History
 from app.picture.sampler import Sampler
+from app.wire.orders import Seek
 from app.worker import run
 from solver import latin
 from solver.latin import Ending, Iterate, Record
@@ -58,6 +59,28 @@ def test_worker_gives_the_numbers_of_a_direct_solution(values: dict[str, Any]) -
     assert frame.iteration == other.iteration
     for name in ("friction", "status", "end_displacement"):
         assert np.array_equal(getattr(frame.fields, name), getattr(other.fields, name))
+
+
+def test_the_answer_is_a_picture_of_its_own_beside_the_iterates() -> None:
+    shown = shown_run({"finish": "accuracy"})
+    last, end = (picture.facts for picture in shown.pictures[-2:])
+    done = shown.recording.searched
+    assert (last.iteration, last.is_over) == (done, False)
+    assert (end.iteration, end.is_over) == (done + 1, True)
+    assert f"after {done} iterations" in shown.words
+    assert "answer" in shown.words
+    assert shown.page["iteration"]["text"] == "answer"
+    assert shown.recording.first_within(0.01) == done
+    assert max(map(max, (one for one in shown.page["convergence.curves"]["xs"][:-1]))) == done
+    assert list(shown.page["convergence.ring"]["x"]) == [done + 1]
+
+
+def test_an_iterate_of_a_search_is_shown_again_beside_its_answer() -> None:
+    shown = shown_run({**SHORT, "finish": "accuracy"})
+    done = shown.recording.searched
+    shown.obey(Seek(1, done))
+    assert shown.page["iteration"]["text"] == f"{done} of {done}"
+    assert f"showing iteration {done}" in shown.words
 
 
 def test_the_first_picture_comes_before_the_reference() -> None:

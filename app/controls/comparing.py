@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.picture.usual import shown
 from solver.definitions import SettingError
 from solver.settings import Settings
 
@@ -40,7 +41,11 @@ def pair(choice: str, settings: Settings) -> tuple[Settings | None, Settings]:
         raise SettingError(
             "the comparison", choice, "what differs with these settings", "cut the body first"
         )
-    return settings.replace(**mine), settings.replace(**others)
+    return _with(settings, mine), _with(settings, others)
+
+
+def _with(settings: Settings, changes: dict[str, Any]) -> Settings:
+    return shown(settings.replace(**changes), settings)
 
 
 def choice_of(twin: Settings | None, settings: Settings) -> str:
@@ -52,5 +57,5 @@ def choice_of(twin: Settings | None, settings: Settings) -> str:
 
 def _is_preset(name: str, twin: Settings, settings: Settings) -> bool:
     mine, others = PRESETS[name]
-    a, b = settings.replace(**mine), settings.replace(**others)
+    a, b = _with(settings, mine), _with(settings, others)
     return (a.values(), b.values()) == (twin.values(), settings.values())

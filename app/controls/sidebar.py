@@ -18,6 +18,7 @@ from app.controls.items import (
     items,
 )
 from app.controls.refusals import last_that_holds, refused
+from app.picture.usual import usual_value
 from app.reports.report import Report
 from app.session.session import Session
 from app.views.catalogue import drawn, fitting
@@ -127,8 +128,7 @@ class Sidebar:
         elif value == POINTS:
             self._on_setting(name, points_of(self._session.wanted, name))
         elif value == USUAL:
-            settings = self._session.wanted
-            self._on_setting(name, settings.usual(settings.method)[name])
+            self._on_setting(name, usual_value(self._session.wanted, name))
         else:
             self._on_setting(name, value, by_hand=hand)
 

@@ -39,6 +39,8 @@ TERMS: dict[tuple[str, ...], str] = {
     "neighbours, so a load travels one substructure an iteration.",
     ("status step",): "Keeps the present stick, slip and opening, and solves the linear problem "
     "that is left; its solution counts only if it obeys all laws.",
+    ("answer",): "The solution that a status step has found. It stands beside the iterates of the "
+    "search, once these are accurate enough by themselves.",
     ("certified",): "Shown to obey equilibrium and all contact laws up to rounding.",
     ("chosen instant", "instant"): "A moment of the load path. Tap the map or drag the slider to "
     "choose one.",

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from app.picture.frames import DrawnFields, Stand
 from app.picture.shown import Counts, thinned
+from app.picture.usual import changed
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
 from solver.reference.distance import Distance
@@ -63,10 +64,14 @@ class History:
         rows = self._table[:, : min(count, self._count)].T.tolist()
         return [Record(int(number), *scalars) for number, *scalars in rows]
 
-    def thinned(self, most: int) -> dict[str, NDArray[np.float64]]:
-        """Give all columns, of so many iterations at most; the first and the last among them."""
-        chosen = thinned(self._count, most) if self._count else slice(0)
-        return dict(zip(COLUMNS, self._table[:, : self._count][:, chosen], strict=True))
+    def thinned(self, most: int, count: int | None = None) -> dict[str, NDArray[np.float64]]:
+        """Give all columns, of so many iterations at most, the first and the last among them.
+
+        They are those of the first `count`, or of all.
+        """
+        done = self._count if count is None else min(count, self._count)
+        chosen = thinned(done, most) if done else slice(0)
+        return dict(zip(COLUMNS, self._table[:, :done][:, chosen], strict=True))
 
 
 @dataclass
@@ -91,6 +96,8 @@ class Recording:
     frame, shown
         Fields that others are compared with, once the run is one of the past or a run A, and the
         number of their iteration.
+    answer
+        The number under which its answer is shown, beside the iterates of its search.
     is_warm
         Whether it was to start from the run before, where that is better.
     """
@@ -109,12 +116,14 @@ class Recording:
     frame: DrawnFields | None = None
     shown: int = 0
     status: Status | None = None
+    answer: int | None = None
     is_warm: bool = False
     choice: StartChoice | None = None
 
     def add(self, entry: Record, sizes: Counts | None, beside: Sequence[Record]) -> None:
         """Add an iteration."""
         self.last = entry
+        self.answer = entry.iteration if entry.is_answer else None
         self.history.add(entry)
         if sizes is not None:
             self.sizes.append(sizes)
@@ -136,13 +145,22 @@ class Recording:
     def title(self) -> str:
         """What is new in it, and whether it started from the run before it."""
         warm = self.choice is not None and self.choice.is_previous
-        label = self.label or ("first settings" if self.settings.changed() else "defaults")
+        label = self.label or ("first settings" if changed(self.settings) else "defaults")
         return f"{label}{', from the run before it' if warm else ''}"
 
     @property
     def iteration(self) -> int:
-        """Iterations done, whose records are here."""
+        """Iterations done, whose records are here, and the answer after them."""
         return self.last.iteration if self.last else 0
+
+    @property
+    def searched(self) -> int:
+        """Iterations done; the answer beside them is none."""
+        return self.iteration - (self.answer is not None)
+
+    def called(self, number: int) -> str:
+        """Name an iterate, or the answer."""
+        return "answer" if number == self.answer else f"iteration {number}"
 
     @property
     def is_worth_keeping(self) -> bool:
@@ -151,7 +169,7 @@ class Recording:
 
     def first_within(self, level: float) -> int | None:
         """Find the first iteration whose friction force error is at most `level`."""
-        within = np.flatnonzero(self.history.column("error_force") <= level)
+        within = np.flatnonzero(self.history.column("error_force")[: self.searched] <= level)
         return int(self.history.column("iteration")[within[0]]) if len(within) else None
 
     def last_within(self, seconds: float) -> int:

@@ -13,6 +13,7 @@ import panel_material_ui as pmui
 from app.components.panes import select
 from app.picture.labels import changes_of, label_of
 from app.picture.shown import has_reference
+from app.picture.usual import changed
 from app.reports.report import Report
 from app.session.report_job import Found
 from app.session.session import Session
@@ -172,7 +173,8 @@ class StabilityReport(Report):
 
 def title_of(settings: Settings) -> str:
     """Name a study by its settings."""
-    return label_of(settings, settings.changed(), most=len(settings.changed())) or "defaults"
+    found = changed(settings)
+    return label_of(settings, found, most=len(found)) or "defaults"
 
 
 def company(crowd: int) -> str:

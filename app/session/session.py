@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from app.picture.labels import changes_of, label_of
+from app.picture.usual import hurried, shown, usual_settings
 from app.session.asked import Asked
 from app.session.attendance import Attendance
 from app.session.page_worker import AGAIN, GIVEN_UP, Hire, PageWorker
@@ -19,7 +20,7 @@ from app.session.state import State
 from app.session.turns import Turns
 from app.session.uploads import cut_off
 from app.wire.block import said
-from app.wire.orders import Pace, Ready, Run, Seek, Step, Watch
+from app.wire.orders import Pace, Rate, Ready, Run, Seek, Step, Watch
 from app.wire.reports import Died, Facts, Picture
 from app.worker.link import Link
 from app.worker.words import REPLAYED
@@ -74,8 +75,7 @@ class Session(State):
         self.turns = turns or Turns()
         self.worker = PageWorker(hire)
         self.attendance = Attendance(self, self.worker, hire, self.turns, self.start)
-        self.crowd = 0
-        self.follows_hand = self.is_held = False
+        self.crowd, self.follows_hand, self.is_held = 0, False, False
         timer = self.turns.timer
         self._stands_still, self._is_left_alone = timer(self._hold_still), timer(self._give_back)
         self._looks = timer(self.attend)
@@ -122,7 +122,7 @@ class Session(State):
         SettingError
             If the value is refused; then nothing changes.
         """
-        self.adopt(self.wanted.with_change(name, value), by_hand=by_hand)
+        self.adopt(shown(self.wanted.with_change(name, value), self.wanted), by_hand=by_hand)
 
     def adopt(self, settings: Settings, *, by_hand: bool = False) -> None:
         """Take new settings as a whole; those of another scene start at once."""
@@ -157,7 +157,7 @@ class Session(State):
     def choose_scene(self, scene: str) -> None:
         """Go to another scene, with the settings that it was left with, or its defaults."""
         if scene != self.wanted.scene:
-            self.adopt(self._left.get(scene) or scene_settings(scene).checked({}))
+            self.adopt(self._left.get(scene) or usual_settings(scene_settings(scene)))
 
     def collect(self) -> list[bytes]:
         """Take the waiting reports; give the pictures that the page has to be given."""
@@ -199,8 +199,8 @@ class Session(State):
         else:
             self.worker.send(Step(self.ticket, count))
 
-    def set_pace(self, pace: float | None) -> None:
-        """Set the iterations per second."""
+    def set_pace(self, pace: Rate) -> None:
+        """Set how the run goes on."""
         self.pace = pace
         self._keep_pace()
 
@@ -280,7 +280,7 @@ class Session(State):
 
     def _keep_pace(self) -> None:
         if self.goes_on:
-            self.worker.send(Pace(self.ticket, self.pace if self._is_free else 0.0, self.is_held))
+            self.worker.send(Pace(self.ticket, self.rate if self._is_free else 0.0, self.is_held))
 
     def _work(self, *, notice: str = "", **how: bool) -> None:
         """Have a process do the run from its beginning."""
@@ -289,10 +289,10 @@ class Session(State):
         self.worker.send(
             Run(
                 self.ticket,
-                self.settings,
+                hurried(self.settings) if self.follows_hand else self.settings,
                 label=self._label,
                 notice=" ".join(filter(None, notices)),
-                pace=None if self.follows_hand else self.pace,
+                pace=None if self.follows_hand else self.rate,
                 pause_after=None if self._is_free else 1,
                 is_held=self.is_held,
                 is_agreed=self.settings is self._agreed,

@@ -10,17 +10,19 @@ import param
 from param.parameterized import batch_call_watchers
 
 from app.picture.shown import Look
+from app.picture.usual import ANSWER
 from app.session.classroom import Room
 from app.views.catalogue import VIEWS as ALL_VIEWS
+from app.wire.orders import WHOLE, Rate
 from app.wire.reports import Facts
 from solver.lessons.lesson import Lesson
 from solver.settings import Settings
 
 TABS = ("Live", "What if", "Figures", "Study", "Stability")
 VIEWS = ("page", "present", "embed")
-DEFAULT_PACE = 20.0
-PACES = {"1": 1.0, "5": 5.0, "20": DEFAULT_PACE, "100": 100.0, "fastest": None}
-"""Iterations per second."""
+DEFAULT_PACE = WHOLE
+PACES: dict[str, Rate] = {WHOLE: WHOLE, "1": 1.0, "5": 5.0, "20": 20.0, "fastest": None}
+"""Iterations per second, or what an address calls another pace."""
 
 
 class State(param.Parameterized):
@@ -38,9 +40,7 @@ class State(param.Parameterized):
         default=False, doc="Whether time goes by itself, until somebody touches the page."
     )
     running = param.Boolean(default=True, doc="Whether iterations go on by themselves.")
-    pace = param.Number(
-        default=DEFAULT_PACE, allow_None=True, doc="How many a second; None: all it can."
-    )
+    pace = param.Parameter[Rate](default=PACES[DEFAULT_PACE], doc="As in `app.wire.orders.Pace`.")
     warm_start = param.Boolean(
         default=False, doc="Whether a changed setting starts from the run before, if that is better"
     )
@@ -96,6 +96,11 @@ class State(param.Parameterized):
     def is_over(self) -> bool:
         """Whether the run ended or broke: only another run can go on."""
         return self.facts is not None and (self.facts.is_over or self.facts.is_broken)
+
+    @property
+    def rate(self) -> Rate:
+        """The pace of the run at work: an answer at once is not waited for."""
+        return None if self.pace == WHOLE and self.settings.finish == ANSWER else self.pace
 
     @property
     def goes_on(self) -> bool:

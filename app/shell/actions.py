@@ -12,6 +12,7 @@ from app.components.innards import Plain
 from app.components.menu import STYLE as MENU
 from app.components.panes import script
 from app.controls.refusals import refused, refused_by_name
+from app.picture.usual import usual_settings
 from app.session.history import History
 from app.session.session import Session
 from app.session.uploads import load_in, saved
@@ -83,7 +84,7 @@ class Actions:
             "present": lambda _: present(),
             "link": lambda _: copy(),
             "save": lambda _: self._save(),
-            "defaults": lambda _: self._adopt(type(session.wanted).checked({})),
+            "defaults": lambda _: self._adopt(usual_settings(type(session.wanted))),
             "open": lambda file: self._open(*file),
         }
         session.param.watch(lambda event: self.view.param.update(steps=list(event.new)), "steps")

@@ -12,8 +12,9 @@ from app.controls.refusals import refused_by_name, title_and_name
 from app.lessons.lesson import LESSONS
 from app.picture.labels import changes_of
 from app.picture.shown import Look
+from app.picture.usual import usual_settings
 from app.session.classroom import ROOMS, Room
-from app.session.state import PACES, TABS, VIEWS
+from app.session.state import DEFAULT_PACE, PACES, TABS, VIEWS
 from app.views.catalogue import VIEWS as CATALOGUE
 from app.whatif.question import OF, VARY, Question
 from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
@@ -54,7 +55,7 @@ class Sight:
 
     tab: str = TABS[0]
     instant: float = Look().phase
-    pace: str = "20"
+    pace: str = DEFAULT_PACE
     lesson: str = ""
     iteration: int = 0
     theme: str = "light"
@@ -66,7 +67,7 @@ class Sight:
 SIGHT: dict[str, Any] = {
     "tab": choice(Sight.tab, TABS, "", group="", title=""),
     "instant": quantity(Sight.instant, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
-    "pace": choice(Sight.pace, PACES, "", group="", title=""),
+    "pace": choice(Sight.pace, PACES, "", group="", title="", aliases={"100": "fastest"}),
     "lesson": choice(next(iter(LESSONS)), LESSONS, "", group="", title=""),
     "iteration": count(0, (0, MOST_STEPS), (0, MOST_STEPS), "", group="", title=""),
     "theme": choice(Sight.theme, ("light", "dark"), "", group="", title=""),
@@ -153,7 +154,7 @@ def settings_from_query(query: str) -> tuple[Settings, str]:
 def _base(lesson: Lesson | None, scene: str) -> Settings:
     """Give the settings from which an address says what differs."""
     if lesson is None:
-        return scene_settings(scene or DEFAULT_SCENE).checked({})
+        return usual_settings(scene_settings(scene or DEFAULT_SCENE))
     if scene not in ("", lesson.settings.scene):
         raise SettingError("scene", scene, lesson.settings.scene, "the lesson has its own")
     return lesson.settings
@@ -247,7 +248,7 @@ def query_of(
     pairs = [(CLASS, room.code)] if room else [] if lesson else [("scene", settings.scene)]
     if room is None:
         long = left_out(settings, twin)
-        changed = settings.changed(lesson.settings if lesson else None)
+        changed = settings.changed(lesson.settings if lesson else usual_settings(type(settings)))
         pairs += [(name, json.dumps(value)) for name, value in changed.items() if name not in long]
         apart = changes_of(twin, settings) if twin else {}
         apart = {name: value for name, value in apart.items() if name not in long}

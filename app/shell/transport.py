@@ -7,25 +7,36 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+import panel_material_ui as pmui
+
 from app.components.panes import button, row, select
 from app.components.scrubber import scrubber
+from app.picture.usual import ANSWER, WATCH
 from app.session.session import Session
 from app.session.state import PACES
 from app.worker.painter import INSTANT, ITERATION
 from solver.settings import Settings
 
 LABELS = {
+    "whole": "the whole in 3 s",
     "1": "1 iteration/s",
     "5": "5 iterations/s",
     "20": "20 iterations/s",
-    "100": "100 iterations/s",
     "fastest": "as fast as it can",
 }
+ENDS = {"Watch": WATCH, "Answer": ANSWER}
+ITERATE = "Iterate"
+"""Stands beside these where the run only iterates, as the paper's does."""
+WAYS = (
+    "Watch the method search until its own force is accurate enough, and then the certified answer "
+    "beside it; or have the answer at once."
+)
 RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
 AGREES = "Run anyway, however long that takes (space)."
-FIXED = 5
+FIXED = 6
 """Buttons, pace and sliders, which always stand there."""
 PLAIN = {"whiteSpace": "nowrap"}
+SMALL = {"& button": {"textTransform": "none", "padding": "4px 14px"}}
 PLAYED_IN, SOONEST = 8.0, 0.025
 """Seconds in which one plays through time, and least between two instants that are shown."""
 
@@ -49,11 +60,12 @@ class Transport:
         self._make_sliders()
         styles = {"flex": "1 1 320px"}
         self._sliders = row(self._iteration, self._instant, min_width=320, styles=styles)
-        parts = self._run, self._step, self._reset, self._pace, self._sliders
+        parts = self._run, self._step, self._reset, self._way, self._pace, self._sliders
         self.view = row(*parts, align_items="center", css_classes=["transport"])
         watch = session.param.watch
         watch(lambda *events: self._show(), ["facts", "running", "look"])
         watch(lambda event: self._arrange(), "wanted")
+        self._way.param.watch(lambda event: self._end(event.new), "value")
         self._show()
         self._arrange()
 
@@ -167,12 +179,19 @@ class Transport:
     def _arrange(self) -> None:
         """Show the sliders that apply."""
         settings = self._session.wanted
+        offered = ENDS if settings.finish in ENDS.values() else {**ENDS, ITERATE: settings.finish}
+        self._way.param.update(options=offered, value=settings.finish)
         sliders = [self._iteration, self._instant]
         if settings.applies("pgd_modes") and settings.n_substructures > 1:
             sliders.append(self._substructure)
         if list(self._sliders) != sliders:
             self._show_substructure(settings)
             self._sliders[:] = sliders
+
+    def _end(self, finish: str) -> None:
+        """Have the run end in another way; it begins anew."""
+        if finish != self._session.wanted.finish:
+            self._session.change("finish", finish)
 
     def place(self, more: list[Any]) -> None:
         """Put widgets behind the sliders, in place of those there."""
@@ -209,6 +228,9 @@ class Transport:
         does = "Start the run again, from its usual start (r)."
         self._reset = button(
             "Reset", "restart_alt", self.reset, variant="outlined", description=does
+        )
+        self._way = pmui.RadioButtonGroup(
+            options=ENDS, value=WATCH, size="small", description=WAYS, margin=(4, 10), sx=SMALL
         )
         self._pace = select(
             "Pace",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from app.picture.recording import History
 from app.picture.shown import has_reference
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
-from app.views.drawing import Curve, Drawing, Plot, Scene, View
+from app.views.drawing import Curve, Drawing, Marks, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned, upright
 
@@ -24,6 +26,8 @@ LEAST_SPAN = (1e-2, 10.0)
 ERRORS = 3
 """First of them that is an error, and needs a reference."""
 MOST_POINTS = 400
+ANSWER, ABOVE = Marks([], [], BLUE, "ring"), 0.04
+"""Stands at the foot of the axis, as its error is none, this share of it above its end."""
 KEYS = tuple(
     Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
 )
@@ -37,14 +41,15 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     """
     run, before = scene.run, scene.before
     has_modes = run.settings.applies("pgd_modes") and not scene.is_paired
-    now = run.history.thinned(MOST_POINTS)
+    now = run.history.thinned(MOST_POINTS, run.searched)
     keys = KEYS if has_reference(run.settings) else KEYS[:ERRORS]
     past: History | None = before.history if before else None
     if scene.is_paired:
         keys = (*keys, Key(BLUE, "thin", "A"))
     if has_modes:
         past, keys = run.beside, (*keys, Key(BLUE, "thin", "full stage"))
-    ghost = past.thinned(MOST_POINTS) if past is not None else None
+    searched = before.searched if before and past is before.history else None
+    ghost = past.thinned(MOST_POINTS, searched) if past is not None else None
     values = [value for name, *_ in CURVES for value in now[name]]
     if ghost is not None:
         values += [value for name, *_ in CURVES[ERRORS:] for value in ghost[name]]
@@ -62,7 +67,16 @@ def draw(scene: Scene, _kept: None) -> Drawing:
         known = np.isfinite(now[name])
         curves.append(Curve(now["iteration"][known], now[name][known], color, dash=dash))
     curves.append(upright([scene.frame.iteration], y, color=VERMILION, width=2))
-    return Drawing(x, y, curves, keys=keys)
+    answer = [] if run.answer is None else [run.answer]
+    if answer:
+        keys = (*keys, Key(ANSWER.color, ANSWER.kind, "answer"))
+    low = y.low * (y.high / y.low) ** ABOVE
+    marks = [replace(ANSWER, x=answer, y=[low] * len(answer))]
+    return Drawing(x, y, curves, marks, keys=keys)
 
 
-VIEW = View("Convergence", Plot("Iteration", "Indicator, error", logarithmic="y", whole="x"), draw)
+VIEW = View(
+    "Convergence",
+    Plot("Iteration", "Indicator, error", logarithmic="y", whole="x", marks=(ANSWER,)),
+    draw,
+)

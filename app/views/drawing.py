@@ -74,7 +74,8 @@ class Scene:
     @property
     def ghost_name(self) -> str:
         """What it is compared with is called where fields are drawn, with their iteration."""
-        return f"{self.other}, iteration {self.before.shown if self.before else 0}"
+        before = self.before
+        return f"{self.other}, {before.called(before.shown) if before else 'iteration 0'}"
 
     @property
     def length(self) -> float:

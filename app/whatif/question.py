@@ -13,6 +13,7 @@ import param
 from app.components.form import item_of
 from app.controls.refusals import refused, sentence
 from app.picture.shown import has_reference
+from app.picture.usual import WATCH, hurried
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import loads_of
 from solver.settings import Settings
@@ -101,11 +102,28 @@ class Question:
         SettingError
             For whatever of it cannot be run.
         """
-        plan = plan_of(settings, self.vary, [self.of])
+        plan = plan_of(self.asked(settings), self.vary, [self.of])
         for name in plan.idle():
             remedy = "vary another setting"
             raise SettingError(name, "varied", "settings that do something here", remedy)
         return plan
+
+    def asked(self, settings: Settings) -> Settings:
+        """Give the settings of the runs that answer it beside those of the page.
+
+        At once, as nobody watches them; where LATIN's own iterations are counted, these go on until
+        they are within what is asked.
+        """
+        if settings.finish == "none":
+            return settings
+        name = self.of.partition("@")[0]
+        if not name.startswith("iterations"):
+            return hurried(settings)
+        with contextlib.suppress(SettingError):
+            asked = reading(self.of).at or settings.accuracy
+            nearer = min(asked, settings.accuracy)
+            return settings.replace(finish=WATCH, accuracy=nearer)
+        return settings
 
     def refusals(self, settings: Settings) -> dict[str, str]:
         """Say what of it cannot be run, by the place of a setting, "of", or else "all"."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 from typing import Any, ClassVar
 
@@ -13,6 +13,7 @@ from app.charts.keys import legend
 from app.components.innards import Plain
 from app.components.panes import STATIC, column, script
 from app.picture.labels import label_of
+from app.picture.usual import changed, hurried
 from app.session.session import Session
 from app.session.studies import mesh_of_run
 from app.whatif.charted import is_comparable, is_of, stands
@@ -160,14 +161,14 @@ class WhatIf:
         self.start()
 
     def _on_run(self, number: int) -> None:
-        """Open the run of a point, unless its settings were refused."""
-        plan = self._session.asked.inquiry.plan
+        """Open the run of a point, unless its settings were refused; the page watches as it did."""
+        plan, wanted = self._session.asked.inquiry.plan, self._session.wanted
         if plan is not None and 0 <= number < plan.size:
             try:
                 settings = plan.settings_at(number)
             except SettingError:
                 return
-            self._show(settings)
+            self._show(watched(settings, wanted, {axis.name for axis in plan.axes}))
 
     def _on_mesh(self) -> None:
         """Have the quantity taken on three meshes, or no more."""
@@ -177,7 +178,7 @@ class WhatIf:
         elif self._can_ask_of_meshes():
             self._meshed = settings.values(), self._session.question.of
             of = self._session.question.of
-            work = partial(mesh_of_run, settings.scene, settings.values(), of)
+            work = partial(mesh_of_run, settings.scene, hurried(settings).values(), of)
             job.ask(reading(of).title, work)
 
     def _can_ask_of_meshes(self) -> bool:
@@ -245,8 +246,8 @@ class WhatIf:
         self._asker.chart = found
 
     def _progress(self) -> dict[str, Any]:
-        inquiry = self._session.asked.inquiry
-        plan, done = inquiry.plan, len(inquiry.rows)
+        inquiry, wanted = self._session.asked.inquiry, self._session.wanted
+        question, plan, done = self._session.question, inquiry.plan, len(inquiry.rows)
         if plan is None:
             return {"busy": False, "share": 0.0, "words": "", "moved": False}
         words = counts(plan, inquiry.rows)
@@ -257,8 +258,14 @@ class WhatIf:
             "busy": inquiry.is_busy,
             "share": done / plan.size,
             "words": " ".join(filter(None, (inquiry.notice, words))),
-            "moved": not is_of(plan, self._session.wanted),
+            "moved": not is_of(plan, question.asked(wanted)),
         }
+
+
+def watched(settings: Settings, wanted: Settings, varied: Collection[str]) -> Settings:
+    """Give the settings of a point as a page watches its run: to the end that it wants to see."""
+    ends = {"accuracy"} if settings.finish == "none" else {"accuracy", "finish"}
+    return settings.replace(**{name: getattr(wanted, name) for name in ends - set(varied)})
 
 
 def form_of(question: Question, settings: Settings) -> dict[str, Any]:
@@ -269,7 +276,8 @@ def form_of(question: Question, settings: Settings) -> dict[str, Any]:
     quantity, _, at = question.of.partition("@")
     quantities = askable(settings)
     quantities |= {quantity: QUANTITIES[quantity]} if quantity in QUANTITIES else {}
-    title = label_of(settings, settings.changed(), most=len(settings.changed()))
+    rest = changed(question.asked(settings))
+    title = label_of(settings, rest, most=len(rest))
     return {
         "settings": [
             {"name": name, "title": about(one).title, "unit": about(one).unit, "of": names_of(one)}

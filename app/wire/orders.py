@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from app.picture.shown import Look
 from solver.settings import Settings
+
+WHOLE: Literal["whole"] = "whole"
+"""The pace at which a search lasts three seconds, however many iterations it takes."""
+Rate = float | Literal["whole"] | None
+"""Iterations per second, `WHOLE`, None for as fast as possible, or 0 to wait."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +45,7 @@ class Run:
     settings: Settings
     label: str = ""
     notice: str = ""
-    pace: float | None = None
+    pace: Rate = None
     pause_after: int | None = None
     is_held: bool = False
     warm: bool = False
@@ -51,7 +57,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Pace:
-    """Go on at this many iterations per second, None for as fast as possible, or 0 to wait.
+    """Go on at this pace.
 
     A `pause_after` has no effect any more, whether reached or not.
 
@@ -62,7 +68,7 @@ class Pace:
     """
 
     ticket: int
-    pace: float | None
+    pace: Rate
     is_held: bool = False
 
 

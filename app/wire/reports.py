@@ -12,7 +12,9 @@ class Facts:
     Attributes
     ----------
     iteration, done
-        The one that is shown, and how many are done.
+        The one that is shown, and how many can be.
+    searched
+        How many of these are iterations: an answer beside them is none.
     instants, instant, time, duration
         How many can be chosen, the one that is, its time and that of the last, s.
     interface, interfaces
@@ -29,6 +31,7 @@ class Facts:
 
     iteration: int = 0
     done: int = 0
+    searched: int = 0
     instants: int = 1
     instant: int = 0
     time: float = 0.0

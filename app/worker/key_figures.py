@@ -109,10 +109,11 @@ def _in_short(run: Recording, iteration: int) -> str:
     now = run.figures_of(iteration)
     if now is None:
         return UNKNOWN
-    counted = "iteration" if iteration == 1 else "iterations"
+    done = min(iteration, run.searched)
+    counted = "iteration" if done == 1 else "iterations"
     error = now["error_force"] if math.isfinite(now["error_force"]) else now["estimated_error"]
     wrong = "0 %" if error < NONE else percent(error)
-    return f"{iteration} {counted}, {wrong} wrong, {now['seconds']:.2g} s"
+    return f"{done} {counted}, {wrong} wrong, {now['seconds']:.2g} s"
 
 
 def _row(cells: Mapping[str, str], shown: Sequence[str]) -> str:
@@ -166,7 +167,7 @@ def _cells(run: Recording, iteration: int) -> dict[str, str]:
 
 
 FIGURES: dict[str, Callable[[Mapping[str, float], Recording], str]] = {
-    "Iteration": lambda now, run: f"{now['iteration']:.0f}",
+    "Iteration": lambda now, run: run.called(int(now["iteration"])).removeprefix("iteration "),
     "LATIN indicator η": lambda now, run: number(now["indicator"]),
     "k-free indicator": lambda now, run: number(now["behaviour"]),
     "Estimated force error": lambda now, run: percent(now["estimated_error"]),

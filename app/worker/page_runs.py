@@ -177,6 +177,7 @@ class PageRuns:
         facts = Facts(
             iteration=max(frame.iteration, twin.shown if twin else 0),
             done=max(recording.iteration or frame.iteration, twin.iteration if twin else 0),
+            searched=max(recording.searched or frame.iteration, twin.searched if twin else 0),
             instants=len(stand.instants),
             instant=instant,
             time=float(stand.instants[instant]),

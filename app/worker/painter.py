@@ -60,15 +60,16 @@ class Painter:
 def caption(scene: Scene) -> str:
     """Say of which moment of which run a picture is."""
     time, settings = scene.run.stand.instants[scene.instant], scene.run.settings
-    return f"{settings.scene}, t = {time:.3g} s, iteration {scene.frame.iteration}"
+    return f"{settings.scene}, t = {time:.3g} s, {scene.run.called(scene.frame.iteration)}"
 
 
 def sliders(facts: Facts) -> dict[str, Attributes]:
     """Give where the sliders over iterations and instants stand, and what they say."""
-    at, done = facts.iteration, max(facts.done, 1)
+    at, done, searched = facts.iteration, max(facts.done, 1), max(facts.searched, 1)
+    said = f"{at} of {searched}" if at <= searched else "answer"
     last, time = max(facts.instants - 1, 1), f"t = {facts.time:.3g} s"
     return {
-        ITERATION: {"end": max(done, 2), "shown": at, "text": f"{at} of {done}"},
+        ITERATION: {"end": max(done, 2), "shown": at, "text": said},
         INSTANT: {"end": last, "shown": facts.instant, "text": time},
     }
 

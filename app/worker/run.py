@@ -90,6 +90,7 @@ class WorkerRun:
         self._start: Start | None = None
         self._previous = previous if fits(previous, self._problem) else None
         self._newest: Iterate | None = None
+        self._answer: Iterate | None = None
         self._seeking = Seeking(self._iterations)
         self._sought: Found | None = None
         self._tempo = Tempo(order.pace, order.pause_after)
@@ -160,7 +161,7 @@ class WorkerRun:
         self.has_news = True
         match order:
             case Pace():
-                self._tempo.change(order.pace)
+                self._tempo.change(order.pace, self.recording.iteration)
                 self.is_held = order.is_held
             case Step(count=int(count)):
                 self._follow()
@@ -240,8 +241,11 @@ class WorkerRun:
             self.recording.reference_seconds = self._reference.seconds
 
     def _iterate(self, newest: Iterate) -> None:
-        self._tempo.count()
-        self._account(newest, next(self._generator))
+        self._tempo.count(newest.number)
+        if self._answer is None:
+            self._account(newest, next(self._generator))
+        else:
+            self._end_with(self._answer, newest)
 
     def _account(self, newest: Iterate, iterate: Iterate) -> None:
         """Record and judge an iterate; one that is not finite does not become the newest."""
@@ -252,10 +256,19 @@ class WorkerRun:
             return
         newest = self._take(newest, iterate, verdict)
         self._seeking.keep(iterate.checkpoint)
-        if (finished := verdict.finished) is not None:
-            verdict = self._rules.close(finished)
-            self.recording.status = verdict.status
-            self._take(newest, finished, verdict)
+        if (finished := verdict.finished) is None:
+            return
+        if finished.is_answer and not self.follows_hand:
+            # The last iterate is shown before it.
+            self._answer = finished
+        else:
+            self._end_with(finished, newest)
+
+    def _end_with(self, finished: Iterate, newest: Iterate) -> None:
+        """End with a certified solution, as the last picture."""
+        verdict = self._rules.close(finished)
+        self.recording.status, self.has_news = verdict.status, True
+        self._take(newest, finished, verdict)
 
     def _take(self, newest: Iterate, iterate: Iterate, verdict: Decision) -> Iterate:
         """Record an iterate, which becomes the newest."""

@@ -39,7 +39,7 @@ def table(what: str, scene: Scene) -> str:
 def _head(scene: Scene) -> Iterator[str]:
     stand, fields = scene.run.stand, scene.frame.fields
     yield f"Slipfront, {scene.run.settings.scene}, {stand.interface}"
-    yield f"{scene.name} at iteration {scene.frame.iteration}; SI units"
+    yield f"{scene.name} at {scene.run.called(scene.frame.iteration)}; SI units"
     shown, whole = len(stand.instants), scene.run.settings.instants
     if shown < whole:
         yield f"{shown} of {whole} instants"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look
-from app.wire.orders import Pace, Seek, Step
+from app.wire.orders import Pace, Rate, Seek, Step
 from app.worker.run import WorkerRun
 from solver.settings import Settings
 
@@ -23,7 +23,7 @@ class Twin:
         Of the page, as in a Run.
     """
 
-    def __init__(self, run: WorkerRun, pace: float | None) -> None:
+    def __init__(self, run: WorkerRun, pace: Rate) -> None:
         self._run = run
         self._pace = pace
         self._sought: int | None = None
@@ -44,7 +44,7 @@ class Twin:
         own = self.recording.settings
         return (own.scene, own.values()) == (settings.scene, settings.values())
 
-    def begin(self, pace: float | None) -> None:
+    def begin(self, pace: Rate) -> None:
         """Go in step with another run B, from its first iteration on."""
         self._pace, self._sought = pace, None
 

@@ -62,10 +62,10 @@ def status_line(
     A run "by hand" is replayed once the slider is let go; one that is held waits for a study that
     is timed. A complaint comes before the advice.
     """
-    done = run.iteration or frame.iteration
+    done = run.searched or frame.iteration
     line = _state(run, frame, state, done)
     if sought is not None:
-        line += f" · <b>showing iteration {sought}</b>"
+        line += f" · <b>showing {run.called(sought)}</b>"
     more = [f"<b>{escape(complaint)}</b>"] if complaint else []
     more += [f"<b>{escape(run.notice)}</b>"] if run.notice else []
     detail = [_detail(run, frame)]
