@@ -50,7 +50,7 @@ class Page:
         inner = tall - LINE * sum(box.lines)
         wanted = 0.45 * inner if box.flattest else up * wide / across
         aside = box.room[2] + box.room[3]
-        self.unit = max(min((inner - wanted) / aside, wide / 400, 1.6), 0.5)
+        self.unit = max(min((inner - wanted) / aside, wide / 400, 1.6), 0.35)
         lines = (0, 0, *box.lines)
         rooms = [self.unit * room + LINE * own for room, own in zip(box.room, lines, strict=True)]
         inside = wide - rooms[0] - rooms[1], tall - rooms[2] - rooms[3]
@@ -86,7 +86,7 @@ class Page:
         return left, left + wide, low, low + tall
 
 
-CARDS = [(1590, 225), (940, 190), (940, 165), (356, 170), (290, 120), (490, 460)]
+CARDS = [(1590, 225), (940, 190), (940, 80), (940, 165), (356, 170), (290, 120), (490, 460)]
 """Sizes of plots that a picture has room in, px."""
 
 

@@ -44,7 +44,7 @@ const line = words ? LINE * parseFloat(words.text_font_size.value) / 13 : 0
 const [, , under = 0, over = 0, lines_under = 0, lines_over = 0, flattest = 0] = rooms
 const aside = under + over, inner = tall - line * (lines_under + lines_over)
 const wanted = flattest ? 0.45 * inner : (high - low) * wide / (right - left)
-const unit = Math.max(Math.min((inner - wanted) / (aside || 1), wide / 400, 1.6), 0.5)
+const unit = Math.max(Math.min((inner - wanted) / (aside || 1), wide / 400, 1.6), 0.35)
 const [before, after, below, above] = [0, 0, lines_under, lines_over].map((count, side) =>
   unit * rooms[side] + line * count)
 const fits = (size, whole, room) => size / Math.max(whole - room, 0.2 * whole)
@@ -58,7 +58,7 @@ const put = (range, low, high, scale, whole, first, last) => {
 }
 put(figure.x_range, left, right, across, wide, before, after)
 put(figure.y_range, low, high, up, tall, below, above)
-box.per = [unit * across, unit * up]
+Object.assign(box, {unit, per: [unit * across, unit * up]})
 for (const one of shifted) { one.properties.data.change.emit() }
 """
 """Makes both axes of one scale, however large the plot is; not while one has zoomed in."""
@@ -71,10 +71,14 @@ const moved = (own, by, per) =>
   own.map((at, i) => at + per * (by.length === 1 ? by[0] : by[i]))
 const put = (own, by, per) => x === "x" ? moved(own, by, per)
   : own.map((one, i) => moved(one, by[i], per))
-drawn.setv({data: {...data, [x]: put(data[x], dx, box.per[0]), [y]: put(data[y], dy, box.per[1])}},
-  {sync: false})
+// Bands are as thick as there is room for.
+const width = data.width?.map((one) => one < THINNEST ? one : Math.max(one * box.unit, 1.5))
+const places = {[x]: put(data[x], dx, box.per[0]), [y]: put(data[y], dy, box.per[1])}
+drawn.setv({data: {...data, ...width && {width}, ...places}}, {sync: false})
 """
 """Puts what a picture gives beside its place to where it is drawn, in the scale that there is."""
+THINNEST = 3
+"""Width from which a line is a band."""
 SHADES = 180
 FONT = "Roboto, sans-serif"
 """The colours of words follow the theme: the style sheet has them."""
@@ -108,7 +112,9 @@ def _fit(made: Plot, view: View, words: Text | None, drawn: Mapping[str, ColumnD
     for name, source in drawn.items():
         given = _empty(f"{view.slug}.{name}", *map(str, source.data), "dx", "dy")
         args = {"given": given, "drawn": source, "box": box}
-        given.js_on_change("data", CustomJS(args=args, code=SHIFT))
+        given.js_on_change(
+            "data", CustomJS(args=args, code=SHIFT.replace("THINNEST", str(THINNEST)))
+        )
         shifted.append(given)
     known: dict[str, Any] = {"figure": made, "box": box, "words": words, "shifted": shifted}
     fit = CustomJS(args=known, code=FIT.replace("LINE", str(LINE)))

@@ -88,7 +88,9 @@ def words(posed: Posed, box: Box) -> list[Word]:
             x, dx = columns[column]
             found.append(Word(x, y, "\n".join(texts), column, up, dx, dy))
             continue
-        sides = (("right", -GAP), ("left", GAP)) if len(texts) > 1 else (("center", 0.0),)
+        sides = (
+            (("right", -2.0 * GAP), ("left", 2.0 * GAP)) if len(texts) > 1 else (("center", 0.0),)
+        )
         for text, (across, dx) in zip(texts, sides, strict=False):
             found.append(Word(0.5 * posed.length, y, text, across, up, dx, dy))
     for act in posed.described.acts:

@@ -29,7 +29,7 @@ def held(posed: Posed) -> Iterator[Array]:
 
 def room_of(hold: Hold) -> float:
     """Give the pixels that it takes beside the bodies."""
-    return DEPTH + (2.0 * BEYOND if hold.kind == "support" else BEYOND)
+    return DEPTH if hold.kind == "support" else DEPTH + BEYOND
 
 
 def _ends(posed: Posed, hold: Hold) -> Array:
