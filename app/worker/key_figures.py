@@ -75,11 +75,10 @@ def thing(run: Recording, frame: Frame) -> dict[str, str]:
     loop, look, fields = run.stand.loop, frame.look, frame.fields
     column = instant_of(look.phase, len(fields.end_displacement))
     values = (fields.end_displacement, run.stand.load if fields.load is None else fields.load)
-    (title, unit), along = next(
-        (one, own)
-        for one, own in zip((loop.across, loop.up), values, strict=True)
-        if one[1] in ("m", "N") and own is not None
-    )
+    both = zip((loop.across, loop.up), values, strict=True)
+    known = [(*one, own) for one, own in both if own is not None]
+    # A moment over a rotation has neither.
+    title, unit, along = next((one for one in known if one[1] in ("m", "N")), known[0])
     status = fields.status[:, instant_of(look.phase, fields.status.shape[1])]
     solution = Solution(frame.iterate, [], run.status or CANCELLED)
     energy = FinishedRun(run.settings, solution, False, frame.sampler.loop).dissipated.sum()
