@@ -10,7 +10,7 @@ import pytest
 from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.portrait import rims
-from app.views import deformed, picture, status_map
+from app.views import convergence, deformed, picture, status_map
 from app.views.catalogue import fitting
 from app.views.colors import FRONT, GHOST
 from app.views.drawing import Drawing
@@ -62,6 +62,23 @@ def test_the_ghost_of_the_same_run_lies_on_the_bodies_at_every_instant(scene: st
         for ghost, line in zip(outlines(drawing), own, strict=True):
             assert ghost == pytest.approx(line, abs=1e-6)
         assert "run before, iteration 4" in keys(drawing)
+
+
+def test_the_last_three_runs_stay_in_the_plot_of_convergence_named_by_their_k() -> None:
+    shown = Shown()
+    ks = (100.0, 0.1, 10.0, 1.0, 0.3)
+    for ticket, k in enumerate(ks, 1):
+        shown.run(ticket, "bar", {**SMALL["bar"], **SHORT, "k_scale": k})
+    drawing = convergence.draw(shown.scene(), None)
+    assert [name for name in keys(drawing) if "k ×" in name] == ["k × 0.1", "k × 10", "k × 1"]
+    faint = [one for one in drawing.curves if one.alpha < 1.0]
+    past = [one.history.column("error_force") for one in shown.scene().past[-3:]]
+    assert all(np.array_equal(one.y, own) for one, own in zip(faint, past, strict=True))
+
+
+def test_a_run_that_is_replayed_is_no_ghost_of_itself() -> None:
+    drawing = convergence.draw(run_twice("bar").scene(), None)
+    assert all(one.alpha == 1.0 for one in drawing.curves)
 
 
 OTHERS: dict[str, dict[str, Any]] = {

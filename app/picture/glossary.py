@@ -14,7 +14,13 @@ TERMS: dict[tuple[str, ...], str] = {
     ("k-free indicator",): "By how much the iterate breaks the contact laws, as a share of the "
     "energy in play, whatever k is.",
     ("indicator",): "What the method computes of itself to see how far it is; it is no error.",
-    ("search direction", "factor on k", "auto k", "k updated"): "k: the stiffness that joins the "
+    (
+        "search direction",
+        "factor on k",
+        "k ×",
+        "auto k",
+        "k updated",
+    ): "k: the stiffness that joins the "
     "two stages of an iteration. It changes how many iterations are needed, not the solution.",
     ("estimated force error",): "How wrong the contact force is, as the run itself estimates it, "
     "without a reference.",

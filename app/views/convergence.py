@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from app.picture.recording import History
 from app.picture.shown import has_reference
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing import Curve, Drawing, Marks, Plot, Scene, View
+from app.views.earlier_runs import drawn
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned, upright
 
@@ -36,32 +37,19 @@ KEYS = tuple(
 def draw(scene: Scene, _kept: None) -> Drawing:
     """Draw what the method knows of itself (dashed), and how far it really is (solid).
 
-    The ghost is run A, or else with separated bases the full linear stage beside them, or else the
-    run before.
+    Beside it stands run A, or else with separated bases the full linear stage, or else the last
+    runs of other settings.
     """
-    run, before = scene.run, scene.before
-    has_modes = run.settings.applies("pgd_modes") and not scene.is_paired
+    run, is_known = scene.run, has_reference(scene.run.settings)
     now = run.history.thinned(MOST_POINTS, run.searched)
-    keys = KEYS if has_reference(run.settings) else KEYS[:ERRORS]
-    past: History | None = before.history if before else None
-    if scene.is_paired:
-        keys = (*keys, Key(BLUE, "thin", "A"))
-    if has_modes:
-        past, keys = run.beside, (*keys, Key(BLUE, "thin", "full stage"))
-    searched = before.searched if before and past is before.history else None
-    ghost = past.thinned(MOST_POINTS, searched) if past is not None else None
+    ghosts, ghost_keys = _beside(scene, "error_force" if is_known else "estimated_error")
+    keys = (*(KEYS if is_known else KEYS[:ERRORS]), *ghost_keys)
     values = [value for name, *_ in CURVES for value in now[name]]
-    if ghost is not None:
-        values += [value for name, *_ in CURVES[ERRORS:] for value in ghost[name]]
+    values += [value for one in ghosts for value in np.asarray(one.y)]
     y = in_decades(*decades([*LEAST_SPAN, *values], FLOOR))
-    length = before.iteration if before and not has_modes else 0
-    x = spanned(0, round_up(max(run.iteration, length, 20)))
-    curves = []
-    if ghost is not None:
-        curves += [
-            Curve(ghost["iteration"], ghost[name], color, 1.2)
-            for name, color, _, _ in CURVES[ERRORS:]
-        ]
+    ends = (float(np.max(one.x, initial=0.0)) for one in ghosts)
+    x = spanned(0, round_up(max(run.iteration, 20, *ends)))
+    curves = [*ghosts]
     for name, color, _, dash in CURVES:
         # An estimate is not made in every iteration, and the reference may come later.
         known = np.isfinite(now[name])
@@ -73,6 +61,24 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     low = y.low * (y.high / y.low) ** ABOVE
     marks = [replace(ANSWER, x=answer, y=[low] * len(answer))]
     return Drawing(x, y, curves, marks, keys=keys)
+
+
+def _beside(scene: Scene, column: str) -> tuple[list[Curve], list[Key]]:
+    """Draw what the run at work is compared with, with its legend."""
+    run, before = scene.run, scene.before
+    if scene.is_paired and before is not None:
+        return _errors(before.history.thinned(MOST_POINTS, before.searched), "A")
+    if run.settings.applies("pgd_modes"):
+        return _errors(run.beside.thinned(MOST_POINTS), "full stage")
+    return drawn(scene, column)
+
+
+def _errors(past: dict[str, NDArray[np.float64]], name: str) -> tuple[list[Curve], list[Key]]:
+    curves = [
+        Curve(past["iteration"], past[column], color, 1.2)
+        for column, color, _, _ in CURVES[ERRORS:]
+    ]
+    return curves, [Key(BLUE, "thin", name)]
 
 
 VIEW = View(
