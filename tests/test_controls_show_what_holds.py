@@ -13,7 +13,7 @@ from lone_link import lone_session
 from app.components.form import ENDS, POINTS, USUAL, item_of
 from app.controls.refusals import refused
 from app.controls.sidebar import Sidebar
-from app.session.history import History
+from app.session.undo import Undo
 from app.shell import notes
 from app.shell.actions import Actions
 from solver.definitions import CurveParameter, SettingError, about
@@ -171,8 +171,8 @@ def test_a_refusal_stays_until_something_changes(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_file_is_refused_in_titles_with_its_names_in_brackets(sidebar: Sidebar) -> None:
-    history = History(sidebar._session, lambda name: None)
-    actions = Actions(sidebar._session, sidebar.obey, history, *[lambda: None] * 2)
+    undo = Undo(sidebar._session, lambda name: None)
+    actions = Actions(sidebar._session, sidebar.obey, undo, *[lambda: None] * 2)
     for scene, name, said in (
         ("bar", "friction", "Friction coefficient μ (friction) cannot be -1: "),
         ("strand", "broken", "(broken) cannot be -1: "),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Chrome, Server
-from pages import ENDLESS, Visit, comes_true, press, status, visits
+from pages import ENDLESS, Visit, comes_true, open_sheets, press, status, visits
 from playwright.sync_api import Locator, Page, expect
 from test_page_for_everybody import violations
 
@@ -136,6 +136,7 @@ def test_a_chart_leaves_a_ghost_of_that_before_and_fills_beside_one_of_another_p
         f"?{SLOW}&tab=What+if&vary=max_iterations=1,2,3,4,5,90000,91000,92000&of=peak_displacement"
     )
     has(slow, "hollow", "> 0")
+    open_sheets(curve)
     field = curve.get_by_role("textbox", name=re.compile("^Pressure"))
     before = float(field.input_value())
     field.fill(f"{before / 2.0:g}")

@@ -102,6 +102,14 @@ def test_a_number_is_typed_refused_in_words_and_brought_back_by_a_double_click(
     expect(factor).to_have_value("1")
     slider(page, "Substructures").press("Delete")
     expect(typed).to_have_value("10")
+    for key, value in (("Control+z", "5"), ("Control+Shift+Z", "10"), ("Control+y", "10")):
+        page.keyboard.press(key)
+        expect(typed).to_have_value(value)
+    expect(page.get_by_role("button", name="Redo")).to_be_disabled()
+    press(page, "Undo")
+    expect(typed).to_have_value("5")
+    press(page, "Redo")
+    expect(typed).to_have_value("10")
 
 
 def test_keys_are_listed_step_through_time_and_play_it_to_its_end(page: Page) -> None:

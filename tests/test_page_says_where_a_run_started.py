@@ -11,10 +11,10 @@ from shown_pages import Shown
 from app.picture.recording import Recording
 from app.picture.sampler import Sampler
 from app.picture.shown import Look
-from app.session.history import History
 from app.session.pages import Pages
 from app.session.report_executor import ReportExecutor
 from app.session.session import Session
+from app.session.undo import Undo
 from app.shell.actions import Actions
 from app.wire.reports import Facts
 from app.worker.words import start_line
@@ -68,8 +68,8 @@ def test_a_run_from_the_one_before_is_called_so_where_runs_are_compared() -> Non
 def test_saved_settings_say_that_the_run_did_not_start_as_they_do() -> None:
     settings = BarSettings.checked({"method": "paper", "peak": 910.0})
     with closing(Session(Pages(1), ReportExecutor(), settings)) as session:
-        history = History(session, lambda name: None)
-        actions = Actions(session, lambda: None, history, *[lambda: None] * 2)
+        undo = Undo(session, lambda name: None)
+        actions = Actions(session, lambda: None, undo, *[lambda: None] * 2)
         actions.hear("save")
         plain, _ = actions.view.file
         session.facts = Facts(was_warm=True)

@@ -6,7 +6,7 @@ STYLE = """
 .actions { display: flex; gap: 2px; }
 .action { display: flex; align-items: center; gap: 6px; width: auto; height: 36px; padding: 0 10px;
   font-size: 15px; white-space: nowrap; color: #fff; border: 0; }
-.action:hover { background: color-mix(in srgb, currentColor 16%, transparent); }
+.action:hover { background: rgb(0 0 0 / 22%); }
 .action:focus-visible { outline: 2px solid currentColor; outline-offset: -2px; }
 .action svg { width: 20px; height: 20px; fill: none; stroke: currentColor; stroke-width: 2;
   stroke-linejoin: round; stroke-linecap: round; }
@@ -29,6 +29,7 @@ STYLE = """
 @media (max-width: 899px) { .action { padding: 0 5px; } }
 @media (max-width: 640px) {
   .action { color: inherit; font-size: 14px; }
+  .action:hover { background: none; }
   .action:not(.step) svg { display: none; }
   .pane { inset: auto 8px 52px !important; width: auto; }
 }

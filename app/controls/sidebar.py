@@ -57,6 +57,7 @@ class Sidebar:
         self._asked: dict[str, Any] = {}
         self._in_hand: set[str] = set()
         self._ends: set[str] = set()
+        self._drag = 1
         self._moment = session.turns.timer(self.obey)
         self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
@@ -157,6 +158,8 @@ class Sidebar:
         A slider that is dragged beyond what holds goes as far as it can.
         """
         session, by_hand = self._session, name in self._in_hand
+        if by_hand:
+            session.drag = self._drag
         try:
             session.change(name, value, by_hand=by_hand)
         except SettingError as refusal:
@@ -194,6 +197,7 @@ class Sidebar:
         self._in_hand.discard(name)
         self.obey()
         self._ends.discard(name)
+        self._drag, self._session.drag = self._drag + 1, 0
         self._session.let_go()
         # A slider whose move was refused waits for the answer to this, its last message.
         self._answer()

@@ -77,11 +77,11 @@ class Session(State):
         self.attendance = Attendance(self, self.worker, hire, self.turns, self.start)
         self.crowd, self.follows_hand, self.is_held = 0, False, False
         timer = self.turns.timer
-        self._stands_still, self._is_left_alone = timer(self._hold_still), timer(self._give_back)
+        self._stands_still, self._is_left_alone = timer(self.let_go), timer(self._give_back)
         self._looks = timer(self.attend)
         self.asked = Asked(executor, partial(self._looks.set, LOOKS))
         self._left: dict[str, Settings] = {}
-        self._label, self._by_hand, self._drags = "", False, 0
+        self._label, self._by_hand = "", False
         self._due: Settings | None = None
         self._agreed: Settings | None = None
         self._pages = pages
@@ -137,16 +137,6 @@ class Session(State):
                 self._start_due()
 
     def let_go(self) -> None:
-        """End a drag."""
-        self._drags += 1
-        self._hold_still()
-
-    @property
-    def drag(self) -> int | None:
-        """The number of the drag of which the newest settings are, if they are of one."""
-        return self._drags if self._by_hand else None
-
-    def _hold_still(self) -> None:
         """Replay the iteration of what a hand has chosen."""
         self._stands_still.stop()
         self._by_hand = False

@@ -58,6 +58,7 @@ class State(param.Parameterized):
         default=False, doc="Whether its question waits, which nothing on the page may give away."
     )
     question = param.Parameter[Any](doc="What is asked over ranges of settings.")
+    drag = param.Integer(default=0, doc="Number of the drag that goes on, which is one step.")
     steps = param.Parameter[tuple[bool, bool]](
         default=(False, False), doc="Whether what was set can be undone, and done again."
     )

@@ -13,8 +13,8 @@ from app.components.menu import STYLE as MENU
 from app.components.panes import script
 from app.controls.refusals import refused, refused_by_name
 from app.picture.usual import usual_settings
-from app.session.history import History
 from app.session.session import Session
+from app.session.undo import Undo
 from app.session.uploads import load_in, saved
 from solver.definitions import SettingError
 from solver.files import settings_from_toml
@@ -54,7 +54,7 @@ class Actions:
         Of the page.
     obey
         Makes the changes of settings that are still waiting.
-    history
+    undo
         Has what was set before.
     copy, present
         Copies the page's address; shows the page as a projector needs it.
@@ -69,7 +69,7 @@ class Actions:
         self,
         session: Session,
         obey: Callable[[], None],
-        history: History,
+        undo: Undo,
         copy: Callable[[], None],
         present: Callable[[], None],
     ) -> None:
@@ -78,8 +78,8 @@ class Actions:
         self._saved = 0
         self.view = ActionBar(margin=0)  # type: ignore[no-untyped-call]
         self._does: dict[str, Callable[[Any], None]] = {
-            "undo": lambda _: history.undo(),
-            "redo": lambda _: history.redo(),
+            "undo": lambda _: undo.undo(),
+            "redo": lambda _: undo.redo(),
             "class": lambda _: self._lead(),
             "present": lambda _: present(),
             "link": lambda _: copy(),

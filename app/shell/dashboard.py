@@ -13,9 +13,9 @@ from app.components.keys import Keys
 from app.components.panes import column, page, text
 from app.components.pulse import pulse
 from app.controls.sidebar import Sidebar
-from app.session.history import History
 from app.session.session import Session
 from app.session.state import TABS
+from app.session.undo import Undo
 from app.shell.actions import Actions
 from app.shell.address import Sight, sight_from_query
 from app.shell.banner import Banner
@@ -83,9 +83,9 @@ class Dashboard:
         self._banner = Banner(session)
         self._sidebar = Sidebar(session, self._teach)
         self._teaching = Teaching(session, self._sidebar)
-        history = History(session, self._teaching.take)
+        undo = Undo(session, self._teaching.take)
         self._actions = Actions(
-            session, self._sidebar.obey, history, lambda: self._link.copy(), self._present
+            session, self._sidebar.obey, undo, lambda: self._link.copy(), self._present
         )
         self._saver = Saver(session)
         self._live = self._make_live()

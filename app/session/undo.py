@@ -29,7 +29,7 @@ class Moment:
         return self.lesson is other.lesson and all(_values(a) == _values(b) for a, b in runs)
 
 
-class History:
+class Undo:
     """Undoes what was set, step by step, and does it again; a drag is one step.
 
     Parameters
@@ -45,7 +45,7 @@ class History:
         self._before: deque[Moment] = deque(maxlen=MOST_STEPS)
         self._after: list[Moment] = []
         self._now = self._moment()
-        self._drag: int | None = None
+        self._drag = 0
         self._is_step = False
         watched = ["wanted", "twin", "lesson", "choice"]
         session.param.watch(lambda *events: self._note(), watched)
@@ -73,7 +73,7 @@ class History:
         is_of_class = room is not None and room.settings is session.wanted
         if self._is_step or is_of_class or self._now.is_as(before):
             return
-        if session.drag is None or session.drag != self._drag:
+        if session.drag == 0 or session.drag != self._drag:
             self._before.append(before)
         self._after.clear()
         self._drag = session.drag
@@ -81,7 +81,7 @@ class History:
 
     def _go(self, goal: Moment) -> None:
         session = self._session
-        self._is_step, self._drag = True, None
+        self._is_step, self._drag = True, 0
         try:
             with session.together():
                 if _values(goal.twin) != _values(session.twin):
