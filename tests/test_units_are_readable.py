@@ -44,6 +44,7 @@ def test_no_number_has_many_zeros(size: float, unit: str) -> None:
     [
         (BlockSettings, {"top_normal_displacement": -5e-5}, "top normal displacement -50 µm"),
         (BarSettings, {"young": 7e10, "elements": 60}, "elements 60, young 70 GPa"),
+        (BarSettings, {"peak": 920.0}, "peak 920 N"),
         (BarSettings, {"multiscale": False}, "multiscale off"),
     ],
 )

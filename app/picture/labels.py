@@ -9,6 +9,8 @@ from app.picture.units import measured
 from solver.definitions import about
 from solver.settings import Settings
 
+PLAIN = 1e-2, 1e4
+"""Sizes of values that are called as their sliders show them."""
 FEW = 2
 """Changes by which a run is called where there is little room."""
 
@@ -34,7 +36,10 @@ def _written(value: Any, unit: str) -> str:
         return ("off", "on")[value]
     if isinstance(value, tuple):
         return "points"
-    return measured(value, unit, 4) if isinstance(value, float) else f"{value} {unit}".strip()
+    if not isinstance(value, float):
+        return f"{value} {unit}".strip()
+    is_plain = value == 0.0 or PLAIN[0] <= abs(value) < PLAIN[1]
+    return f"{value:.4g} {unit}".strip() if is_plain else measured(value, unit, 4)
 
 
 def in_titles(settings: Settings, text: str, written: str = "{}") -> str:
