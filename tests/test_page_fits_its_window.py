@@ -98,6 +98,18 @@ def all_are_seen(page, count):
         expect(card).to_be_in_viewport(ratio=1)
 
 
+FILLED = """() => {
+  const named = (one) => one.get_model_by_name("scene.bodies")
+  const source = Bokeh.documents.map(named).find((one) => one)
+  const {xs} = source?.data ?? {}
+  if (!xs?.length) { return 0 }
+  const [figure] = source.document.roots(), view = Bokeh.index.find_one_by_id(figure.id)
+  const places = xs.flatMap((one) => [...one].map((x) => view.frame.x_scale.compute(x)))
+  return (Math.max(...places) - Math.min(...places)) / view.el.clientWidth
+}"""
+"""How much of the width of its card the bodies of the scene have."""
+
+
 def test_six_plots_are_in_the_first_view_under_all_buttons_and_words(open_page):
     query = "?scene=layers&method=paper&layers=2&elements=16&max_iterations=3&plots="
     rarer = "Deformed bodies,Contact tractions,Stick and slip,Load path,Convergence,Singular values"
@@ -109,6 +121,7 @@ def test_six_plots_are_in_the_first_view_under_all_buttons_and_words(open_page):
     press(page, "Scene")
     expect(page.locator(".long .card").first).to_have_accessible_name("Scene")
     all_are_seen(page, 6)
+    comes_true(page, f"() => ({FILLED})() > 0.75")
     nothing_collides_at_any_size(page)
     expect(page.locator(".card").first).to_be_in_viewport(ratio=1)
 
@@ -127,6 +140,7 @@ def test_nothing_pushes_plots_but_figures_that_are_asked_for_or_of_two_runs(open
     status(page).get_by_text("details").focus()
     expect(status(page).get_by_text("substructures")).to_be_visible()
     assert top_of_plots(page) == first
+    comes_true(page, f"() => ({FILLED})() > 0.75")
     press(page, "Method")
     expect(figures.get_by_text("Iterations to 1 %")).to_be_visible()
     assert top_of_plots(page) > first
