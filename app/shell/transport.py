@@ -60,8 +60,10 @@ class Transport:
         self._make_sliders()
         styles = {"flex": "1 1 320px"}
         self._sliders = row(self._iteration, self._instant, min_width=320, styles=styles)
-        parts = self._run, self._step, self._reset, self._way, self._pace, self._sliders
-        self.view = row(*parts, align_items="center", css_classes=["transport"])
+        parts = self._run, self._step, self._reset, self._way, self._pace
+        for part in parts:
+            part.margin = (5, 4, 5, 10 if part is self._run else 4)
+        self.view = row(*parts, self._sliders, align_items="center", css_classes=["transport"])
         watch = session.param.watch
         watch(lambda *events: self._show(), ["facts", "running", "look"])
         watch(lambda event: self._arrange(), "wanted")
