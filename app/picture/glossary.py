@@ -50,6 +50,8 @@ TERMS: dict[tuple[str, ...], str] = {
     ("certified",): "Shown to obey equilibrium and all contact laws up to rounding.",
     ("chosen instant", "instant"): "A moment of the load path. Tap the map or drag the slider to "
     "choose one.",
+    ("changed status",): "Another of stick, slip and open than in the iterate before; the status "
+    "line says how many points and instants, and why.",
     ("stick",): "The friction force is below its bound: the point does not slide.",
     ("slip −", "slip +", "slip"): "The friction force has reached its bound: the point slides, "
     "+ to the right, − to the left.",

@@ -29,11 +29,15 @@ from app.picture.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import LoopFields
-from solver.latin import Checkpoint, Iterate
+from solver.latin import Iterate
+from solver.latin.status_changes import status_changes
 from solver.reduction.svd import friction_spectra
 from solver.reference.solution import Reference
 from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of, words_of
 from solver.settings import Settings
+
+Changes = tuple[dict[str, int], NDArray[np.bool_]]
+"""How many points and instants have changed their status, by kinds, and where, as it is drawn."""
 
 
 class Sampler:
@@ -127,13 +131,20 @@ class Sampler:
         fields = found.contact(self.interface)
         return self._shown(found, fields.tangential_force, fields.normal_force, fields.status)
 
-    def frame(self, iterate: Iterate, look: Look, before: Checkpoint | None = None) -> Frame:
-        """Show an iterate; the one `before` tells what became of its modes."""
+    def frame(
+        self, iterate: Iterate, look: Look, before: Iterate | None = None, *, is_slow: bool = False
+    ) -> Frame:
+        """Show an iterate; the one `before` tells what became of its modes, and of its status."""
         *normal, tangential = self._problem.contact_places[self.interface]
         force, status = iterate.contact_force, iterate.status[self._points]
         pressure = force[normal[0]] if normal else None
         shown = self._shown(iterate, force[tangential], pressure, status)
-        return Frame(shown, iterate, before, look, self)
+        return Frame(shown, iterate, before, look, self, is_slow)
+
+    def changes(self, iterate: Iterate, before: Iterate) -> Changes:
+        """Count what has changed its status, by kinds, and give where, as fields are shown."""
+        found = status_changes(iterate, before, self.interface)
+        return found.counts, self._thin(found.all)
 
     def mesh_field(self, iterate: Iterate, look: Look) -> MeshField | None:
         """Show the inside of plane bodies at the chosen instant."""
@@ -187,9 +198,17 @@ class Frame:
 
     fields: DrawnFields
     iterate: Iterate
-    before: Checkpoint | None
+    before: Iterate | None
     look: Look
     sampler: Sampler
+    is_slow: bool = False
+
+    @cached_property
+    def changes(self) -> Changes | None:
+        """What has changed its status since the iterate before, where one has the time to see."""
+        if not self.is_slow or self.before is None:
+            return None
+        return self.sampler.changes(self.iterate, self.before)
 
     @property
     def iteration(self) -> int:
@@ -207,7 +226,8 @@ class Frame:
     @cached_property
     def bases(self) -> Bases | None:
         """The separated bases, if there are any."""
-        return bases_of(self.iterate, self.before, self.look.substructure)
+        before = self.before.checkpoint if self.before else None
+        return bases_of(self.iterate, before, self.look.substructure)
 
     @cached_property
     def mesh(self) -> MeshField | None:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.picture.frames import Stand
 from app.picture.shown import Bytes
-from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, STICK, VERMILION
+from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, PURPLE, STICK, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, Scene, View
 from app.views.legend import Key
 from app.views.scales import across, spanned, upright
+from solver.arrays import Array
 
 KEYS = (
     Key(BACKWARD, "square", "slip −"),
@@ -19,6 +21,7 @@ KEYS = (
     Key(FORWARD, "square", "slip +"),
 )
 CHOSEN = Key(VERMILION, "line", "chosen instant")
+CHANGED = Key(PURPLE, "line", "changed status")
 OPENED = (Key(OPEN, "square", "open"), Key(VERMILION, "line", "instant"))
 
 
@@ -42,6 +45,9 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
         across([float(instants[scene.instant])], x, color=VERMILION, width=3),
     ]
     ghosts = []
+    if (changes := scene.frame.changes) is not None and changes[1].any():
+        curves.append(_outlines(begun, changes[1], scene.length))
+        ghosts.append(CHANGED)
     if scene.ghost is not None:
         before, fields, _ = scene.ghost
         curves.insert(0, _fronts(before.stand, fields.status, scene.length))
@@ -59,6 +65,24 @@ def _ends(scene: Scene, low: float, high: float) -> tuple[float, float]:
     return min(low, float(times[0])), max(high, float(times[-1]))
 
 
+def _outlines(stand: Stand, marked: NDArray[np.bool_], length: float) -> Curve:
+    """Give the lines around points and instants that are marked."""
+    x, t = _edges(stand.positions).clip(0.0, length), _edges(stand.instants)
+    around = np.pad(marked, 1)
+    i, j = np.nonzero(around[1:, 1:-1] != around[:-1, 1:-1])
+    sides = (x[i], x[i], t[j], t[j + 1])
+    i, j = np.nonzero(around[1:-1, 1:] != around[1:-1, :-1])
+    return _strokes(np.concatenate([sides, (x[i], x[i + 1], t[j], t[j])], axis=1), PURPLE, 1.5)
+
+
+def _strokes(ends: Array, color: str, width: float) -> Curve:
+    """Give lines from x to x and from t to t, (4, n_lines), as one curve."""
+    first, last, low, high = ends
+    gap = np.full(len(first), np.nan)
+    xs, ts = np.stack([first, last, gap], axis=1), np.stack([low, high, gap], axis=1)
+    return Curve(xs.ravel(), ts.ravel(), color, width)
+
+
 def _fronts(stand: Stand, status: Bytes, length: float) -> Curve:
     """Give the lines between points and instants of different status."""
     x, t = _edges(stand.positions).clip(0.0, length), _edges(stand.instants)
@@ -66,10 +90,7 @@ def _fronts(stand: Stand, status: Bytes, length: float) -> Curve:
     vertical = (x[i + 1], x[i + 1], t[j], t[j + 1])
     i, j = np.nonzero(status[:, 1:] != status[:, :-1])
     level = (x[i], x[i + 1], t[j + 1], t[j + 1])
-    first, last, low, high = np.concatenate([vertical, level], axis=1)
-    gap = np.full(len(first), np.nan)
-    xs, ts = np.stack([first, last, gap], axis=1), np.stack([low, high, gap], axis=1)
-    return Curve(xs.ravel(), ts.ravel(), FRONT, 1)
+    return _strokes(np.concatenate([vertical, level], axis=1), FRONT, 1)
 
 
 def _edges(axis: np.ndarray) -> np.ndarray:

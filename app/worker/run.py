@@ -86,7 +86,7 @@ class WorkerRun:
         self._reference: Reference | None = None
         self._distance: Distance | None = None
         self._unmeasured: list[Iterate] = []
-        self._before: Checkpoint | None = None
+        self._before: Iterate | None = None
         self._start: Start | None = None
         self._previous = previous if fits(previous, self._problem) else None
         self._newest: Iterate | None = None
@@ -185,7 +185,8 @@ class WorkerRun:
         """Show the iterate that is looked at."""
         assert self._newest is not None
         iterate, before = self._sought or (self._newest, self._before)
-        return self._sampler.frame(iterate, look, before)
+        waits = self._sought is not None or (self.recording.status is None and self._tempo.is_slow)
+        return self._sampler.frame(iterate, look, before, is_slow=waits)
 
     def keep_frame(self, look: Look) -> Frame:
         """Keep the fields that are looked at, for others to be compared with; give all of them."""
@@ -242,38 +243,30 @@ class WorkerRun:
 
     def _iterate(self, newest: Iterate) -> None:
         self._tempo.count(newest.number)
-        if self._answer is None:
-            self._account(newest, next(self._generator))
+        if self._answer is not None:
+            self._take(newest, self._answer, self._rules.close(self._answer))
         else:
-            self._end_with(self._answer, newest)
+            self._account(newest, next(self._generator))
 
     def _account(self, newest: Iterate, iterate: Iterate) -> None:
         """Record and judge an iterate; one that is not finite does not become the newest."""
         verdict = self._rules.judge(iterate)
-        self.recording.status = status = verdict.status
-        self.has_news = True
-        if status is not None and status.ending is Ending.DIVERGED:
+        if (status := verdict.status) is not None and status.ending is Ending.DIVERGED:
+            self.recording.status, self.has_news = status, True
             return
         newest = self._take(newest, iterate, verdict)
         self._seeking.keep(iterate.checkpoint)
-        if (finished := verdict.finished) is None:
-            return
-        if finished.is_answer and not self.follows_hand:
+        if (finished := verdict.finished) and finished.is_answer and not self.follows_hand:
             # The last iterate is shown before it.
             self._answer = finished
-        else:
-            self._end_with(finished, newest)
-
-    def _end_with(self, finished: Iterate, newest: Iterate) -> None:
-        """End with a certified solution, as the last picture."""
-        verdict = self._rules.close(finished)
-        self.recording.status, self.has_news = verdict.status, True
-        self._take(newest, finished, verdict)
+        elif finished is not None:
+            self._take(newest, finished, self._rules.close(finished))
 
     def _take(self, newest: Iterate, iterate: Iterate, verdict: Decision) -> Iterate:
         """Record an iterate, which becomes the newest."""
+        self.recording.status, self.has_news = verdict.status, True
         if iterate is not newest:
-            self._before = newest.checkpoint
+            self._before = newest
         self._newest = iterate
         if not self._is_compared:
             self._unmeasured.append(iterate)

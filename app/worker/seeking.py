@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 
 from solver.latin import Checkpoint, Iterate
 
-Found = tuple[Iterate, Checkpoint | None]
-"""An iterate, and the checkpoint of the one before it."""
+Found = tuple[Iterate, Iterate | None]
+"""An iterate, and the one before it."""
 
 
 class Checkpoints:
@@ -60,7 +60,7 @@ class Seeking:
         self._checkpoints = Checkpoints()
         self._generator: Iterator[Iterate] | None = None
         self._wanted: int | None = None
-        self._passed: Checkpoint | None = None
+        self._passed: Iterate | None = None
 
     @property
     def wanted(self) -> int | None:
@@ -73,8 +73,10 @@ class Seeking:
 
     def begin(self, iteration: int) -> None:
         """Seek an iterate, in place of any that was sought."""
-        self._passed = self._checkpoints.before(iteration)
-        self._generator, self._wanted = self._iterations(self._passed), iteration
+        # The iterate before is done again too: what has changed since is compared with it.
+        start = self._checkpoints.before(iteration - 1)
+        self._passed, self._wanted = None, iteration
+        self._generator = self._iterations(start)
 
     def stop(self) -> None:
         """Seek nothing any more."""
@@ -85,7 +87,7 @@ class Seeking:
         if self._generator is None:
             return None
         iterate, before = next(self._generator), self._passed
-        self._passed = iterate.checkpoint
+        self._passed = iterate
         self.keep(iterate.checkpoint)
         if iterate.number != self._wanted:
             return None

@@ -57,6 +57,11 @@ class Tempo:
             return None
         return min(max(self._due - time.monotonic(), 0.0), LONGEST_REST)
 
+    @property
+    def is_slow(self) -> bool:
+        """Whether one has the time to see what each iteration changes."""
+        return self._pause_after is not None or (self._pace in (0.0, 1.0))
+
     def _interval(self, done: int) -> float:
         """Give the seconds between two iterations, after so many of them."""
         if self._pace == WHOLE:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from html import escape
 from typing import Literal
 
@@ -30,6 +31,15 @@ STATES = {
 AT_REST, AT_WORK = "■ at rest", "at work"
 COUNTED = "iteration", "friction force error"
 """Stand beside their numbers in the status line, where scripts read them; the figures mark them."""
+CHANGES = {
+    "slip": "{} began to slip: force over its bound",
+    "turn": "{} slip the other way: force over its bound",
+    "stick": "{} stick again: friction at its bound would drive the slip",
+    "settle": "{} rest: they slip by no more than both stages differ by",
+    "lift": "{} lift: contact would have to pull",
+    "touch": "{} touch: the bodies would overlap",
+}
+"""Of points at instants, by what became of them."""
 PAUSED = "Run goes on, Step does one iteration."
 REPLAYED = "The run had ended, and begins anew."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
@@ -76,8 +86,16 @@ def status_line(
         (detail if is_solved else more).append(in_titles(run.settings, escape(advice), "<i>{}</i>"))
     elif state == "paused":
         more.append(PAUSED)
+    if frame.changes is not None:
+        more.append(changed_since(frame.changes[0]))
     whole = f"{' '.join([line, *more])} {DETAIL.format('<br>'.join(detail))}"
     return explained(whole, COUNTED)
+
+
+def changed_since(counts: Mapping[str, int]) -> str:
+    """Say how many points, instant by instant, have changed their status, and why."""
+    said = [words.format(counts[name]) for name, words in CHANGES.items() if name in counts]
+    return f"Since the iterate before: {'; '.join(said) or 'no point changed its status'}."
 
 
 def _state(run: Recording, frame: Frame, state: str, done: int) -> str:
