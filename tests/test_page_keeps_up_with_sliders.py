@@ -148,7 +148,7 @@ def test_a_dragged_slider_hurries_and_let_go_it_replays(
     assert len(link.orders) == count
 
 
-def test_a_slider_that_stands_still_counts_as_let_go(
+def test_a_slider_that_stands_still_is_replayed_in_the_scale_that_there_is_until_it_is_let_go(
     session: Session, link: LoneLink, clock: Clock
 ) -> None:
     session.start()
@@ -160,6 +160,9 @@ def test_a_slider_that_stands_still_counts_as_let_go(
     clock.pass_(0.1 * HELD_STILL)
     assert not link.orders[-1].follows_hand
     assert link.orders[-1].settings.peak == 910.0
+    assert session.look.is_held
+    session.let_go()
+    assert not session.look.is_held
 
 
 def test_a_page_at_rest_has_nothing_to_do(session: Session, link: LoneLink, clock: Clock) -> None:

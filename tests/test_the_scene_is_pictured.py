@@ -154,7 +154,7 @@ def test_a_picture_keeps_its_scale_while_a_slider_is_dragged() -> None:
     shown.run(1, "bar", SMALL["bar"])
     first = pictured(shown.scene())
     shown.run(2, "bar", {**SMALL["bar"], "peak": 90.0}, follows_hand=True)
-    dragged = picture.draw(shown.scene(), first.kept)
+    dragged = picture.draw(shown.scene(replace(ALL, is_held=True)), first.kept)
     shown.run(3, "bar", {**SMALL["bar"], "peak": 90.0})
     let_go = picture.draw(shown.scene(), dragged.kept)
     assert dragged.kept == first.kept
@@ -169,7 +169,7 @@ def test_a_hand_that_pulls_farther_than_there_is_room_has_more() -> None:
     shown.run(1, "bar", SMALL["bar"])
     first = pictured(shown.scene())
     shown.run(2, "bar", {**SMALL["bar"], "peak": 9000.0}, follows_hand=True)
-    drawing = picture.draw(shown.scene(), first.kept)
+    drawing = picture.draw(shown.scene(replace(ALL, is_held=True)), first.kept)
     assert drawing.kept.factor == first.kept.factor
     assert drawing.kept.reach > first.kept.reach
 

@@ -163,6 +163,8 @@ class Look:
         The position along the bodies that is marked, m, or None.
     magnification
         Factor on the displacement of bodies; None leaves it to the view.
+    is_held
+        Whether a hand has hold of a slider: bodies keep the scale that they are drawn in.
     views
         Names of the views that are seen.
     complaint
@@ -177,6 +179,7 @@ class Look:
     substructure: int | None = None
     place: float | None = None
     magnification: float | None = None
+    is_held: bool = False
     views: tuple[str, ...] = ()
     complaint: str = ""
     readings: tuple[str, ...] = ()

@@ -77,7 +77,7 @@ class Session(State):
         self.attendance = Attendance(self, self.worker, hire, self.turns, self.start)
         self.crowd, self.follows_hand, self.is_held = 0, False, False
         timer = self.turns.timer
-        self._stands_still, self._is_left_alone = timer(self.let_go), timer(self._give_back)
+        self._stands_still, self._is_left_alone = timer(self._stand_still), timer(self._give_back)
         self._looks = timer(self.attend)
         self.asked = Asked(executor, partial(self._looks.set, LOOKS))
         self._left: dict[str, Settings] = {}
@@ -100,7 +100,7 @@ class Session(State):
             if settings.scene != self.settings.scene:
                 self._left[self.settings.scene] = self.wanted
                 self._label, self.twin = "", None
-                self.watch(interface="", substructure=None, place=None)
+                self.watch(interface="", substructure=None, place=None, is_held=False)
             elif self.ticket:
                 self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
             if "is_alone" in how:
@@ -132,12 +132,17 @@ class Session(State):
             with self.together():
                 self._due, self._by_hand = settings, by_hand
                 if by_hand:
+                    self.watch(is_held=True)
                     self._stands_still.set(HELD_STILL)
                 self._want(settings)
                 self._start_due()
 
     def let_go(self) -> None:
-        """Replay the iteration of what a hand has chosen."""
+        """Replay the iteration of what a hand has chosen, to a scale that suits it."""
+        self.watch(is_held=False)
+        self._stand_still()
+
+    def _stand_still(self) -> None:
         self._stands_still.stop()
         self._by_hand = False
         if self.follows_hand:

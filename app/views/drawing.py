@@ -47,8 +47,6 @@ class Scene:
         Whether `before` is a run A, which goes in step with the run at work, B.
     shadow
         The iterate of `before` that is drawn beside that of the run at work.
-    is_held
-        Whether a hand moves a slider, so that what is seen is to keep its scale.
     """
 
     run: Recording
@@ -59,7 +57,6 @@ class Scene:
     look: Look
     is_paired: bool = False
     shadow: Frame | None = None
-    is_held: bool = False
 
     @property
     def name(self) -> str:

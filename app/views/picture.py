@@ -107,10 +107,10 @@ def _scale(scene: Scene, kept: Scale | None) -> Scale:
     portrait, chosen = scene.run.stand.portrait, scene.look.magnification
     size = max(portrait.size)
     factor = chosen or (kept.factor if kept else 1.0)
-    if chosen is None and not (kept and scene.is_held):
+    if chosen is None and not (kept and scene.look.is_held):
         factor = fitting(portrait.mesh, scene.frame.pose.largest, factor)
     share = factor * reach_of(scene) / size
-    least = kept.reach if kept and (scene.is_held or share >= 0.4 * kept.reach) else 0.0
+    least = kept.reach if kept and (scene.look.is_held or share >= 0.4 * kept.reach) else 0.0
     return Scale(factor, least if share <= least else _stepped(share))
 
 

@@ -213,7 +213,6 @@ class PageRuns:
             look,
             is_paired=twin is not None,
             shadow=shadow,
-            is_held=run.follows_hand,
         )
 
     def _words(self, run: WorkerRun, scene: Scene) -> dict[str, str]:
