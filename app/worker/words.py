@@ -95,7 +95,7 @@ def status_line(
 def changed_since(counts: Mapping[str, int]) -> str:
     """Say how many points, instant by instant, have changed their status, and why."""
     said = [words.format(counts[name]) for name, words in CHANGES.items() if name in counts]
-    return f"Since the iterate before: {'; '.join(said) or 'no point changed its status'}."
+    return f"Since the iterate before, of points and instants: {'; '.join(said) or 'none changed'}."
 
 
 def _state(run: Recording, frame: Frame, state: str, done: int) -> str:
