@@ -115,12 +115,7 @@ class Session(State):
     def change(self, name: str, value: Any, *, by_hand: bool = False) -> None:
         """Change one setting; the run starts again as soon as the last change was shown.
 
-        A change `by_hand` is one of many while a slider is dragged, until it is `let_go`.
-
-        Raises
-        ------
-        SettingError
-            If the value is refused; then nothing changes.
+        One `by_hand` is one of many, until `let_go`; where a `SettingError` refuses it, none is made.
         """
         self.adopt(shown(self.wanted.with_change(name, value), self.wanted), by_hand=by_hand)
 
