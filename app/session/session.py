@@ -115,7 +115,7 @@ class Session(State):
     def change(self, name: str, value: Any, *, by_hand: bool = False) -> None:
         """Change one setting; the run starts again as soon as the last change was shown.
 
-        One `by_hand` is one of many, until `let_go`; where a `SettingError` refuses it, none is made.
+        One `by_hand` is one of many, until `let_go`; one that a `SettingError` refuses is not made.
         """
         self.adopt(shown(self.wanted.with_change(name, value), self.wanted), by_hand=by_hand)
 
