@@ -254,6 +254,11 @@ class Settings(Checked):
         return True
 
     @property
+    def has_spring(self) -> bool:
+        """Whether a spring holds a body."""
+        return False
+
+    @property
     def has_break(self) -> bool:
         """Whether a body is broken."""
         return False

@@ -12,7 +12,8 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look
 from app.views.catalogue import VIEWS
-from app.views.drawing import Drawing, Scene
+from app.views.drawing import Drawing
+from app.views.scene import Scene
 from app.wire.orders import Order, Ready, Run, Watch
 from app.wire.reports import File, Picture
 from app.worker.page_runs import PageRuns

@@ -16,7 +16,8 @@ from app.shell.figures import LINE
 from app.views import load_path, picture, sketch
 from app.views.acting import ARROW
 from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN
-from app.views.drawing import Curve, Drawing, Scene, Word
+from app.views.drawing import Curve, Drawing, Word
+from app.views.scene import Scene
 from solver.arrays import Array
 from solver.scenes import CATALOGUE, structure_of
 from solver.scenes.bar import BarSettings

@@ -14,8 +14,8 @@ from app.picture.recording import COLUMNS
 from app.views import convergence, deformed, error_time, friction, load_path, loop
 from app.views.catalogue import VIEWS, fitting
 from app.views.colors import ORANGE
-from app.views.drawing import Scene
 from app.views.scales import decades
+from app.views.scene import Scene
 from app.worker.telling import told
 from solver.scenes import CATALOGUE
 

@@ -7,9 +7,10 @@ import numpy as np
 from app.picture.shown import Wires
 from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
-from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View
+from app.views.drawing import POSITION, Curve, Drawing, Plot, View
 from app.views.legend import Key
 from app.views.scales import Limits, held, spanned
+from app.views.scene import Scene
 from solver.scenes import kind_of
 
 SHARED = 1.5

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from app.views.colors import VERMILION, VIRIDIS
-from app.views.drawing import Colors, Drawing, Image, Plot, Scene, View
+from app.views.drawing import Colors, Drawing, Image, Plot, View
 from app.views.legend import Key
 from app.views.scales import across, round_up, spanned, upright
+from app.views.scene import Scene
 
 MOST_COLUMNS = 240
 """Iterations that are drawn at most; a small plot has no more pixels."""

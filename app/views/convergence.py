@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from app.picture.shown import has_reference
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
-from app.views.drawing import Curve, Drawing, Marks, Plot, Scene, View
+from app.views.drawing import Curve, Drawing, Marks, Plot, View
 from app.views.earlier_runs import drawn
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned, upright
+from app.views.scene import Scene
 
 CURVES = (
     ("indicator", GREY, "η", "dashed"),

@@ -8,9 +8,10 @@ from app.picture.portrait import rims
 from app.picture.shown import Mesh
 from app.picture.units import decimal_scale
 from app.views.colors import GHOST, GREY
-from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, Scene, View, is_plane
+from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, View, is_plane
 from app.views.legend import Key
 from app.views.scales import around, round_up
+from app.views.scene import Scene
 from solver.arrays import Array
 
 FARTHEST = 5.0

@@ -7,12 +7,12 @@ import numpy as np
 from app.picture.labels import changes_of
 from app.picture.recording import Recording
 from app.views.colors import GHOST, GREY, LINES
-from app.views.drawing import Curve, Scene
+from app.views.drawing import Curve
 from app.views.legend import Key
+from app.views.scene import Scene
 
 MOST = 3
 COLORS = (GREY, LINES[3], GHOST)
-FAINT = 0.55
 MOST_POINTS = 200
 
 
@@ -36,13 +36,13 @@ def called(one: Recording, run: Recording) -> str:
 
 
 def drawn(scene: Scene, column: str) -> tuple[list[Curve], list[Key]]:
-    """Draw one column of their histories, faint, over iterations."""
+    """Draw one column of their histories, thin, over iterations."""
     curves, keys = [], []
     ghosts = ghosts_of(scene)
     for one, color in zip(ghosts, COLORS[-len(ghosts) :], strict=False):
         found = one.history.thinned(MOST_POINTS, one.searched)
         known = np.isfinite(found[column])
         values = found["iteration"][known], found[column][known]
-        curves.append(Curve(*values, color, 2, alpha=FAINT))
+        curves.append(Curve(*values, color, 1.2))
         keys.append(Key(color, "thin", called(one, scene.run)))
     return curves, keys

@@ -5,9 +5,10 @@ from __future__ import annotations
 from app.picture.recording import History
 from app.picture.shown import has_reference
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
-from app.views.drawing import Curve, Drawing, Plot, Scene, View
+from app.views.drawing import Curve, Drawing, Plot, View
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, upright
+from app.views.scene import Scene
 
 PAST_COLORS = (GREEN, VERMILION, PURPLE, SKY, ORANGE, GREY)
 FLOOR = 1e-14

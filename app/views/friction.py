@@ -6,9 +6,10 @@ import numpy as np
 
 from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
-from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, Scene, View, is_plane
+from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, across, held, spanned, upright
+from app.views.scene import Scene
 
 ROOM = 1.25
 """What is seen of forces, over their bound."""

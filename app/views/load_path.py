@@ -6,9 +6,10 @@ import numpy as np
 
 from app.picture.units import decimal_scale
 from app.views.colors import BLUE, FORCE, GREEN, GREY, PURPLE, VERMILION
-from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
 from app.views.scales import ROOM, across, spanned, upright
+from app.views.scene import Scene
 from solver.arrays import Array
 
 COLORS = (FORCE, BLUE, GREEN, PURPLE, GREY)

@@ -13,9 +13,10 @@ from app.picture.recording import Recording
 from app.picture.shown import Axes
 from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
-from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, Scene, View, has_instants
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, held, spanned
+from app.views.scene import Scene
 
 Pair = tuple[np.ndarray, np.ndarray]
 POINT = Marks((), (), VERMILION)

@@ -9,19 +9,10 @@ import numpy as np
 from app.picture.shown import ShownModes
 from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
-from app.views.drawing import (
-    POSITION,
-    Axis,
-    Curve,
-    Drawing,
-    Plot,
-    Scene,
-    View,
-    has_instants,
-    is_plane,
-)
+from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, has_instants, is_plane
 from app.views.legend import Key
 from app.views.scales import spanned, upright
+from app.views.scene import Scene
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
 UP = Axis(-1.12, 1.12)

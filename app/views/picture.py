@@ -24,12 +24,13 @@ from app.views.colors import (
     shaded,
 )
 from app.views.deformed import fitting, ghosts_of, reach_of, sizes_of
-from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, Scene, View
+from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, View
 from app.views.handles import Handle, on_arrow, on_bodies
 from app.views.held import BEYOND, WALL, held, room_of
 from app.views.legend import Key
 from app.views.posed import Posed
 from app.views.scales import round_up
+from app.views.scene import Scene
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
 from solver.scenes import behind

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from app.views.colors import GREY, LINES, VERMILION, shaded
-from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, Scene, View, has_instants
+from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned
+from app.views.scene import Scene
 
 FLOOR = 1e-8
 LEAST = 1e-30

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from app.picture.frames import Stand
 from app.picture.shown import Bytes
 from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, PURPLE, STICK, VERMILION
-from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, Scene, View
+from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, View
 from app.views.legend import Key
 from app.views.scales import across, spanned, upright
+from app.views.scene import Scene
 from solver.arrays import Array
 
 KEYS = (

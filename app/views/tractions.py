@@ -7,9 +7,10 @@ import numpy as np
 from app.picture.frames import DrawnFields
 from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREY, ORANGE, PURPLE
-from app.views.drawing import POSITION, Curve, Drawing, Plot, Scene, View, is_plane
+from app.views.drawing import POSITION, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, held, spanned, upright
+from app.views.scene import Scene
 
 KEYS = (
     Key(PURPLE, "line", "pressure p"),

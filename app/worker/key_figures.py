@@ -17,7 +17,7 @@ from app.picture.sampler import Frame
 from app.picture.shown import STATUS_OPEN, STRESSES, has_reference, instant_of
 from app.picture.units import measured
 from app.views.catalogue import VIEWS
-from app.views.drawing import Scene
+from app.views.scene import Scene
 from app.worker.words import UNKNOWN, number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED

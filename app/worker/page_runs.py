@@ -12,7 +12,7 @@ from html import escape
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, instant_of
-from app.views.drawing import Scene
+from app.views.scene import Scene
 from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.wire.reports import Facts, File, Picture
 from app.worker.key_figures import key_figures

@@ -12,9 +12,10 @@ import numpy as np
 from app.picture.shown import Look
 from app.views.catalogue import fitting
 from app.views.colors import VERMILION
-from app.views.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, Scene, View
+from app.views.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
 from app.views.legend import card_title
 from app.views.scales import upright
+from app.views.scene import Scene
 from app.wire.block import Attributes, Packer, Quads
 from app.wire.reports import Facts
 from app.worker.readings import values

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from app.picture.units import measured
-from app.views.drawing import Scene
+from app.views.scene import Scene
 from app.worker.words import number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED

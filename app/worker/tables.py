@@ -11,7 +11,7 @@ import numpy as np
 from app.picture.frames import DrawnFields
 from app.picture.recording import COLUMNS, History, Recording
 from app.picture.shown import instant_of
-from app.views.drawing import Scene
+from app.views.scene import Scene
 from solver.checked import dump
 
 Row = Sequence[object]

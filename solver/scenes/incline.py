@@ -87,6 +87,11 @@ class InclineSettings(PlaneSettings):
     elements_up = redefined(PlaneSettings.param["elements_up"], 12)
 
     @property
+    def has_spring(self) -> bool:
+        """It does."""
+        return True
+
+    @property
     def loop_is_over_displacement(self) -> bool:
         """Whether the loop is over a displacement: it is over the angle of the slope."""
         return False

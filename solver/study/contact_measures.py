@@ -60,7 +60,7 @@ def peak_stress(run: FinishedRun, at: float | None) -> float:
 
 def spring_force(run: FinishedRun, at: float | None) -> float:
     """Give the largest force in the spring, N; NaN without one."""
-    return math.nan if "spring" not in run.problem.rubbing else float(run.force.max())
+    return float(run.force.max()) if run.settings.has_spring else math.nan
 
 
 def _contact_width_at(run: FinishedRun, instant: int) -> float:

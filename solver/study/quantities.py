@@ -41,7 +41,7 @@ def _over_a_displacement(settings: Settings) -> bool:
 
 
 def _with_a_spring(settings: Settings) -> bool:
-    return "spring" in settings.definitions()
+    return settings.has_spring
 
 
 def _with_a_broken_wire(settings: Settings) -> bool:
