@@ -13,6 +13,7 @@ from lone_link import LoneLink
 from shown_pages import ALL, Shown
 
 from app.lessons.lesson import LESSONS, NO_CHOICE, content, parts, readings
+from app.picture.units import measured
 from app.session.pages import Pages
 from app.session.report_executor import ReportExecutor
 from app.session.session import Session
@@ -20,7 +21,6 @@ from app.shell.address import Sight, query_of, settings_from_query, sight_from_q
 from app.shell.dashboard import Dashboard
 from app.teaching.teaching import CHOICE
 from app.wire.orders import Run, Seek
-from app.worker.readings import measured
 from solver.lessons.lesson import Lesson
 from solver.study.finished import finished_run
 from solver.study.quantities import reading
@@ -235,7 +235,7 @@ def test_nothing_is_told_of_the_first_iterate_before_there_is_a_record_of_it() -
         (-1.11e-3, "J", "-1.11 mJ"),
         (1200.0, "N", "1.2 kN"),
         (0.0, "J", "0 J"),
-        (3e-15, "J", "3.0·10<sup>-15</sup> J"),
+        (3e-15, "J", "3e-15 J"),
     ],
 )
 def test_values_have_the_prefix_that_makes_them_short(value: float, unit: str, text: str) -> None:

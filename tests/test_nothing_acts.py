@@ -57,7 +57,9 @@ def test_axes_of_a_body_at_rest_are_those_of_its_size() -> None:
     bodies = deformed.draw(scene, None)
     assert bodies is not None
     assert bodies.bodies is not None
-    assert bodies.bodies.box == pytest.approx((-0.002, 0.102, -0.002, 0.052))
+    box = bodies.bodies.box
+    sides = box.left, box.right, box.low, box.high
+    assert sides == pytest.approx((-0.002, 0.102, -0.002, 0.052))
     x = loop.draw(scene, None).x
     assert x is not None
     assert (x.label, x.high) == ("Displacement of the top (µm)", 1.0)

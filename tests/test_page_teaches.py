@@ -93,11 +93,9 @@ def test_lessons_are_offered_until_one_has_seen_them_and_stay_in_the_sidebar(
     expect(page.get_by_text("New here?")).to_have_count(0)
     page.goto(page.url.partition("?")[0] + "?lesson=best-k")
     pad = lesson(page).get_by_role("img", name="over Factor on k")
-    box = pad.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+    pad.hover(position={"x": 110.0, "y": 60.0})
     page.mouse.down()
-    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.5 * box["height"])
+    pad.hover(position={"x": 260.0, "y": 100.0})
     page.mouse.up()
     press(page, "One in between")
     expect(lesson(page)).to_contain_text("Your curve, and what was measured")

@@ -12,6 +12,7 @@ from typing import Any, cast
 import pytest
 
 from app.picture.glossary import explained
+from app.picture.usual import usual_settings
 from app.reports.reports import EVERY, WRONG, StabilityReport, StudyReport, company, title_of
 from app.session.report_folder import SECTIONS, ReportFolder, files, said
 from app.session.report_job import Found, ReportJob
@@ -100,8 +101,8 @@ def test_the_matrix_says_each_verdict_in_a_word_by_which_a_row_is_hidden(job: Re
 
 
 def test_a_study_is_named_by_what_is_changed_and_says_who_else_was_at_work() -> None:
-    assert title_of(BarSettings.checked({})) == "defaults"
-    assert title_of(BarSettings.checked({"friction": 0.4})) == "friction 0.4"
+    assert title_of(usual_settings(BarSettings)) == "defaults"
+    assert title_of(usual_settings(BarSettings).replace(friction=0.4)) == "friction 0.4"
     assert title_of(BarSettings.checked({"method": "paper"})) == "method paper"
     assert "nothing else was at work" in company(0)
     assert "a run or a chart was" in company(1)

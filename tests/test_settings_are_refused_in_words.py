@@ -148,9 +148,10 @@ def test_an_assignment_without_an_equals_sign_is_refused(text):
     ],
 )
 def test_a_bad_address_is_explained_and_gives_the_defaults_of_its_scene(query, words, scene):
+    from app.picture.usual import changed
     from app.shell.address import settings_from_query
 
     chosen, complaint = settings_from_query(query)
     assert words in complaint
     assert chosen.scene == scene
-    assert not chosen.changed()
+    assert not changed(chosen)

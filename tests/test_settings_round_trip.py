@@ -66,10 +66,11 @@ def test_a_file_of_an_earlier_version_is_read_as_far_as_it_still_holds(scene):
 
 
 def test_an_address_of_an_earlier_version_is_read_as_far_as_it_still_holds():
+    from app.picture.usual import changed
     from app.shell.address import settings_from_query
 
     for old, complaint in (("full", ""), ("reduced", "stalled at a larger one; leave it out")):
         chosen, words = settings_from_query(f"?peak=700&local_stage={old}&local_points=0.3")
-        assert chosen.changed() == {"peak": 700.0}
+        assert changed(chosen) == {"peak": 700.0}
         assert complaint in words
         assert bool(words) == bool(complaint)

@@ -58,7 +58,7 @@ const sketchpad = ({across, up, places, top, values}, sketch, keep) => {
       draw(event)
     }
     pad.onpointermove = (event) => { if (event.buttons) { draw(event) } }
-    pad.onpointerup = () => keep(sketch)
+    pad.onpointerup = keep
   }
   show()
   return pad

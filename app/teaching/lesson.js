@@ -18,14 +18,17 @@ export function render({model}) {
   }
   // What was drawn by hand goes on being there as long as what was predicted.
   const SKETCH = "slipfront-sketch"
+  let drawing = ["", blank()]
   const sketched = () => {
-    try {
-      const [title, sketch] = JSON.parse(sessionStorage.getItem(SKETCH)) ?? []
-      return title === model.lesson.title ? sketch : blank()
-    } catch { return blank() }
+    const {title} = model.lesson, stored = () => JSON.parse(sessionStorage.getItem(SKETCH)) ?? [""]
+    if (drawing[0] !== title) {
+      drawing = [title, blank()]
+      try { if (stored()[0] === title) { drawing = stored() } } catch {}
+    }
+    return drawing[1]
   }
-  const keep = (sketch) => {
-    try { sessionStorage.setItem(SKETCH, JSON.stringify([model.lesson.title, sketch])) } catch {}
+  const keep = () => {
+    try { sessionStorage.setItem(SKETCH, JSON.stringify(drawing)) } catch {}
   }
   const curve = ({curve: axes}) => {
     if (!axes) { return [] }
