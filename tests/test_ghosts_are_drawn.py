@@ -14,6 +14,7 @@ from app.views import convergence, deformed, picture, status_map
 from app.views.catalogue import fitting
 from app.views.colors import FRONT, GHOST
 from app.views.drawing import Drawing
+from app.views.earlier_runs import THIN
 from app.wire.orders import Seek, Watch
 from solver.scenes import CATALOGUE
 
@@ -71,14 +72,14 @@ def test_the_last_three_runs_stay_in_the_plot_of_convergence_named_by_their_k() 
         shown.run(ticket, "bar", {**SMALL["bar"], **SHORT, "k_scale": k})
     drawing = convergence.draw(shown.scene(), None)
     assert [name for name in keys(drawing) if "k ×" in name] == ["k × 0.1", "k × 10", "k × 1"]
-    faint = [one for one in drawing.curves if one.alpha < 1.0]
+    thin = [one for one in drawing.curves if one.width == THIN]
     past = [one.history.column("error_force") for one in shown.scene().past[-3:]]
-    assert all(np.array_equal(one.y, own) for one, own in zip(faint, past, strict=True))
+    assert all(np.array_equal(one.y, own) for one, own in zip(thin, past, strict=True))
 
 
 def test_a_run_that_is_replayed_is_no_ghost_of_itself() -> None:
     drawing = convergence.draw(run_twice("bar").scene(), None)
-    assert all(one.alpha == 1.0 for one in drawing.curves)
+    assert all(one.width != THIN for one in drawing.curves)
 
 
 OTHERS: dict[str, dict[str, Any]] = {

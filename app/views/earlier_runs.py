@@ -14,6 +14,7 @@ from app.views.scene import Scene
 MOST = 3
 COLORS = (GREY, LINES[3], GHOST)
 MOST_POINTS = 200
+THIN = 1.5
 
 
 def ghosts_of(scene: Scene) -> list[Recording]:
@@ -43,6 +44,6 @@ def drawn(scene: Scene, column: str) -> tuple[list[Curve], list[Key]]:
         found = one.history.thinned(MOST_POINTS, one.searched)
         known = np.isfinite(found[column])
         values = found["iteration"][known], found[column][known]
-        curves.append(Curve(*values, color, 1.2))
+        curves.append(Curve(*values, color, THIN))
         keys.append(Key(color, "thin", called(one, scene.run)))
     return curves, keys
