@@ -71,7 +71,7 @@ window.afterKey = (text) => new Promise((resolve) => {
 })"""
 
 # A run that goes on: no tolerance stops it, and nothing helps it to converge.
-ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30"
+ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=20"
 SECONDS = 5
 WATCH = """(seconds) => new Promise((resolve) => {
   const counts = new Map()

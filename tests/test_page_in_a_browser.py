@@ -150,7 +150,7 @@ def test_a_plot_fills_the_page_says_its_values_and_stays_zoomed_while_the_run_go
     expect(status(page)).to_contain_text(re.compile(r"iteration \d\d .* 6 substructures"))
     plot = card(page, "Friction force")
     plot.hover()
-    expect(page.get_by_text(re.compile(r"^[0-9.]+ m, .* kN/m$"))).to_be_visible()
+    expect(page.get_by_text(re.compile(r"^[0-9.]+ m, .* [kmµ]?N/m$"))).to_be_visible()
     all_seen = page.evaluate(SEEN, "friction-force.x")
     page.keyboard.press("f")
     box = plot.bounding_box()

@@ -88,6 +88,8 @@ def status_line(
         more.append(PAUSED)
     if frame.changes is not None:
         more.append(changed_since(frame.changes[0]))
+    if run.status is None and more:
+        line += "."
     whole = f"{' '.join([line, *more])} {DETAIL.format('<br>'.join(detail))}"
     return explained(whole, COUNTED)
 
