@@ -1,3 +1,5 @@
+// As a picture may be that which stands there already, it is not waited for without end.
+const LOOKS = 30
 export function render({model}) {
   const seen = (slug) => plot_of(slug, model.caption)
   const plots = make("select", {ariaLabel: "Plot"}), tables = make("select", {ariaLabel: "Table"})
@@ -5,18 +7,25 @@ export function render({model}) {
     make("button", {className: "wide", title, onclick}, name)
   const tell = (kind, value = "") => model.send_msg({kind, value})
   const saved = (how) => () => how(`slipfront-${plots.value}`, seen(plots.value))
-  let frames = [], filmed = ""
+  let frames = [], filmed = "", seen_last = ""
   const animate = (over) => () => {
     frames = []
     filmed = plots.value
+    seen_last = model.caption
     tell("animate", over)
   }
   const paint = () => new Promise((done) =>
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))
+  // What is said of a picture comes with it; a shot may be asked for before it is there.
+  const painted_anew = async () => {
+    for (let looks = 0; looks < LOOKS && model.caption === seen_last; looks++) { await paint() }
+    seen_last = model.caption
+    await paint()
+  }
   model.on("shot", async () => {
     const {shot} = model
     if (shot) {
-      await paint()
+      await painted_anew()
       // All of one size, though a legend may take another line.
       const canvas = await painted(seen(filmed), 1, frames[0])
       frames.push(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height))
