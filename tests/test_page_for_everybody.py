@@ -171,11 +171,19 @@ def test_a_projector_has_one_row_without_controls_and_its_address_leads_back(
 
 
 def test_a_frame_of_a_course_page_has_plots_alone(open_page: Visit) -> None:
-    page = open_page("?view=embed&plots=Convergence,Load path", width=800, height=500)
+    page = open_page("?view=embed&plots=Scene,Convergence,Load path", width=800, height=500)
     expect(page.get_by_role("figure", name="Load path")).to_be_visible()
-    expect(page.locator(".card")).to_have_count(2)
+    cards = page.locator(".card")
+    expect(cards).to_have_count(3)
     expect(status(page)).to_be_hidden()
     expect(page.get_by_role("button", name="Run or pause")).to_be_hidden()
+    for one in cards.all():
+        expect(one).to_be_in_viewport(ratio=1)
+        assert one.evaluate("(card) => card.clientHeight") > 120
+    page.set_viewport_size({"width": 390, "height": 600})
+    expect(page.get_by_role("button", name="Controls")).to_be_hidden()
+    expect(page.get_by_role("button", name="Study", exact=True)).to_be_hidden()
+    expect(page.get_by_role("heading", name="Slipfront")).to_be_hidden()
 
 
 def test_the_page_follows_the_systems_theme_is_accessible_in_it_and_remembers_a_choice(

@@ -29,6 +29,7 @@ class Phone:
         self._page, self._tabs, self._live = page, tabs, live
         self._controls = controls
         self._sheet: Any = None
+        self._is_bare = False
 
     def fit(self) -> None:
         """Have the page fit a phone from now on."""
@@ -43,11 +44,12 @@ class Phone:
         handle = Fold(label="Controls", keeps="card", sizing_mode="stretch_width")
         self._sheet = column(handle, controls, role="sheet")
         self._tabs.main.append(self._sheet)
-        self.dress(is_bare=False)
+        self.dress(is_bare=self._is_bare)
 
     def dress(self, *, is_bare: bool) -> None:
-        """Leave the sheet away where nothing stands around plots."""
+        """Leave the sheet and the tabs away where nothing stands around plots."""
+        self._is_bare = is_bare
         if self._sheet is not None:
-            self._sheet.visible = not is_bare
+            self._sheet.visible = self._tabs.bar.visible = not is_bare
             if not is_bare:
                 self._page.sx = ROOM

@@ -276,7 +276,7 @@ def form_of(question: Question, settings: Settings) -> dict[str, Any]:
     quantity, _, at = question.of.partition("@")
     quantities = askable(settings)
     quantities |= {quantity: QUANTITIES[quantity]} if quantity in QUANTITIES else {}
-    rest = changed(question.asked(settings))
+    rest = changed(settings)
     title = label_of(settings, rest, most=len(rest))
     return {
         "settings": [
