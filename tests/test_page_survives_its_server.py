@@ -16,7 +16,8 @@ from proxy import Proxy
 
 PAGES = """Bokeh.documents.filter((one) => one.roots().some(({type}) => type !== "Plot")).length"""
 """Documents that are no figure's."""
-SMALL = "scene=strand&wires=5&elements=12&instants=11&plots=Scene"
+SMALL = "scene=strand&wires=5&elements=12&instants=11&plots=Scene&pace=1"
+"""Its search goes on while the network is cut."""
 
 
 class Network:
@@ -69,8 +70,8 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(network: Network) -> Non
     heard = keys_heard(page)
     for broken, mended in ((proxy.cut, proxy.mend), (proxy.hush, proxy.mend), (proxy.hush, anew)):
         broken()
-        # Nothing is heard for so long.
-        page.clock.run_for(8000)
+        # Nothing is heard for so long, and longer than a page waits that has found its server.
+        page.clock.run_for(16000)
         expect(status(page)).to_contain_text("not connected")
         mended()
         expect(status(page)).to_contain_text("36 substructures")

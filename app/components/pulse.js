@@ -124,13 +124,16 @@ export function render({model, view}) {
     closed = event
     lose()
   })
-  model.on("heard", () => {
+  // Whatever comes is a sign of life; what was missed meanwhile is asked for.
+  const find_again = () => {
+    closed = null
     if (!lost) { return }
     lost = false
     tell("beat", -++beats)
-  })
+  }
+  model.on("heard", find_again)
   model.on("msg:custom", ([number, picture]) => {
-    closed = null
+    find_again()
     paint(picture)
     speak()
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(() => {
