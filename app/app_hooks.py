@@ -22,14 +22,17 @@ def on_server_loaded(_server_context: Any) -> None:
         answer_heads,
         ignore_the_lost,
         open_in_turn,
+        send_by,
         stay_on_loop,
     )
+    from app.server.packed import Packed
     from app.server.serve import LATENESS, NAMES, facts, rehearse
     from app.shell.log import leave_out_the_unsent
 
     rehearse()
     alive_with(facts)
     answer_heads(NAMES.__contains__)
+    send_by(Packed)
     open_in_turn()
     stay_on_loop()
     ignore_the_lost()

@@ -1,8 +1,8 @@
 """Measure the page in headless Chromium: `python tests/measure_page.py`.
 
-Prints medians, in ms, of opening the page until its first picture is painted, of a key press
-on a slider until the first picture of the new run is painted, and of the last of many quick presses
-until its own picture is; and for every scene how often its plots are
+Prints the weight of a page, and medians, in ms, of opening the page until its first picture is
+painted, of a key press on a slider until the first picture of the new run is painted, and of the
+last of many quick presses until its own picture is; and for every scene how often its plots are
 painted in a second, the one that is painted least and the one that is painted most.
 """
 
@@ -127,6 +127,29 @@ def paints_per_second(context: BrowserContext, address: str) -> tuple[float, flo
     return min(paints, default=0) / SECONDS, max(paints, default=0) / SECONDS
 
 
+def weight(context: BrowserContext, address: str) -> tuple[float, float]:
+    """Give what a new visitor's page loads, in MB: files, and what it then hears in two seconds."""
+    page = context.new_page()
+    session = context.new_cdp_session(page)
+    session.send("Network.enable")
+    files: list[float] = []
+    heard: list[float] = []
+    session.on("Network.loadingFinished", lambda event: files.append(event["encodedDataLength"]))
+    session.on(
+        "Network.webSocketFrameReceived",
+        # What is not text (1) is told in base 64.
+        lambda event: heard.append(
+            len(event["response"]["payloadData"])
+            * (1 if event["response"]["opcode"] == 1 else 0.75)
+        ),
+    )
+    page.goto(address, wait_until="commit")
+    page.evaluate(FIRST_PICTURE)
+    page.wait_for_timeout(2000)
+    page.close()
+    return 1e-6 * sum(files), 1e-6 * sum(heard)
+
+
 def main() -> None:
     with tempfile.TemporaryDirectory() as folder, browser() as chrome:
         server = Server(Path(folder) / "log")
@@ -136,6 +159,7 @@ def main() -> None:
                 viewport={"width": 1280, "height": 720}, reduced_motion="reduce"
             )
             context.add_init_script(FIND)
+            loaded, heard = weight(context, server.address)
             opened = []
             for repeat in range(6):
                 page = context.new_page()
@@ -154,6 +178,7 @@ def main() -> None:
             }
         finally:
             server.stop()
+    print(f"a page loads {loaded:.2f} MB, and hears {heard:.2f} MB")
     print(f"open to first picture: first {opened[0]:.0f}, then {statistics.median(opened[1:]):.0f}")
     print(
         f"slider to picture: median {statistics.median(latency):.0f}, "

@@ -19,6 +19,7 @@ from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
 from panel.io.server import DocHandler
 from panel.util.parameters import edit_readonly
+from tornado.web import OutputTransform
 
 THREADS = "_run_in_executor"
 """Of Bokeh 3.10: what gives threads the messages of browsers and the callbacks of sessions."""
@@ -100,6 +101,18 @@ def answer_heads(is_open: Callable[[str], bool]) -> None:
             handler.set_status(410)
 
     DocHandler.head = head
+
+
+def send_by(transform: type[OutputTransform]) -> None:
+    """Have all that follows the first page that is asked for go through a transform."""
+    prepare: Any = DocHandler.prepare
+
+    async def prepare_all(handler: DocHandler) -> None:
+        if transform not in handler.application.transforms:
+            handler.application.add_transform(transform)
+        await prepare(handler)
+
+    DocHandler.prepare = prepare_all  # type: ignore[assignment,method-assign]
 
 
 def open_in_turn() -> None:
