@@ -18,7 +18,8 @@ from app.wire.reports import Facts
 from solver.lessons.lesson import Lesson
 from solver.settings import Settings
 
-TABS = ("Live", "What if", "Figures", "Study", "Stability")
+WHAT_IF = "What if"
+TABS = ("Live", WHAT_IF, "Figures", "Study", "Stability")
 VIEWS = ("page", "present", "embed")
 DEFAULT_PACE = WHOLE
 PACES: dict[str, Rate] = {WHOLE: WHOLE, "1": 1.0, "5": 5.0, "20": 20.0, "fastest": None}

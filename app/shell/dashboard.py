@@ -14,7 +14,7 @@ from app.components.panes import column, page, text
 from app.components.pulse import pulse
 from app.controls.sidebar import Sidebar
 from app.session.session import Session
-from app.session.state import TABS
+from app.session.state import TABS, WHAT_IF
 from app.session.undo import Undo
 from app.shell.actions import Actions
 from app.shell.address import Sight, sight_from_query
@@ -34,6 +34,7 @@ from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
 from app.teaching.teaching import Teaching, name_of
 from app.views.catalogue import drawn
+from app.whatif.question import over_k
 from app.whatif.whatif import WhatIf
 from solver.settings import Settings
 
@@ -79,7 +80,9 @@ class Dashboard:
         self._presence = Presence(session, self.pulse)
         self._transport, self._looks = Transport(session), Looks(session)
         chosen = {**self._transport.chooses(), **self._looks.chooses()}
-        self._gallery = gallery({**chosen, "drag": self._drag, "tab": self._turn})
+        self._gallery = gallery(
+            {**chosen, "drag": self._drag, "tab": self._turn, "bathtub": self._ask_over_k}
+        )
         self._banner = Banner(session)
         self._sidebar = Sidebar(session, self._teach)
         self._teaching = Teaching(session, self._sidebar)
@@ -227,6 +230,12 @@ class Dashboard:
         session, (seen, other) = self.session, names
         drawn_now = {view.name for view in drawn(session.wanted, session.chosen)}
         session.draw(drawn_now - {seen} | {other})
+
+    def _ask_over_k(self, _: Any) -> None:
+        """Have the fields of *What if* ask over k alone, ready to be started."""
+        with self.session.together():
+            self.session.question = over_k(self.session.wanted)
+            self.session.tab = WHAT_IF
 
     def _teach(self, name: str) -> None:
         self._teaching.open(name)

@@ -116,6 +116,12 @@ export function render({model}) {
       plot.on_event("tap", chosen)
       handles(place, plot, held, model, (event) => [choose, chosen].forEach((one) => one(event)))
     }
+    if (slug === "convergence") {
+      const {button, show} = bathtub(plot, () => model.send_msg({kind: "bathtub", value: ""}))
+      place.append(button)
+      model.on("bathtub", () => show(model.bathtub))
+      show(model.bathtub)
+    }
     // Pictures find its models from now on; they are drawn one after the other.
     cards.set(slug, {element, name, place, made, plot, tabs, drawn: false})
   }

@@ -47,6 +47,8 @@ class Gallery(Plain):
         What the slider of every setting is that may be dragged in a picture, by its name.
     said
         Slug of every plot, and a sentence of what it shows; pictures bring it.
+    bathtub
+        Iterations over k, which stand in a corner of Convergence; pictures bring it.
     caption
         Which run and moment is seen; pictures bring it.
     """
@@ -57,9 +59,12 @@ class Gallery(Plain):
     sliders = param.Dict(default={})
     magnified = param.Number(default=1.0)
     said = param.List(default=[])
+    bathtub = param.List(default=[])
     caption = param.String(default="")
 
-    _esm = script("values.js", "shell/handles.js", "shell/gallery.js")
+    _esm = script(
+        "elements.js", "values.js", "shell/handles.js", "shell/bathtub.js", "shell/gallery.js"
+    )
 
     def offer(self, views: Sequence[View], settings: Settings, *, has_tabs: bool) -> None:
         """Show these views and no others, each with those that may stand in its place."""
@@ -90,8 +95,8 @@ def gallery(choices: dict[str, Callable[[Any], None]]) -> Gallery:
     choices
         What a tap or a drag on a plot tells, by what it chooses: "instant" and "time" with a
         time, s, "substructure" with a number, "interface" with a name, "place" with a position,
-        m, "drag" with what the slider of a setting tells, and "tab" with the names of a view and
-        of the one that is to stand in its place.
+        m, "drag" with what the slider of a setting tells, "tab" with the names of a view and of
+        the one that is to stand in its place, and "bathtub" where more of that is asked for.
     """
     made = Gallery(name=PLOTS, figures=figures(), **{**looks("plots"), "margin": 0})
     made.on_msg(lambda message: choices[message.data["kind"]](message.data["value"]))

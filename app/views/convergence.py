@@ -30,6 +30,8 @@ ERRORS = 3
 MOST_POINTS = 400
 ANSWER, ABOVE = Marks([], [], BLUE, "ring"), 0.04
 """Stands at the foot of the axis, as its error is none, this share of it above its end."""
+ROOM = 0.36
+"""Share of the width that is left to iterations over k, once there are some."""
 KEYS = tuple(
     Key(color, "line" if dash == "solid" else "dashed", text) for _, color, text, dash in CURVES
 )
@@ -39,7 +41,7 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     """Draw what the method knows of itself (dashed), and how far it really is (solid).
 
     Beside it stands run A, or else with separated bases the full linear stage, or else the last
-    runs of other settings.
+    runs of other settings. Beyond all of them is room for iterations over k.
     """
     run, is_known = scene.run, has_reference(scene.run.settings)
     now = run.history.thinned(MOST_POINTS, run.searched)
@@ -49,7 +51,9 @@ def draw(scene: Scene, _kept: None) -> Drawing:
     values += [value for one in ghosts for value in np.asarray(one.y)]
     y = in_decades(*decades([*LEAST_SPAN, *values], FLOOR))
     ends = (float(np.max(one.x, initial=0.0)) for one in ghosts)
-    x = spanned(0, round_up(max(run.iteration, 20, *ends)))
+    end = max(run.iteration, 20, *ends)
+    has_inset = scene.bathtub is not None and scene.bathtub.points
+    x = spanned(0, end / (1.0 - ROOM) if has_inset else round_up(end))
     curves = [*ghosts]
     for name, color, _, dash in CURVES:
         # An estimate is not made in every iteration, and the reference may come later.

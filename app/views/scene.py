@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from app.picture.bathtub import Bathtub
 from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
@@ -31,6 +32,8 @@ class Scene:
         Whether `before` is a run A, which goes in step with the run at work, B.
     shadow
         The iterate of `before` that is drawn beside that of the run at work.
+    bathtub
+        Iterations over k of the runs that are like the one at work; None beside a run A.
     """
 
     run: Recording
@@ -41,6 +44,7 @@ class Scene:
     look: Look
     is_paired: bool = False
     shadow: Frame | None = None
+    bathtub: Bathtub | None = None
 
     @property
     def name(self) -> str:

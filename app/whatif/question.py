@@ -243,6 +243,12 @@ def bathtub(settings: Settings) -> Question:
     return _over_k(settings, "acceleration")
 
 
+def over_k(settings: Settings) -> Question:
+    """Ask for the iterations until the force is as near as a page asks, over k alone."""
+    span = usual_span(settings.definitions()["k_scale"], "k_scale")
+    return Question((span,), f"iterations_to_force@{settings.accuracy:g}")
+
+
 def design_chart(settings: Settings) -> Question | None:
     """Ask for the energy dissipated over friction and load, where a number says the load."""
     definitions = offered(settings)

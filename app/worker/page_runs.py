@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from html import escape
 
+from app.picture.bathtub import Bathtub, grown
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, instant_of
@@ -53,6 +54,7 @@ class PageRuns:
         self._before: Recording | None = None
         self._shadow: Frame | None = None
         self._past: deque[Recording] = deque(maxlen=PAST_RUNS)
+        self._bathtub: Bathtub | None = None
         self._table: Tabulate | None = None
         self._paint_at: float | None = None
 
@@ -144,6 +146,7 @@ class PageRuns:
         if run is None or run.follows_hand:
             return
         self._last = run.last
+        self._bathtub = grown(self._bathtub, run.recording)
         if run.recording.is_worth_keeping:
             run.obey(Seek(run.ticket, None))
             self._before, self._shadow = run.recording, run.keep_frame(self._look)
@@ -213,6 +216,7 @@ class PageRuns:
             look,
             is_paired=twin is not None,
             shadow=shadow,
+            bathtub=None if twin else grown(self._bathtub, run.recording),
         )
 
     def _words(self, run: WorkerRun, scene: Scene) -> dict[str, str]:

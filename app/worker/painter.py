@@ -47,7 +47,7 @@ class Painter:
                 self._kept[view.slug] = drawing.kept
                 said.append([view.slug, told(view, drawing)])
                 models.update(parts(view, marked(view, drawing, scene.look.place)))
-        models[PLOTS] = {"said": said, **seen_now}
+        models[PLOTS] = {"said": said, "bathtub": bathtub(scene), **seen_now}
         return self.say(words, models)
 
     def say(
@@ -56,6 +56,13 @@ class Painter:
         """Give words (HTML) by the names of what they stand in, with what else is painted."""
         texts = {name: {"text": escape(text)} for name, text in words.items()}
         return self.packer.pack({**(models or {}), **texts})
+
+
+def bathtub(scene: Scene) -> list[Any]:
+    """Give iterations over k, the present k, and how near they come; nothing without a curve."""
+    points = scene.bathtub.points if scene.bathtub else []
+    settings = scene.run.settings
+    return [points, settings.k_scale, f"{100 * settings.accuracy:g} %"] if points else []
 
 
 def caption(scene: Scene) -> str:
