@@ -21,8 +21,13 @@ STYLE = """
 .pane label { margin: 6px 0; }
 .pane form { display: flex; align-items: end; gap: 8px; margin-top: 4px; }
 .pane form .wide { margin: 0; }
+.pane [name=class] { text-transform: uppercase; }
+.run { display: flex; align-items: center; gap: 6px; margin: 4px 0; }
+.run b { flex: 1; min-width: 0; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
+.run button { width: auto; padding: 3px 8px; }
+.run button:disabled { opacity: 0.4; cursor: default; }
 .pane input:not([type=file]) { display: block; padding: 4px 6px; font: inherit; color: inherit;
-  text-transform: uppercase; background: transparent; border-radius: 4px;
+  background: transparent; border-radius: 4px;
   border: 1px solid color-mix(in srgb, currentColor 30%, transparent); }
 @media (min-width: 641px) and (max-width: 1199px) { .action span { display: none; } }
 @media (min-width: 641px) and (max-width: 799px) { .step { display: none; } }

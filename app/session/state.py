@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import AbstractContextManager
 from typing import Any
 
@@ -50,6 +50,9 @@ class State(param.Parameterized):
     chosen = param.Parameter[frozenset[str] | None](
         doc="Names of the views that are drawn; None has the first of each card."
     )
+    keeps = param.Parameter[tuple[str, list[str]] | None](
+        doc="A scene, and names of the views that were chosen for it last: its browser keeps them."
+    )
     is_named = param.Boolean(
         default=False, doc="Whether these are those that a lesson or an address names."
     )
@@ -85,8 +88,23 @@ class State(param.Parameterized):
 
     def draw(self, names: Iterable[str], *, is_named: bool = False) -> None:
         """Draw the views of these names and no others; the scene keeps them."""
-        self._kept_views[self.wanted.scene] = frozenset(names)
-        self.param.update(chosen=frozenset(names), is_named=is_named)
+        scene, chosen = self.wanted.scene, frozenset(names)
+        self._kept_views[scene] = chosen
+        keeps = self.keeps if is_named else (scene, sorted(chosen))
+        self.param.update(chosen=chosen, is_named=is_named, keeps=keeps)
+
+    def recall(self, kept: Mapping[str, Any]) -> None:
+        """Take what a browser has kept for scenes, but where an address, or somebody, has chosen.
+
+        Anything may stand there: only names of views are taken.
+        """
+        for scene, names in kept.items():
+            listed = names if isinstance(names, list) else []
+            found = frozenset(view.name for view in ALL_VIEWS if view.name in listed)
+            if found:
+                self._kept_views.setdefault(scene, found)
+        if self.lesson is None and self.chosen is None:
+            self.draw_for(None)
 
     def draw_for(self, lesson: Lesson | None) -> None:
         """Draw the views that a lesson names, or without one those that the scene has kept."""

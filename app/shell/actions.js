@@ -45,5 +45,5 @@ export function render({model}) {
   show()
   model.on("file", () =>
     save("slipfront.toml", new Blob([model.file[0]], {type: "application/toml"})))
-  return make("div", {className: "actions"}, ...steps, lesson, present, share)
+  return make("div", {className: "actions"}, ...steps, runs(model, tell), lesson, present, share)
 }

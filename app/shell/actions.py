@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from textwrap import shorten
 from typing import Any, ClassVar
 
 import param
@@ -12,7 +13,8 @@ from app.components.innards import Plain
 from app.components.menu import STYLE as MENU
 from app.components.panes import script
 from app.controls.refusals import refused, refused_by_name
-from app.picture.usual import usual_settings
+from app.picture.labels import label_of
+from app.picture.usual import changed, usual_settings
 from app.session.session import Session
 from app.session.undo import Undo
 from app.session.uploads import load_in, saved
@@ -20,6 +22,7 @@ from solver.definitions import SettingError
 from solver.files import settings_from_toml
 from solver.settings import Settings
 
+LONGEST_NAME = 40
 NO_TEXT = "The file is not text: give a settings file (.toml) or a table (.csv)."
 
 
@@ -28,20 +31,25 @@ class ActionBar(Plain):
 
     Messages from the browser are `{kind, value}`: to "undo" and "redo", to start a "class", to
     "present", to copy the "link", to "save" the settings, to "open" a file of a name with its text,
-    and to bring back the "defaults".
+    to bring back the "defaults", to "keep" the run under a name, and to "compare" with one kept.
 
     Attributes
     ----------
     steps
         Whether there is what can be undone, and done again.
+    kept, scene
+        Name, scene and settings of a run that the browser is to keep, and a number that tells it
+        from the one before; the present scene, whose runs can be compared with.
     file
         A text that the browser is to save, and a number that tells it from the one before.
     """
 
     steps = param.List(default=[False, False])
+    kept = param.List(default=[])
+    scene = param.String(default="")
     file = param.List(default=[])
 
-    _esm = script("elements.js", "menu.js", "shell/actions.js")
+    _esm = script("elements.js", "menu.js", "shell/runs.js", "shell/actions.js")
     _stylesheets: ClassVar[list[str]] = [STYLE, MENU]
 
 
@@ -76,7 +84,7 @@ class Actions:
         self._session = session
         self._obey = obey
         self._saved = 0
-        self.view = ActionBar(margin=0)  # type: ignore[no-untyped-call]
+        self.view = ActionBar(margin=0, scene=session.wanted.scene)  # type: ignore[no-untyped-call]
         self._does: dict[str, Callable[[Any], None]] = {
             "undo": lambda _: undo.undo(),
             "redo": lambda _: undo.redo(),
@@ -86,8 +94,11 @@ class Actions:
             "save": lambda _: self._save(),
             "defaults": lambda _: self._adopt(usual_settings(type(session.wanted))),
             "open": lambda file: self._open(*file),
+            "keep": self._keep,
+            "compare": self._compare,
         }
         session.param.watch(lambda event: self.view.param.update(steps=list(event.new)), "steps")
+        session.param.watch(lambda event: self.view.param.update(scene=event.new.scene), "wanted")
         self.view.on_msg(lambda message: self.hear(**message.data))
 
     def hear(self, kind: str, value: Any = "") -> None:
@@ -104,6 +115,27 @@ class Actions:
         was_warm = facts is not None and facts.was_warm
         self._saved += 1
         self.view.file = [saved(self._session.settings, was_warm=was_warm), self._saved]
+
+    def _keep(self, name: str) -> None:
+        """Give the browser the settings of the run, by default under what is not as usual in it."""
+        settings = self._session.wanted
+        differ = changed(settings)
+        name = shorten(name, LONGEST_NAME) or label_of(settings, differ) or "defaults"
+        self._saved += 1
+        self.view.kept = [name, settings.scene, saved(settings, was_warm=False), self._saved]
+
+    def _compare(self, text: str) -> None:
+        """Have a run that was kept go in step with the present one, as run A."""
+        session = self._session
+        try:
+            twin = settings_from_toml(text)
+        except SettingError as refusal:
+            session.refusal = refused_by_name(refusal, session.wanted)
+            return
+        if twin.scene == session.wanted.scene:
+            with session.together():
+                session.refusal, session.twin = "", twin
+                session.start(session.wanted)
 
     def _adopt(self, settings: Settings) -> None:
         self._session.refusal = ""

@@ -128,6 +128,7 @@ class Dashboard:
         """
         self._loaded = True
         self._presence.begin()
+        self._recall()
         self._begin(self._sight.iteration)
         self._on_narrow()
         self._keys.hears = self._teaching.view.recalls = self.pulse.recalls = True
@@ -165,7 +166,9 @@ class Dashboard:
         does: dict[str, Callable[[], Any]] = {**self._transport.keys(), **undoes}
         does["p"] = self._stage.toggle
         self._keys.on_msg(lambda message: does[message.data]())
+        self._gallery.param.watch(lambda event: self._recall(), "recalls")
         watch = self.session.param.watch
+        watch(lambda event: self._gallery.param.update(keeps=list(event.new)), "keeps")
         watch(lambda event: self._on_tab(), "tab")
         watch(lambda *events: self._on_lesson(), ["lesson", "asks"])
         watch(lambda event: self._dress(), "view")
@@ -230,6 +233,11 @@ class Dashboard:
         session, (seen, other) = self.session, names
         drawn_now = {view.name for view in drawn(session.wanted, session.chosen)}
         session.draw(drawn_now - {seen} | {other})
+
+    def _recall(self) -> None:
+        """Draw what was chosen for the scene last; a frame shows what its address says."""
+        if self._loaded and self.session.view != EMBED:
+            self.session.recall(self._gallery.recalls)
 
     def _ask_over_k(self, _: Any) -> None:
         """Have the fields of *What if* ask over k alone, ready to be started."""

@@ -201,6 +201,17 @@ export function render({model}) {
     }
     index.find_one_by_id(plot.id)?.invalidate_layout()
   }
+  // Which plots were chosen last for every scene stays in the browser, which may refuse to keep it.
+  const KEPT = "slipfront-plots"
+  const kept = () => {
+    try { return Object.entries(JSON.parse(localStorage.getItem(KEPT)) ?? {}) } catch { return [] }
+  }
+  const recalled = kept()
+  if (recalled.length) { model.recalls = Object.fromEntries(recalled) }
+  model.on("keeps", () => {
+    const all = Object.fromEntries([...kept(), model.keeps])
+    try { localStorage.setItem(KEPT, JSON.stringify(all)) } catch {}
+  })
   const tell_all = () => cards.forEach(({element}, slug) => describe(element, slug))
   const restyle = () => requestAnimationFrame(() => cards.forEach(dress))
   const watcher = new MutationObserver(restyle)

@@ -47,6 +47,8 @@ class Gallery(Plain):
         What the slider of every setting is that may be dragged in a picture, by its name.
     said
         Slug of every plot, and a sentence of what it shows; pictures bring it.
+    keeps, recalls
+        A scene and names of views that the browser is to keep for it; all that it has kept.
     bathtub
         Iterations over k, which stand in a corner of Convergence; pictures bring it.
     caption
@@ -59,6 +61,8 @@ class Gallery(Plain):
     sliders = param.Dict(default={})
     magnified = param.Number(default=1.0)
     said = param.List(default=[])
+    keeps = param.List(default=[])
+    recalls = param.Dict(default={})
     bathtub = param.List(default=[])
     caption = param.String(default="")
 
