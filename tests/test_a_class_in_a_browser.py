@@ -81,13 +81,16 @@ def test_a_class_predicts_before_it_sees_and_its_counts_open_when_the_lecturer_a
     expect(mine.nth(1)).to_have_attribute("aria-pressed", "true")
     expect(leader.get_by_text("1 of 1 have predicted.")).to_be_visible()
     expect(mine.nth(1)).not_to_contain_text("— 1")
-    press(leader, "Show what they predict")
+    # A presenter's remote control knows one key.
+    press(leader, "Present")
+    expect(leader.locator(".strip")).to_be_visible()
+    leader.keyboard.press("PageDown")
     for choices in (asked, mine):
         expect(choices.nth(1)).to_contain_text("— 1")
     expect(student.locator(".card")).to_have_count(0)
-    press(leader, "Show me")
+    leader.keyboard.press("PageDown")
     for page in (leader, student):
-        expect(page.locator(".why")).to_be_visible()
+        expect(page.locator(".counts .right")).to_have_text("✓ Above all the displacement — 0")
         expect(page.locator(".card").first).to_be_attached()
         expect(page.get_by_role("list", name="What the class predicted")).to_contain_text("— 1")
     expect(status(student)).to_contain_text("iteration")

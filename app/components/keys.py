@@ -22,7 +22,7 @@ KEYS = (
     ("Ctrl+z", "Ctrl Z", "undo the last change of settings, scene or lesson; a drag is one"),
     ("Ctrl+Shift+z", "Ctrl Shift Z", "do again what was undone"),
     ("Ctrl+y", "Ctrl Y", "the same"),
-    ("", "Page ↓ ↑", "the next and the last part of a lesson, in presenter view"),
+    ("", "Page ↓ ↑", "in presenter view, a lesson: what a class predicts, the answer, its parts"),
     ("p", "p", "presenter view, for a projector, and back"),
     ("f", "f", "one plot on the whole page: that with the pointer or the focus; Escape: back"),
     ("+", "+ −", "zoom in and out of that plot; so does the wheel with Ctrl"),

@@ -69,7 +69,7 @@ export function render({model}) {
   }
   const counted = (made, place) => {
     const [text, width] = share(place)
-    if (text) { made.append(text) }
+    if (text) { made.append(make("span", {className: "votes"}, text)) }
     made.style.setProperty("--share", width ?? "0%")
     return made
   }
@@ -89,9 +89,13 @@ export function render({model}) {
     const answer = make("b", {}, `${word}${choices[right]}.`)
     return make("p", {className: `why ${is}`, tabIndex: -1}, answer, " ", why)
   }
-  const counts = ({choices: all}) => model.poll.counts?.length
+  const counts = ({choices: all, right}) => model.poll.counts?.length
     ? [make("ul", {className: "counts", ariaLabel: "What the class predicted"},
-      ...all.map((text, place) => counted(make("li", {}, text), place)))] : []
+      ...all.map((text, place) => {
+        const is_right = place === right
+        const said = is_right ? [make("b", {ariaLabel: "Right:"}, "✓ "), text] : [text]
+        return counted(make("li", {className: is_right ? "right" : ""}, ...said), place)
+      }))] : []
   const polled = ({chosen}) => {
     const {leads, predicted, of, counts} = model.poll
     if (predicted === undefined) { return [] }
@@ -193,12 +197,19 @@ export function render({model}) {
     const texts = new Map(model.values)
     for (const [name, place] of places) { place.innerHTML = texts.get(name) ?? "…" }
   }
+  // After the question comes what a class predicts, and then the answer.
+  const go_to_answer = () => {
+    const {follows, alone} = model.lesson, {leads, counts} = model.poll
+    if (leads && !counts.length) { tell({name: COUNT}, true) }
+    else if (!follows || leads || alone) { predict(-1) }
+  }
   // These are what a presenter's remote control sends.
   const press = (event) => {
-    const by = {PageDown: 1, PageUp: -1}[event.key]
-    if (!by || !root.querySelector(".strip nav")) { return }
+    const by = {PageDown: 1, PageUp: -1}[event.key], asks = root.querySelector(".strip .choices")
+    if (!by || !asks && !root.querySelector(".strip nav")) { return }
     event.preventDefault()
-    turn(by)
+    if (!asks) { turn(by) }
+    else if (by === 1) { go_to_answer() }
   }
   document.addEventListener("keydown", press)
   model.on("remove", () => document.removeEventListener("keydown", press))

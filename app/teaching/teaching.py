@@ -35,10 +35,14 @@ button { width: auto; padding: 5px 12px; margin: 3px 8px 3px 0; text-align: left
 button:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
 button.main { color: #fff; background: #1565c0; border-color: #1565c0; }
 .choices button[aria-pressed=true] { border-color: #1976d2; outline: 2px solid #1976d2; }
-.choices button, .counts li { background: linear-gradient(to right,
-  color-mix(in srgb, #1976d2 30%, transparent) var(--share, 0%), transparent var(--share, 0%)); }
+.choices button, .counts li { background: border-box linear-gradient(to right,
+  color-mix(in srgb, var(--bar, #1976d2) 40%, transparent) var(--share, 0%),
+  transparent var(--share, 0%)); }
+.votes { font-weight: 700; }
 .counts { padding: 0; list-style: none; }
-.counts li { padding: 4px 12px; margin: 4px 0; }
+.counts li { padding: 4px 12px; margin: 4px 0; border-radius: 4px;
+  border: 1px solid color-mix(in srgb, currentColor 30%, transparent); }
+.counts .right { --bar: #009E73; border: 3px solid #009E73; font-weight: 700; }
 .choices button { display: block; width: 100%; padding: 7px 12px; margin: 6px 0; }
 figure { margin: 6px 0; max-width: 480px; }
 figcaption { font-size: 0.85em; opacity: 0.8; }
@@ -62,7 +66,9 @@ sup { line-height: 0; }
 .strip > div[hidden] { display: none; }
 .strip p { margin: 0 0 6px; }
 .strip .control input[type=range] { width: 260px; }
-.strip .counts { display: flex; flex-wrap: wrap; gap: 4px 12px; margin: 0; }
+.strip .counts { display: grid; grid-template-columns: repeat(2, 1fr); gap: 6px 12px; margin: 0; }
+.strip .counts li { margin: 0; font-size: 26px; line-height: 1.2; }
+.strip .choices button { padding: 12px 16px; margin: 10px 0; font-size: 30px; }
 nav { white-space: nowrap; }
 nav span { margin: 0 8px 0 0; }
 nav button:disabled { opacity: 0.4; }
