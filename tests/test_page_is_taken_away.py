@@ -9,6 +9,7 @@ from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
+from browser import Chrome
 from pages import Visit, card, one_page, open_sheets, press, slider, status
 from PIL import Image
 from playwright.sync_api import Page, expect
@@ -81,6 +82,30 @@ def test_a_table_and_a_program_are_saved(page: Page) -> None:
         lines = saved(page, "CSV").read_text().splitlines()
         assert sum(line.startswith("LATIN,") for line in lines) == 12
     assert '"max_iterations": 12,' in saved(page, "Python").read_text()
+
+
+def test_a_run_is_a_file_that_shows_its_instants_without_a_network(
+    page: Page, chrome: Chrome
+) -> None:
+    take_away(page)
+    file = saved(page, "HTML")
+    alone, said = chrome.new_page(offline=True), list[str]()
+    alone.on("console", lambda message: said.append(message.text))
+    alone.on("pageerror", lambda problem: said.append(str(problem)))
+    alone.on("request", lambda request: said.append(request.url))
+    # A browser shows what has no ending as text.
+    address = file.rename(file.with_suffix(".html")).as_uri()
+    alone.goto(address)
+    expect(alone.get_by_text("bar, t = 0.75 s, iteration 12")).to_be_visible()
+    expect(alone.get_by_text("Friction force", exact=True).first).to_be_visible()
+    curves = """Bokeh.documents[0].get_model_by_name("load-path.curves").data"""
+    instants = alone.get_by_label("Instant")
+    for key, time in ("Home", 0.0), ("End", 1.0), ("ArrowLeft", 11 / 12):
+        instants.press(key)
+        expect(alone.get_by_text(f"bar, t = {time:.3g} s, iteration 12")).to_be_visible()
+        assert abs(alone.evaluate(f"{curves}.xs.at(-1)[0]") - time) < 1e-6
+    assert all(one == address or one.startswith("[bokeh") for one in said), said
+    alone.close()
 
 
 def test_two_runs_are_compared_and_a_link_comes_back_to_both(open_page: Visit) -> None:

@@ -38,8 +38,8 @@ from app.components.innards import (
     stay_on_loop,
 )
 from app.components.pulse import pulse
-from app.shell.figures import make_figure
 from app.views.catalogue import VIEWS
+from app.views.figures import make_figure
 
 
 def test_sockets_can_be_told_to_send_at_once() -> None:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import io
+import json
+import re
+import struct
 from typing import Any
 
 import numpy as np
@@ -13,6 +17,7 @@ from shown_pages import SMALL, Shown
 from app.picture.recording import COLUMNS
 from app.takeaway.snippet import NOTE, snippet
 from app.wire.orders import Tabulate
+from app.worker.offline import OFFLINE
 from app.worker.tables import TABLES, table
 from solver.files import settings_from_toml
 from solver.scenes import CATALOGUE
@@ -106,3 +111,26 @@ def test_a_table_that_is_asked_for_goes_to_the_browser_alone_and_once() -> None:
     assert len(read(text)[1]) == len(shown.recording.history)
     shown.obey(Tabulate("iterations", 4))
     assert [file[2] for file in shown.files] == [3, 4]
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_a_page_of_a_run_has_all_instants_and_the_tables_in_it(scene: str) -> None:
+    shown = told(scene)
+    shown.obey(Tabulate(OFFLINE, 5))
+    ((name, page, number),) = shown.files
+    assert (name, number) == (f"slipfront-{scene}.html", 5)
+    run = json.loads(re.findall(r"^const run = (.*)$", page, re.M)[0])
+    recording = shown.recording
+    assert len(run["pictures"]) == len(run["words"]) == len(recording.stand.instants)
+    assert len({words["caption"] for words in run["words"]}) == len(run["words"])
+    pictures = [base64.b64decode(picture) for picture in run["pictures"]]
+    heads = [json.loads(one[4 : 4 + struct.unpack_from("<I", one)[0]]) for one in pictures]
+    # What changes with time comes again and again, the rest once.
+    assert all("stick-and-slip.curves" in head for head in heads)
+    assert sum("convergence.y" in head for head in heads) == 1
+    assert all(f'"name":"{one}"' in page or f'id="{one}"' in page for one in heads[0])
+    kept = dict(re.findall(r'download="slipfront-\w+-(\w+).csv" href="[^,]*,([^"]*)"', page))
+    looked_at = shown.scene()
+    assert {what: base64.b64decode(text).decode() for what, text in kept.items()} == {
+        what: table(what, looked_at) for what in TABLES
+    }

@@ -9,6 +9,7 @@ from typing import Any
 import param
 
 from app.components.innards import Plain
+from app.components.panes import script
 
 
 class Pulse(Plain):
@@ -31,7 +32,7 @@ class Pulse(Plain):
     recalls = param.Boolean(default=False, doc="Whether the browser is to say what it knows of it.")
     heard = param.Integer(default=0, doc="The last sign of life that the server has heard.")
 
-    _esm = "pulse.js"
+    _esm = script("unpacked.js", "pulse.js")
 
     def paint(self, number: int, block: bytes) -> None:
         """Send a picture, as `app.wire.block` packs it; once painted, its number comes back."""

@@ -17,10 +17,10 @@ from bokeh.document import Document
 from app.components.form import item_of
 from app.components.innards import Plain
 from app.components.panes import looks, script
-from app.shell.figures import make_figure
 from app.shell.layout import layout
 from app.views.catalogue import VIEWS, beside
 from app.views.drawing import View
+from app.views.figures import make_figure
 from app.worker.painter import PLOTS
 from solver.scenes import behind
 from solver.settings import Settings

@@ -61,6 +61,8 @@ export function render({model}) {
     make("label", {}, "Table", tables),
     button("CSV", "Save the numbers that are drawn: along the interface at the chosen instant, " +
       "of the loaded end over time, or of all iterations.", () => tell("table", tables.value)),
+    button("HTML", "Save this run as one file for a browser, which needs no network: the plots that " +
+      "are seen, at all instants, and the numbers.", () => tell("table", "page")),
     button("Python", "Save a program that gives the numbers of this run again.",
       () => tell("program")))
 }

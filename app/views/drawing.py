@@ -1,7 +1,7 @@
 """What views draw, as plain data: curves, marks, images, bodies, on two axes; no browser, no Panel.
 
 A view looks at a `Scene` and gives a `Drawing`. The figure that it is drawn on is made once, by
-`app.shell.figures`; only what changed is sent (`app.worker.painter`).
+`app.views.figures`; only what changed is sent (`app.worker.painter`).
 """
 
 from __future__ import annotations

@@ -103,12 +103,12 @@ class Watch:
 
 @dataclass(frozen=True)
 class Tabulate:
-    """Have the browser save a table of what is looked at.
+    """Have the browser save numbers of what is looked at.
 
     Attributes
     ----------
     what
-        One of `app.worker.tables.TABLES`.
+        One of `app.worker.tables.TABLES`, or `app.worker.offline.OFFLINE`.
     number
         Tells it from those before.
     """

@@ -5,18 +5,21 @@ from __future__ import annotations
 import logging
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from html import escape
+
+import numpy as np
 
 from app.picture.bathtub import Bathtub, grown
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
-from app.picture.shown import Look, instant_of
+from app.picture.shown import Look, instant_of, thinned
 from app.views.scene import Scene
 from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.wire.reports import Facts, File, Picture
 from app.worker.key_figures import key_figures
+from app.worker.offline import MOST_INSTANTS, OFFLINE, offline_page
 from app.worker.painter import TAKE_AWAY, Painter
 from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
@@ -194,10 +197,30 @@ class PageRuns:
         self._send(Picture(run.ticket, facts, block))
         if (asked := self._table) is not None:
             self._table = None
-            name = f"slipfront-{recording.settings.scene}-{asked.what}.csv"
-            file = [name, table(asked.what, scene), asked.number]
-            block = self._painter.say({}, {TAKE_AWAY: {"file": file}})
+            name = f"slipfront-{recording.settings.scene}"
+            file = (
+                [f"{name}.html", self._offline(run, scene)]
+                if asked.what == OFFLINE
+                else [f"{name}-{asked.what}.csv", table(asked.what, scene)]
+            )
+            block = self._painter.say({}, {TAKE_AWAY: {"file": [*file, asked.number]}})
             self._send(File(block))
+
+    def _offline(self, run: WorkerRun, scene: Scene) -> str:
+        """Write a page of what is looked at, at all instants."""
+        instants = len(scene.run.stand.instants)
+        chosen = np.union1d(thinned(instants, MOST_INSTANTS), [scene.instant])
+
+        def scenes() -> Iterator[tuple[Scene, Mapping[str, str]]]:
+            for instant in chosen:
+                look = replace(self._look, phase=instant / max(instants - 1, 1))
+                there = replace(
+                    scene, frame=run.frame(look), instant=int(instant), look=look,
+                    shadow=scene.shadow and replace(scene.shadow, look=look),
+                )  # fmt: skip
+                yield there, self._words(run, there)
+
+        return offline_page(scenes(), scene, int(np.searchsorted(chosen, scene.instant)))
 
     def _scene(self, run: WorkerRun, frame: Frame, instant: int) -> Scene:
         twin, before, look = self._twin, self._before, self._look

@@ -41,14 +41,25 @@ class Painter:
         models: dict[str, Attributes] = {TAKE_AWAY: seen_now, **sliders(facts)}
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
+        for view, drawing in self._drawings(scene):
+            said.append([view.slug, told(view, drawing)])
+            models.update(parts(view, drawing))
+        models[PLOTS] = {"said": said, "bathtub": bathtub(scene), **seen_now}
+        return self.say(words, models)
+
+    def plots(self, scene: Scene) -> bytes:
+        """Draw every view that is seen; give what has changed of the plots alone."""
+        models: dict[str, Attributes] = {}
+        for view, drawing in self._drawings(scene):
+            models.update(parts(view, drawing))
+        return self.packer.pack(models)
+
+    def _drawings(self, scene: Scene) -> Iterator[tuple[View, Drawing]]:
         for view in seen(scene.run.settings, scene.look):
             drawing = view.draw(scene, self._kept.get(view.slug))
             if drawing is not None:
                 self._kept[view.slug] = drawing.kept
-                said.append([view.slug, told(view, drawing)])
-                models.update(parts(view, marked(view, drawing, scene.look.place)))
-        models[PLOTS] = {"said": said, "bathtub": bathtub(scene), **seen_now}
-        return self.say(words, models)
+                yield view, marked(view, drawing, scene.look.place)
 
     def say(
         self, words: Mapping[str, str], models: Mapping[str, Attributes] | None = None
