@@ -76,6 +76,7 @@ def imports(path):
 
 
 FLOORS = [
+    "languages",
     "picture",
     "components",
     "wire",

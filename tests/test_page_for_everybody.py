@@ -24,6 +24,27 @@ AT_REST = """() => {
   }
   return roots.every((root) => root.getAnimations().every((one) => one.playState !== "running"))
 }"""
+TEXTS = """() => {
+  const found = new Set(), walk = (node) => {
+    if (node.shadowRoot) { walk(node.shadowRoot) }
+    for (const one of node.childNodes) {
+      const isText = one.nodeType === Node.TEXT_NODE
+      if (isText && one.parentElement?.checkVisibility()) { found.add(one.textContent.trim()) }
+      else if (!["STYLE", "SCRIPT"].includes(one.tagName)) { walk(one) }
+    }
+  }
+  walk(document.body)
+  const plots = Bokeh.documents.flatMap((one) => one.roots()).filter(({type}) => type === "Plot")
+  for (const {below, left} of plots) {
+    for (const {axis_label} of [...below, ...left]) { found.add(axis_label.replace("\\n", " ")) }
+  }
+  return [...found]
+}"""
+"""All that is to be read on a page."""
+ALIKE = {"Iteration", "Iteration:", "LATIN", "Live", "Block", "Mode n", "Slipfront"}
+"""Words of the first view that are the same in English and in German."""
+SYMBOLS = re.compile(r"[^A-Za-z]*|t = .*|F, .*|±μp|[a-z]+_[a-z_]+|replay|.*\d (mm|µm|J|s|N|kN)")
+"""What is no word, and the names of the small pictures on buttons."""
 
 
 def field(page: Page, name: str) -> Locator:
@@ -41,7 +62,8 @@ def violations(page: Page) -> list[Any]:
     ]
 
 
-page = one_page("?elements=20&substructures=2&instants=11&finish=at+once", "✓ converged")
+QUERY = "?elements=20&substructures=2&instants=11&finish=at+once"
+page = one_page(QUERY, "✓ converged")
 """A page whose run has ended, which every test leaves as it found it."""
 
 
@@ -239,3 +261,22 @@ def test_keys_move_the_run_only_where_it_is_seen(page: Page) -> None:
     assert figures.text_content() == seen
     page.locator("body").press("r")
     expect(figures).not_to_have_text(seen)
+
+
+def words(page: Page) -> set[str]:
+    """Give the words that are to be read on a page."""
+    found: list[str] = page.evaluate(TEXTS)
+    return {one for one in found if not SYMBOLS.fullmatch(one)}
+
+
+def test_a_visitor_who_wants_german_reads_no_english_beside_one_who_does(
+    page: Page, open_page: Visit
+) -> None:
+    german = open_page(f"{QUERY}&lang=de")
+    expect(status(german)).to_contain_text("✓ gelöst")
+    expect(german.locator(".card .title", has_text="Singulärwerte")).to_be_visible()
+    assert german.evaluate("document.documentElement.lang") == "de"
+    expect(german).to_have_url(re.compile("lang=de"))
+    english = words(page)
+    assert {"Scene", "Load path", "Time t (s)", "reference"} <= english
+    assert words(german) & english <= ALIKE

@@ -72,9 +72,9 @@ def test_what_is_done_is_done_by_a_load_of_that_sign(path: list[float]) -> None:
     assert said.startswith("not") == (not any(path))
 
 
-def test_one_is_no_plural() -> None:
-    assert counted(1, "wire") == "one wire"
-    assert counted(2, "wire") == "two wires"
+def test_few_are_counted_in_words() -> None:
+    assert counted(2, "{} wires") == "two wires"
+    assert counted(20, "{} wires") == "20 wires"
 
 
 def test_colours_are_called_what_they_are() -> None:

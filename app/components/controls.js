@@ -6,7 +6,7 @@ function controls(model) {
     model.send_msg({name: row.name, value, hand, count})
   }
   const named = (item, input) => {
-    input.ariaLabel = item.label
+    input.ariaLabel = say(item.label)
     return input
   }
   const slider = (row, item) => {
@@ -15,11 +15,11 @@ function controls(model) {
     // One stop of the Tab key for both: Enter, or a digit, goes from the slider to its number.
     const field = named(item,
       make("input", {className: "number", inputMode: "decimal", tabIndex: -1}))
-    const label = make("label", {className: "typed"}, make("span", {}, item.label), field)
+    const label = make("label", {className: "typed"}, make("span", {}, say(item.label)), field)
     let {start, end} = item
     const place = (value) => item.log ? Math.log10(value) : value
     const read = () => Math.min(Math.max(settled(item, range.valueAsNumber), start), end)
-    const say = (value) => {
+    const put = (value) => {
       range.ariaValueText = written(value, item)
       range.ariaValueNow = value
       if (!field.typed) { field.value = written(value, item) }
@@ -28,7 +28,7 @@ function controls(model) {
     let last
     range.oninput = () => {
       if (read() === last) { return }
-      say(last = read())
+      put(last = read())
       tell(row, last, true)
     }
     range.onchange = () => tell(row, null)
@@ -58,31 +58,31 @@ function controls(model) {
       range.max = place(end)
       // Between two whole numbers a logarithmic slider would never leave the lower one.
       if (read() !== value || last === undefined) { range.value = place(value) }
-      say(last = value)
+      put(last = value)
     }
     return [label, range]
   }
   const choice = (row, item) => {
     const select = named(item, make("select", {onchange: () => tell(row, select.value)}))
     for (const [text, value, group] of item.options) {
-      const heard = [...select.children].find(({label}) => group && label === group)
-      const place = heard ?? (group ? make("optgroup", {label: group}) : select)
+      const heard = [...select.children].find(({named: of}) => group && of === group)
+      const place = heard ?? (group ? make("optgroup", {label: say(group), named: group}) : select)
       if (place !== select) { select.append(place) }
-      place.append(new Option(text, value))
+      place.append(new Option(say(text), value))
     }
     row.show = (value) => { select.value = value }
-    return [make("label", {}, item.label), select]
+    return [make("label", {}, say(item.label)), select]
   }
   const flip = (row, item) => {
     const box = make("input", {type: "checkbox", onchange: () => tell(row, box.checked)})
     box.setAttribute("role", "switch")
     row.show = (value) => { box.checked = value }
-    return [make("label", {}, box, " " + item.label)]
+    return [make("label", {}, box, " " + say(item.label))]
   }
   const curve = (row, item) => {
     const parts = choice(row, item), show = row.show
     const body = make("tbody"), head = make("tr")
-    head.append(...[...item.columns, "", ""].map((one) => make("td", {}, one)))
+    head.append(...[...item.columns, "", ""].map((one) => make("td", {}, say(one))))
     const table = make("table", {}, make("thead", {}, head), body)
     const read = () => [...body.rows].map((one) =>
       [...one.querySelectorAll("input")].map((input) => input.valueAsNumber))
@@ -107,15 +107,15 @@ function controls(model) {
     const button = (text, title, onclick) => make("button", {title, onclick}, text)
     const line = (pair, place) => make("tr", {}, ...[
       ...pair.map(number),
-      button("+", "Add a row below", () => added(place)),
-      button("−", "Take this row away", () => taken(place)),
+      button("+", say("Add a row below"), () => added(place)),
+      button("−", say("Take this row away"), () => taken(place)),
     ].map((one) => make("td", {}, one)))
     row.show = (value) => {
       const long = value.count, own = Array.isArray(value) ? value : []
       show(own.length || long ? item.options.at(-1)[1] : value)
       points.hidden = !own.length && !long
       listed.hidden = Boolean(long)
-      told.textContent = long ? `${long} points. Change them in their file.` : ""
+      told.textContent = long ? say("{} points. Change them in their file.", long) : ""
       path.show(long ? value.drawn : own, Boolean(long))
       if (JSON.stringify(read()) !== JSON.stringify(own)) {
         body.replaceChildren(...own.map(line))

@@ -9,7 +9,7 @@ export function render({model}) {
       const box = make("input", {type: "checkbox", checked: value.includes(name), name})
       box.onchange = () => tell(row,
         [...list.querySelectorAll("input:checked")].map((one) => one.name))
-      return make("label", {}, box, " " + name)
+      return make("label", {}, box, " " + say(name))
     }))
     return [list]
   }
@@ -17,11 +17,11 @@ export function render({model}) {
     const radios = item.options.map(([value]) =>
       make("input", {type: "radio", name: "scene", value, onchange: () => tell(row, value)}))
     const labels = item.options.map(([name, title, strokes], place) => {
-      radios[place].ariaLabel = `${name}: ${title}`
+      radios[place].ariaLabel = `${say(name)}: ${say(title)}`
       const picture = drawn("svg", {viewBox: "0 0 48 32", "aria-hidden": true})
       const kinds = ["ground", "body", "load"]
       picture.append(...strokes.map((d, kind) => drawn("path", {d, class: kinds[kind]})))
-      return make("label", {title}, radios[place], picture, name)
+      return make("label", {title: say(title)}, radios[place], picture, say(name))
     })
     const group = named(item, make("div", {className: "scenes"}, ...labels))
     group.setAttribute("role", "radiogroup")
@@ -30,12 +30,14 @@ export function render({model}) {
   }
   const note = (row) => {
     const words = make("p")
-    row.show = (text) => { words.textContent = text }
+    row.show = (text) => { words.textContent = say(text) }
     return [words]
   }
   Object.assign(kinds, {checks, scenes, note})
-  const helped = (item) => (item.help || "") + (item.usual
-    ? " Enter types a value; Delete, or a double click, brings back the usual one." : "")
+  // Nouns of other languages may keep their capitals.
+  const small = (text) => globalThis.slipfrontWords ? text : text.toLowerCase()
+  const TYPED = "Enter types a value; Delete, or a double click, brings back the usual one."
+  const helped = (item) => say(item.help || "") + (item.usual ? ` ${say(TYPED)}` : "")
   const added = (item) => {
     const written = JSON.stringify(item), kept = rows.get(item.name)
     if (kept && kept.written === written) { return kept }
@@ -54,7 +56,7 @@ export function render({model}) {
   }
   const sheet = (title) => {
     if (!sheets.has(title)) {
-      const says = make("small"), head = make("summary", {}, title, says)
+      const says = make("small"), head = make("summary", {}, say(title), says)
       const one = make("details", {className: "sheet", open: opened().includes(title)}, head)
       // One that words on the page have opened is not what somebody wants open from now on.
       head.onclick = () => setTimeout(remember)
@@ -71,8 +73,8 @@ export function render({model}) {
       const row = added(item), place = item.sheet ? sheet(item.sheet) : null
       made.set(item.name, row)
       if (place && !parts.includes(place)) { parts.push(place) }
-      if (item.group && heads.at(-1)?.textContent !== item.group) {
-        heads.push(Object.assign(make("h4", {}, item.group), {rows: []}))
+      if (item.group && heads.at(-1)?.group !== item.group) {
+        heads.push(Object.assign(make("h4", {}, say(item.group)), {group: item.group, rows: []}))
         place ? place.append(heads.at(-1)) : parts.push(heads.at(-1))
       }
       if (item.group) { heads.at(-1).rows.push(row.box) }
@@ -88,7 +90,7 @@ export function render({model}) {
     for (const one of sheets.values()) {
       const seen = heads.filter((head) => head.parentNode === one && !head.hidden)
       one.hidden = !seen.length
-      one.says.textContent = seen.map((head) => head.textContent.toLowerCase()).join(", ")
+      one.says.textContent = seen.map((head) => small(say(head.group))).join(", ")
     }
     point(model.shown[NAMED] ?? [])
   }

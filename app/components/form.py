@@ -89,7 +89,7 @@ class Form(Plain):
     items = param.List(default=[])
     shown = param.Dict(default={})
 
-    _esm = script("elements.js", "values.js", "points.js", "controls.js", "form.js")
+    _esm = script("say.js", "elements.js", "values.js", "points.js", "controls.js", "form.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

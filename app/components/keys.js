@@ -7,21 +7,22 @@ const SKIP = `position: fixed; left: 8px; top: -99px; z-index: 2000; padding: 8p
   border-radius: 4px; color: #fff; background: #0b3d66; font: 500 16px sans-serif`
 
 export function render({model}) {
-  const dialog = make("dialog", {ariaLabel: "Keys and words"})
-  dialog.innerHTML = "<h2>Keys</h2><table></table><h2>Words</h2><table class=words></table>"
+  const dialog = make("dialog", {ariaLabel: say("Keys and words")})
+  dialog.innerHTML = `<h2>${say("Keys")}</h2><table></table>` +
+    `<h2>${say("Words")}</h2><table class=words></table>`
   const row = (head, text) => make("tr", {}, make("th", {}, head), make("td", {}, text))
   const [keys, words] = dialog.querySelectorAll("table")
-  keys.append(...model.keys.map(([, written, does]) => row(written, does)))
+  keys.append(...model.keys.map(([, written, does]) => row(say(written), say(does))))
   const open = () => {
     words.replaceChildren(...model.terms.map(([[name], line]) => row(name, line)))
     dialog.showModal()
   }
   const close = glossary(model.terms)
   dialog.onclick = () => dialog.close()
-  const button = make("button", {title: "Keys and words (?).", ariaLabel: "Keys and words",
+  const button = make("button", {title: `${say("Keys and words")} (?).`, ariaLabel: say("Keys and words"),
     onclick: open}, "?")
   // Whoever has no mouse comes to the run without passing all settings.
-  const skip = make("a", {href: "#", style: SKIP}, "Go to the run")
+  const skip = make("a", {href: "#", style: SKIP}, say("Go to the run"))
   skip.onfocus = () => { skip.style.top = "8px" }
   skip.onblur = () => { skip.style.top = "-99px" }
   skip.onclick = (event) => {
@@ -39,7 +40,7 @@ export function render({model}) {
     event.preventDefault()
     all[(all.indexOf(chosen) + by + all.length) % all.length].focus()
   }
-  const out = "Leave the presenter's view (p)."
+  const out = say("Leave the presenter's view (p).")
   const leave = make("button", {title: out, ariaLabel: out, onclick: () => model.send_msg("p")}, "✕")
   const show = () => { leave.hidden = !model.presents }
   model.on("presents", show)

@@ -8,7 +8,6 @@ import param
 
 from app.components.innards import Plain
 from app.components.panes import script
-from app.picture.glossary import TERMS
 
 KEYS = (
     (" ", "Space", "run, pause, or replay a run that has ended"),
@@ -59,7 +58,7 @@ class Keys(Plain):
     keys
         Which there are, as `KEYS` says.
     terms
-        What words of the page mean, as `TERMS` says.
+        What words of the page mean, as `terms_in` says it.
     own
         Those that the browser follows by itself; plots hear them as the event "plot-key".
     hears
@@ -69,10 +68,10 @@ class Keys(Plain):
     """
 
     keys = param.List(default=[list(key) for key in KEYS])
-    terms = param.List(default=[[list(spellings), line] for spellings, line in TERMS.items()])
+    terms = param.List(default=[])
     own = param.List(default=list(IN_THE_BROWSER))
     hears = param.Boolean(default=False)
     presents = param.Boolean(default=False)
 
-    _esm = script("elements.js", "within.js", "glossary.js", "keys.js")
+    _esm = script("say.js", "elements.js", "within.js", "glossary.js", "keys.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]

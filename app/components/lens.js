@@ -24,7 +24,7 @@ export function render({model}) {
     root.style.right = `${document.documentElement.clientWidth - right + 5}px`
     root.style.top = `${top + 4}px`
     button.textContent = card === alone ? "✕" : "⤢"
-    button.title = button.ariaLabel = card === alone ? "All plots (Escape)" : "Whole page (f)"
+    button.title = button.ariaLabel = say(card === alone ? "All plots (Escape)" : "Whole page (f)")
   }
   const place = () => {
     if (!figure || !pointer) { return null }
@@ -37,7 +37,7 @@ export function render({model}) {
     const unit = /\(([^()]*)\)$/.exec(axis.axis_label ?? "")?.[1] ?? ""
     return measured(value, unit).replace("-", "−")
   }
-  const say = () => {
+  const read = () => {
     const at = place(), [across] = figure?.model.below ?? [], [up] = figure?.model.left ?? []
     said.textContent = at && across ? `${written(at[0], across)}, ${written(at[1], up)}` : ""
   }
@@ -48,7 +48,7 @@ export function render({model}) {
     sizes.disconnect()
     if (card) { sizes.observe(card) }
     put()
-    say()
+    read()
   }
   let due = 0
   const see_soon = (pathed) => {
@@ -125,7 +125,7 @@ export function render({model}) {
     event.preventDefault()
     pointer = event
     zoom(event.deltaY > 0 ? 1.25 : 0.8)
-    say()
+    read()
   }
   const enlarge = (one) => {
     alone?.classList.remove("alone")

@@ -11,14 +11,15 @@ const STROKES = {
 const action = (name, title, more = {}) => {
   const picture = drawn("svg", {viewBox: "0 0 24 24", "aria-hidden": true})
   picture.append(drawn("path", {d: STROKES[name]}))
-  const words = make("span", {}, name)
-  return make("button", {type: "button", className: "action", title, ariaLabel: name, ...more},
+  const words = make("span", {}, say(name))
+  return make("button", {type: "button", className: "action", title: say(title),
+    ariaLabel: say(name), ...more},
     picture, words)
 }
 const menu = (name, title, ...content) => {
   const pane = make("div", {popover: "auto", className: "pane"}, ...content)
   pane.setAttribute("role", "group")
-  pane.ariaLabel = name
+  pane.ariaLabel = say(name)
   const button = action(name, title, {popoverTargetElement: pane})
   pane.onbeforetoggle = () => {
     const {bottom, right} = button.getBoundingClientRect(), width = 300

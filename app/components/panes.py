@@ -11,7 +11,8 @@ import panel_material_ui as pmui
 from panel_material_ui.template.base import Page
 
 from app.components.innards import ignore_business
-from app.components.theme import TEMPLATE
+from app.components.theme import template_in
+from app.languages.language import Language
 
 APP = Path(__file__).resolve().parents[1]
 STATIC = APP.parent / "static"
@@ -68,7 +69,7 @@ def script(*names: str) -> str:
     return "\n".join(file.read_text(encoding="utf-8") for file in files)
 
 
-def page(sidebar: Any, header: list[Any], main: Any) -> Page:
+def page(sidebar: Any, header: list[Any], main: Any, say: Language) -> Page:
     """Make a page with its parts at their places."""
     made = Page(
         title="Slipfront",
@@ -80,7 +81,7 @@ def page(sidebar: Any, header: list[Any], main: Any) -> Page:
         main=[main],
         sx=HEADER,
         busy_indicator=None,
-        template=TEMPLATE,
+        template=template_in(say),
         meta_description="A laboratory for frictional contact: LATIN iterations, live.",
     )
     ignore_business(made)

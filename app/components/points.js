@@ -2,7 +2,7 @@
 function drawn_points(item, send) {
   const WIDE = 280, TALL = 110, ROOM = 10
   const picture = drawn("svg", {viewBox: `0 0 ${WIDE} ${TALL}`, class: "path"})
-  const help = "Drag a point; double click adds one, or takes it away."
+  const help = say("Drag a point; double click adds one, or takes it away.")
   picture.append(drawn("title", {}, help))
   let points = [], limits = [0, 1, 0, 1], held = null, moved = false, fixed = false
   const across = (x) => ROOM + (WIDE - 2 * ROOM) * (x - limits[0]) / (limits[1] - limits[0])

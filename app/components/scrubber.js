@@ -7,12 +7,12 @@ export function render({model}) {
   const button = make("button", {onclick: () => model.send_msg(null)})
   const root = make("div", {}, label, make("div", {className: "line"}, button, range))
   const show = () => {
-    label.title = model.help
+    label.title = say(model.help)
     button.hidden = !model.plays
     button.textContent = model.playing ? "■" : "▶"
-    button.title = button.ariaLabel = model.plays
-    range.ariaLabel = model.label
-    label.firstChild.textContent = model.label + ": "
+    button.title = button.ariaLabel = say(model.plays)
+    range.ariaLabel = say(model.label)
+    label.firstChild.textContent = say(model.label) + ": "
     text.textContent = range.ariaValueText = model.text
     range.min = model.start
     range.max = model.end

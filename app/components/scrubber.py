@@ -48,7 +48,7 @@ class Scrubber(Plain):
     plays = param.String(default="")
     playing = param.Boolean(default=False)
 
-    _esm = script("elements.js", "scrubber.js")
+    _esm = script("say.js", "elements.js", "scrubber.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 

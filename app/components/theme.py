@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
+
+from app.languages.language import SOURCE, Language
+
 TEMPLATE = """
 {% extends "base.html" %}
 {% block preamble %}
@@ -53,3 +57,13 @@ TEMPLATE = """
 {% endblock %}
 """
 """The page's document, whose head decides before anything is painted."""
+
+
+@cache
+def template_in(say: Language) -> str:
+    """Give the document with the words of a language, for the programs in it."""
+    if say.name == SOURCE:
+        return TEMPLATE
+    words = f"self.slipfrontWords = {say.in_browser}; document.documentElement.lang = '{say.name}'"
+    script = f"<script>{{% raw %}}{words}{{% endraw %}}</script>"
+    return TEMPLATE.replace("<script>", f"{script}\n<script>", 1)

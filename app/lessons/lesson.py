@@ -8,9 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from app.components.form import item_of
+from app.languages.language import LESSON as OPEN
+from app.languages.language import Language
+from app.picture.glossary import ENGLISH
 from solver.definitions import about
 from solver.lessons.lesson import SUBJECTS, Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
+from solver.scenes.words import Phrase
 
 FOLDER = Path(__file__).parent
 LESSONS = {
@@ -21,7 +25,6 @@ LESSONS = {
     )
 }
 """All lessons by their names, in order, those of one subject together."""
-OFFERED = [[one.name, one.title, one.question, one.subject] for one in LESSONS.values()]
 NO_CHOICE = -1
 """Stands for the choice of who wants to see and not to predict."""
 MARKS = re.compile(r"\*+(.+?)\*+|\^(\d+)")
@@ -29,7 +32,12 @@ KINDS = "text", "em", "sup"
 """Of what stands between the marks, and in either of them."""
 
 
-def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
+def offered(say: Language) -> list[list[str]]:
+    """Give name, title, question and subject of every lesson."""
+    return [[one.name, say(one.title), say(one.question), one.subject] for one in LESSONS.values()]
+
+
+def content(lesson: Lesson, choice: int | None, say: Language = ENGLISH) -> dict[str, Any]:
     """Say what the page shows of a lesson; the answer and the controls come after the choice.
 
     Parameters
@@ -38,15 +46,17 @@ def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
         The one that is open.
     choice
         Index of what was predicted, or `NO_CHOICE`; None before the choice.
+    say
+        Says it in the page's language.
     """
     place = list(LESSONS).index(lesson.name)
     found: dict[str, Any] = {
         "name": lesson.name,
-        "place": f"Lesson {place + 1} of {len(LESSONS)}",
-        "title": lesson.title,
-        "text": [parts(one) for one in lesson.text],
-        "question": lesson.question,
-        "choices": list(lesson.choices),
+        "place": say(Phrase("Lesson {} of {}", place + 1, len(LESSONS))),
+        "title": say(lesson.title),
+        "text": [parts(say(one, OPEN)) for one in lesson.text],
+        "question": say(lesson.question),
+        "choices": [say(one, OPEN) for one in lesson.choices],
     }
     if lesson.draw:
         found["curve"] = axes(lesson, is_answered=choice is not None)
@@ -57,10 +67,10 @@ def content(lesson: Lesson, choice: int | None) -> dict[str, Any]:
         **found,
         "choice": choice,
         "right": lesson.right,
-        "why": lesson.why,
-        "explanation": [parts(one) for one in lesson.explanation],
+        "why": say(lesson.why, OPEN),
+        "explanation": [parts(say(one, OPEN)) for one in lesson.explanation],
         "items": [item_of(name, definitions[name]) for name in lesson.controls],
-        "next": OFFERED[place + 1][:2] if place + 1 < len(LESSONS) else [],
+        "next": offered(say)[place + 1][:2] if place + 1 < len(LESSONS) else [],
     }
 
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
+from functools import cache, lru_cache
 
+from app.languages.language import Language, language
+
+ENGLISH = language("en")
 TERMS: dict[tuple[str, ...], str] = {
     ("LATIN",): "The method: in turns it obeys the contact laws point by point and the elasticity "
     "of the bodies, at all instants at once, until both agree.",
@@ -73,20 +76,32 @@ TERMS: dict[tuple[str, ...], str] = {
     ("Anderson",): "Combines the last iterates so that the two stages agree best.",
 }
 """What it is called, the first spelling being that of the list, and what it means."""
-_SPELLINGS = sorted((one for every in TERMS for one in every), key=len, reverse=True)
-_TERM = re.compile(
-    rf"(?<![\w-])({'|'.join(map(re.escape, _SPELLINGS))})(s?)(?![\w-])", re.IGNORECASE
-)
 _TEXT = re.compile(r"(<[^>]*>|&\w+;)")
 
 
+@cache
+def terms_in(say: Language) -> list[tuple[list[str], str]]:
+    """Give all terms in a language: what each is called, and its line."""
+    return [
+        ([form for one in spellings for form in say.spellings(one)], say(line))
+        for spellings, line in TERMS.items()
+    ]
+
+
+@cache
+def _term(say: Language) -> re.Pattern[str]:
+    every = sorted((one for called, _ in terms_in(say) for one in called), key=len, reverse=True)
+    return re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, every))})(s?)(?![\w-])", re.IGNORECASE)
+
+
 @lru_cache(maxsize=1024)
-def explained(html: str, plain: tuple[str, ...] = ()) -> str:
+def explained(html: str, plain: tuple[str, ...] = (), say: Language = ENGLISH) -> str:
     """Mark each term where it first stands in a text (HTML); the browser shows its line.
 
-    Terms that are to stay `plain` are given in small letters, in the singular.
+    The text is in the page's language. Terms that are to stay `plain` are given in small letters,
+    in the singular.
     """
-    seen = set(plain)
+    seen = {form.lower() for one in plain for form in say.spellings(one)}
 
     def marked(found: re.Match[str]) -> str:
         term = found[1].lower()
@@ -96,5 +111,5 @@ def explained(html: str, plain: tuple[str, ...] = ()) -> str:
         return f'<abbr tabindex="0">{found[0]}</abbr>'
 
     parts = _TEXT.split(html)
-    parts[::2] = [_TERM.sub(marked, text) for text in parts[::2]]
+    parts[::2] = [_term(say).sub(marked, text) for text in parts[::2]]
     return "".join(parts)

@@ -16,6 +16,7 @@ from app.picture.usual import changed
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
 from solver.reference.distance import Distance
+from solver.scenes.words import Phrase
 from solver.settings import Settings
 
 COLUMNS = (
@@ -160,7 +161,7 @@ class Recording:
 
     def called(self, number: int) -> str:
         """Name an iterate, or the answer."""
-        return "answer" if number == self.answer else f"iteration {number}"
+        return "answer" if number == self.answer else Phrase("iteration {}", number)
 
     @property
     def is_worth_keeping(self) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.languages.language import SOURCE, Language, language
 from solver.reduction.basis import ReductionRecord
 from solver.settings import Settings
 
@@ -171,6 +172,8 @@ class Look:
         What the status line says about the address, or empty.
     readings
         Quantities of the run that are told in words, by their names.
+    language
+        Of all words.
     """
 
     interface: str = ""
@@ -183,6 +186,12 @@ class Look:
     views: tuple[str, ...] = ()
     complaint: str = ""
     readings: tuple[str, ...] = ()
+    language: str = SOURCE
+
+    @property
+    def say(self) -> Language:
+        """What says an English text in this language."""
+        return language(self.language)
 
 
 def floats(values: NDArray[Any]) -> Floats:

@@ -13,6 +13,7 @@ from panel.io.state import set_curdoc
 from panel_material_ui.template.base import Page
 
 from app.components.innards import forget
+from app.languages.language import preferred
 from app.server.lateness import Lateness
 from app.session.pages import Pages, most_pages
 from app.session.report_executor import shared_executor
@@ -68,7 +69,8 @@ def open_page() -> Page:
         session.twin = twin
     session.set_pace(PACES[sight.pace])
     complaint = " ".join(filter(None, (complaint, more, refused)))
-    session.watch(phase=sight.instant, complaint=complaint)
+    chosen = sight.lang or preferred(str(pn.state.headers.get("Accept-Language", "")))
+    session.watch(phase=sight.instant, complaint=complaint, language=chosen)
     session.question = question_from_query(query)
     dashboard = Dashboard(
         session,

@@ -9,6 +9,7 @@ from typing import Any
 import param
 from param.parameterized import batch_call_watchers
 
+from app.languages.language import Language
 from app.picture.shown import Look
 from app.picture.usual import ANSWER
 from app.session.classroom import Room
@@ -28,6 +29,12 @@ PACES: dict[str, Rate] = {WHOLE: WHOLE, "1": 1.0, "5": 5.0, "20": 20.0, "fastest
 
 class State(param.Parameterized):
     """The state of one page; all of it changes on the event loop of the server."""
+
+    @property
+    def say(self) -> Language:
+        """What says an English text in the page's language."""
+        look: Look = self.look
+        return look.say
 
     settings = param.Parameter[Settings](doc="Of the run at work.")
     wanted = param.Parameter[Settings](doc="Those that the user sees: of this run, or of the next.")

@@ -1,7 +1,7 @@
 export function render({model}) {
   const tell = (kind, value = "") => model.send_msg({kind, value})
   const wide = (text, title, onclick) =>
-    make("button", {type: "button", className: "wide", title, onclick}, text)
+    make("button", {type: "button", className: "wide", title: say(title), onclick}, say(text))
   const text = (bytes) => {
     try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) } catch {}
     // Spreadsheets write letters as old Windows did; no text has zeros.
@@ -19,7 +19,7 @@ export function render({model}) {
       () => tell("link")),
     wide("Save settings", "A file that this page and the command line read.",
       () => tell("save")),
-    make("label", {}, "Open settings (.toml) or a load path (.csv)", upload),
+    make("label", {}, say("Open settings (.toml) or a load path (.csv)"), upload),
     wide("Defaults", "Bring all settings of this scene back.", () => tell("defaults")))
   const lead = wide("Start a class", "Others see what you see.", () => {
     lead.parentNode.hidePopover()
@@ -29,9 +29,10 @@ export function render({model}) {
   const code = make("input", {name: "class", required: true, size: 8, maxLength: 12,
     autocomplete: "off", autocapitalize: "characters"})
   const join = make("form", {action: location.pathname},
-    make("label", {}, "Code of a class ", code), make("button", {className: "wide"}, "Join"))
+    make("label", {}, say("Code of a class"), " ", code),
+    make("button", {className: "wide"}, say("Join")))
   const lesson = menu("Class", "Lead a class, or join one by its code.",
-    make("p", {}, "Whoever joins by its code sees what you see."), lead, join)
+    make("p", {}, say("Whoever joins by its code sees what you see.")), lead, join)
   const present = action("Present", "For a projector (p).", {onclick: () => tell("present")})
   const steps = [
     action("Undo", "Take back the last change (Ctrl Z).", {onclick: () => tell("undo")}),

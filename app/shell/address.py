@@ -9,6 +9,7 @@ from typing import Any
 from urllib.parse import parse_qsl, quote
 
 from app.controls.refusals import refused_by_name, title_and_name
+from app.languages.language import LANGUAGES, SOURCE
 from app.lessons.lesson import LESSONS
 from app.picture.labels import changes_of
 from app.picture.shown import Look
@@ -49,6 +50,8 @@ class Sight:
         "page" has controls, "present" is for a projector, "embed" for a frame in a course page.
     plots
         Names of the views that are drawn, separated by commas; empty has one on each card.
+    lang
+        Language of all words; empty leaves it to the browser.
     is_still
         Whether it names an instant, or an iteration.
     """
@@ -61,6 +64,7 @@ class Sight:
     theme: str = "light"
     view: str = VIEWS[0]
     plots: str = ""
+    lang: str = ""
     is_still: bool = field(default=False, compare=False)
 
 
@@ -72,6 +76,7 @@ SIGHT: dict[str, Any] = {
     "iteration": count(0, (0, MOST_STEPS), (0, MOST_STEPS), "", group="", title=""),
     "theme": choice(Sight.theme, ("light", "dark"), "", group="", title=""),
     "view": choice(Sight.view, VIEWS, "", group="", title=""),
+    "lang": choice(SOURCE, LANGUAGES, "", group="", title=""),
 }
 NUMBERS = ("instant", "iteration")
 PLOTS = "plots"

@@ -23,7 +23,7 @@ const bathtub = (plot, open) => {
     const least = counts.indexOf(Math.min(...counts)), last = points.length - 1
     const named = [...new Set([0, least, last])]
     picture.replaceChildren(
-      words(wide / 2, 12, `iterations to ${near}`, "middle"),
+      words(wide / 2, 12, say("iterations to {}", near), "middle"),
       words(LEFT, tall - 4, `${ks[0]}`, "start"),
       words(wide / 2, tall - 4, "k ×", "middle"),
       words(wide - 8, tall - 4, `${ks[last]}`, "end"),
@@ -34,9 +34,9 @@ const bathtub = (plot, open) => {
       ...named.map((i) => words(places[i][0], places[i][1] - 7,
         `${points[i][2] ? "" : "> "}${counts[i]}`, i === 0 ? "start" : i === last ? "end" : "middle")))
     const told = points.map(([k, count, is_enough]) =>
-      `k × ${k}: ${is_enough ? "" : "more than "}${count}`)
-    button.title = "Ask for the whole curve, in What if."
-    button.ariaLabel = `Iterations to ${near}: ${told.join(", ")}. ${button.title}`
+      `k × ${k}: ${is_enough ? count : say("more than {}", count)}`)
+    button.title = say("Ask for the whole curve, in What if.")
+    button.ariaLabel = `${say("Iterations to {}", near)}: ${told.join(", ")}. ${button.title}`
   }
   plot.properties.inner_width.change.connect(draw)
   plot.properties.inner_height.change.connect(draw)

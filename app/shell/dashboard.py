@@ -13,6 +13,7 @@ from app.components.keys import Keys
 from app.components.panes import column, page, text
 from app.components.pulse import pulse
 from app.controls.sidebar import Sidebar
+from app.picture.glossary import terms_in
 from app.session.session import Session
 from app.session.state import TABS, WHAT_IF
 from app.session.undo import Undo
@@ -75,14 +76,13 @@ class Dashboard:
         self._loaded = False
         self._sight = sight or Sight()
         session.worker.wake = partial(session.turns.soon, self.hear)
-        self.pulse, self._keys = pulse(), Keys(css_classes=["keys"])
+        self.pulse, self._keys = pulse(), Keys(terms=terms_in(session.say), css_classes=["keys"])
         self._notes, self._log = Notes(session), RunLog(session)
         self._presence = Presence(session, self.pulse)
         self._transport, self._looks = Transport(session), Looks(session)
         chosen = {**self._transport.chooses(), **self._looks.chooses()}
-        self._gallery = gallery(
-            {**chosen, "drag": self._drag, "tab": self._turn, "bathtub": self._ask_over_k}
-        )
+        chosen |= {"drag": self._drag, "tab": self._turn, "bathtub": self._ask_over_k}
+        self._gallery = gallery(chosen, session.say)
         self._banner = Banner(session)
         self._sidebar = Sidebar(session, self._teach)
         self._teaching = Teaching(session, self._sidebar)
@@ -104,16 +104,17 @@ class Dashboard:
             self._teaching.take(self._sight.lesson)
         else:
             self._arrange()
-        self._link = PageLink(session, self.pulse)
+        self._link = PageLink(session, self.pulse, self._sight.lang)
         self._opening = Opening(session, self.pulse, self._transport, is_still=self._sight.is_still)
 
     def _furnish(self, *, on_phone: bool) -> None:
         """Make the page of its parts, in the theme and the view that are looked at first."""
         acts = self._actions.view, self._saver.view
         beside = pn.FlexBox(*acts, flex_wrap="nowrap", **AT_RIGHT)
-        self.page = page(self._sidebar.view, [self._tabs.bar, beside], self._tabs.main)
+        header = [self._tabs.bar, beside]
+        self.page = page(self._sidebar.view, header, self._tabs.main, self.session.say)
         controls = [self._transport.view, beside, self._sidebar.view]
-        self._phone = Phone(self.page, self._tabs, self._live, controls)
+        self._phone = Phone(self.page, self._tabs, self._live, controls, self.session.say)
         if on_phone:
             self._phone.fit()
         self.page.dark_theme = self._sight.theme == "dark"
@@ -179,7 +180,8 @@ class Dashboard:
 
     def _make_live(self) -> pn.Column:
         words, figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
-        whole = Fold(label="Method", css_classes=["whole"], width=76, kept_as="method-figures")
+        label = self.session.say("Method")
+        whole = Fold(label=label, css_classes=["whole"], width=76, kept_as="method-figures")
         heads = self._banner.view, self._teaching.view, self._transport.view
         folding = column(whole, figures, role="folding")
         parts = *heads, words, folding, self._gallery, self.pulse, self._keys

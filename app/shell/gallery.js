@@ -77,7 +77,7 @@ export function render({model}) {
     const [before, seen, after, legend] = ["span", "b", "span", "span"].map((tag) =>
       document.createElement(tag))
     title.append(before, seen, after, legend)
-    Object.assign(element, {role: "figure", ariaLabel: name, tabIndex: 0})
+    Object.assign(element, {role: "figure", ariaLabel: say(name), tabIndex: 0})
     element.append(title, place)
     const made = Document.from_json(json), [plot] = made.roots()
     const words = made.get_model_by_name(`${slug}.title`)
@@ -94,7 +94,7 @@ export function render({model}) {
       if (String(names) === String(offered)) { return }
       offered = names
       const found = names.map((other) => {
-        const tab = Object.assign(document.createElement("button"), {textContent: other})
+        const tab = Object.assign(document.createElement("button"), {textContent: say(other)})
         tab.onclick = () => {
           turned = other
           model.send_msg({kind: "tab", value: [name, other]})

@@ -17,6 +17,8 @@ from bokeh.document import Document
 from app.components.form import item_of
 from app.components.innards import Plain
 from app.components.panes import looks, script
+from app.languages.language import Language
+from app.picture.glossary import ENGLISH
 from app.shell.layout import layout
 from app.views.catalogue import VIEWS, beside
 from app.views.drawing import View
@@ -67,7 +69,8 @@ class Gallery(Plain):
     caption = param.String(default="")
 
     _esm = script(
-        "elements.js", "values.js", "shell/handles.js", "shell/bathtub.js", "shell/gallery.js"
+        *("say.js", "elements.js", "values.js"),
+        *("shell/handles.js", "shell/bathtub.js", "shell/gallery.js"),
     )
 
     def offer(self, views: Sequence[View], settings: Settings, *, has_tabs: bool) -> None:
@@ -91,7 +94,7 @@ class Gallery(Plain):
         self.sliders = {item["name"]: {key: item[key] for key in NEEDED} for item in items}
 
 
-def gallery(choices: dict[str, Callable[[Any], None]]) -> Gallery:
+def gallery(choices: dict[str, Callable[[Any], None]], say: Language = ENGLISH) -> Gallery:
     """Give plots, of which none is seen yet.
 
     Parameters
@@ -101,21 +104,23 @@ def gallery(choices: dict[str, Callable[[Any], None]]) -> Gallery:
         time, s, "substructure" with a number, "interface" with a name, "place" with a position,
         m, "drag" with what the slider of a setting tells, "tab" with the names of a view and of
         the one that is to stand in its place, and "bathtub" where more of that is asked for.
+    say
+        Says what stands in them.
     """
-    made = Gallery(name=PLOTS, figures=figures(), **{**looks("plots"), "margin": 0})
+    made = Gallery(name=PLOTS, figures=figures(say), **{**looks("plots"), "margin": 0})
     made.on_msg(lambda message: choices[message.data["kind"]](message.data["value"]))
     return made
 
 
 @cache
-def figures() -> str:
+def figures(say: Language = ENGLISH) -> str:
     """Give the figures of all views as JSON, made once."""
-    return json.dumps({view.slug: _described(view) for view in VIEWS})
+    return json.dumps({view.slug: _described(view, say) for view in VIEWS})
 
 
-def _described(view: View) -> dict[str, Any]:
+def _described(view: View, say: Language) -> dict[str, Any]:
     document = Document()
-    document.add_root(make_figure(view))
+    document.add_root(make_figure(view, say))
     made = document.to_json(deferred=False)
     # Bokeh adds what every component of Panel's is made of, ten times as much as all figures.
     del made["defs"]

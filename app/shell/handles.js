@@ -42,7 +42,7 @@ function handles(place, plot, source, model, tap) {
   }
   const label = ({clientX, clientY}, {setting, value}) => {
     const {left, top, width} = place.getBoundingClientRect(), item = model.sliders[setting]
-    const [, name, unit = ""] = /^(.*?)(?: \(([^()]*)\))?$/.exec(item.label)
+    const [, name, unit = ""] = /^(.*?)(?: \(([^()]*)\))?$/.exec(say(item.label))
     said.textContent = `${name}: ${measured(value, unit)}`
     said.style.top = `${Math.max(clientY - top - 40, 2)}px`
     const room = width - said.offsetWidth - 4

@@ -10,6 +10,7 @@ from app.components.panes import select
 from app.components.scrubber import Scrubber, scrubber
 from app.picture.shown import STRESSES
 from app.session.session import Session
+from solver.scenes.words import Phrase
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6
@@ -50,17 +51,18 @@ class Looks:
     @cached_property
     def _interface(self) -> Any:
         what = "The one whose forces and status are drawn; a tap on it in the picture chooses it."
-        return select("Interface", [], self._choose, width=145, description=what)
+        say = self._session.say
+        return select(say("Interface"), [], self._choose, width=145, description=say(what))
 
     @cached_property
     def _stress(self) -> Any:
         return select(
-            "Stress",
-            STRESS_TITLES,
+            self._session.say("Stress"),
+            {self._session.say(title): name for title, name in STRESS_TITLES.items()},
             lambda stress: self._session.watch(stress=stress),
             value=STRESSES[0],
             width=128,
-            description="What colours the deformed bodies.",
+            description=self._session.say("What colours the deformed bodies."),
         )
 
     @cached_property
@@ -77,11 +79,12 @@ class Looks:
 
     def _show(self, interfaces: list[str], chosen: str) -> None:
         select = self._interface
-        if select.options == interfaces and select.value == chosen:
+        options = {self._session.say(_called(name)): name for name in interfaces}
+        if select.options == options and select.value == chosen:
             return
         self._showing = True
         try:
-            select.param.update(options=interfaces, value=chosen)
+            select.param.update(options=options, value=chosen)
         finally:
             self._showing = False
 
@@ -105,3 +108,8 @@ class Looks:
         text = "auto" if factor is None else f"× {factor:,.0f}"
         self._magnification.param.update(shown=place, text=text)
         self._session.watch(magnification=factor)
+
+
+def _called(interface: str) -> str:
+    kind, _, numbers = interface.partition(" ")
+    return Phrase("contact {}", numbers) if kind == "contact" else interface

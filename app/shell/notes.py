@@ -16,6 +16,7 @@ class Notes:
     """What the user is told beside what stands on the page."""
 
     def __init__(self, session: Session) -> None:
+        self._session = session
         self._refusal: Any = None
         # What is told again may have been taken away in the browser.
         watch = session.param.watch
@@ -27,8 +28,8 @@ class Notes:
             self._refusal.destroy()
             self._refusal = None
         if text and pn.state.notifications is not None:
-            self._refusal = pn.state.notifications.error(text, duration=STAYS)
+            self._refusal = pn.state.notifications.error(self._session.say(text), duration=STAYS)
 
     def _tell(self, text: str) -> None:
         if pn.state.notifications is not None:
-            pn.state.notifications.success(text, duration=TOLD_FOR)
+            pn.state.notifications.success(self._session.say(text), duration=TOLD_FOR)

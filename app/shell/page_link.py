@@ -43,10 +43,12 @@ class PageLink:
         Of the page.
     pulse
         Is told the address, and whether it is to be copied.
+    lang
+        The language that the address asked for.
     """
 
-    def __init__(self, session: Session, pulse: Pulse) -> None:
-        self._session, self._pulse = session, pulse
+    def __init__(self, session: Session, pulse: Pulse, lang: str = "") -> None:
+        self._session, self._pulse, self._lang = session, pulse, lang
         self._stood: Standing | None = None
         self._is_back = False
         pulse.param.watch(lambda event: self._tell(is_done=event.new > 0), "copied")
@@ -99,15 +101,15 @@ class PageLink:
     def _tell(self, *, is_done: bool) -> None:
         if (notes := pn.state.notifications) is None:
             return
-        wanted = self._session.wanted
+        wanted, say = self._session.wanted, self._session.say
         names = left_out(wanted, self._session.twin)
         if not is_done:
-            notes.error(REFUSED, duration=8000)
+            notes.error(say(REFUSED), duration=8000)
         elif names:
-            titles = ", ".join(about(wanted.definitions()[name]).title for name in names)
-            notes.warning(f"{COPIED} {WITHOUT.format(titles)}", duration=8000)
+            titles = ", ".join(say(about(wanted.definitions()[name]).title) for name in names)
+            notes.warning(f"{say(COPIED)} {say(WITHOUT).format(titles)}", duration=8000)
         else:
-            notes.success(COPIED, duration=3000)
+            notes.success(say(COPIED), duration=3000)
 
     def _stands(self) -> Standing:
         session, lesson = self._session, self._session.lesson
@@ -119,6 +121,7 @@ class PageLink:
             iteration=waits_at(session.facts, goes_on=session.goes_on),
             view=session.view,
             plots="" if lesson else session.plots,
+            lang=self._lang,
         )
         return session.wanted, sight, session.room, session.twin, session.question
 

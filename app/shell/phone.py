@@ -6,6 +6,7 @@ from typing import Any
 
 from app.components.fold import Fold
 from app.components.panes import column
+from app.languages.language import Language
 from app.shell.tabs import Tabs
 
 ROOM = {"height": "100dvh", "& .main-content": {"paddingBottom": "50dvh"}}
@@ -23,10 +24,14 @@ class Phone:
         The live run.
     controls
         What goes into the sheet.
+    say
+        Says what stands on its handle.
     """
 
-    def __init__(self, page: Any, tabs: Tabs, live: Any, controls: list[Any]) -> None:
-        self._page, self._tabs, self._live = page, tabs, live
+    def __init__(
+        self, page: Any, tabs: Tabs, live: Any, controls: list[Any], say: Language
+    ) -> None:
+        self._page, self._tabs, self._live, self._say = page, tabs, live, say
         self._controls = controls
         self._sheet: Any = None
         self._is_bare = False
@@ -41,7 +46,7 @@ class Phone:
         self._tabs.leave_the_header()
         self._live[:] = [part for part in self._live if part not in self._controls]
         controls = column(*self._controls, role="controls")
-        handle = Fold(label="Controls", keeps="card", sizing_mode="stretch_width")
+        handle = Fold(label=self._say("Controls"), keeps="card", sizing_mode="stretch_width")
         self._sheet = column(handle, controls, role="sheet")
         self._tabs.main.append(self._sheet)
         self.dress(is_bare=self._is_bare)

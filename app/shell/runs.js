@@ -11,19 +11,20 @@ const runs = (model, tell) => {
   }
   const store = (all) => {
     try { localStorage.setItem(STORE, JSON.stringify(all)) } catch {
-      said.textContent = "This browser keeps nothing for this page: save the settings (Share)."
+      said.textContent =
+        say("This browser keeps nothing for this page: save the settings (Share).")
     }
   }
   const others = (name) => stored().filter((one) => one.name !== name)
   const name = make("input", {maxLength: 40, size: 14, autocomplete: "off"})
   const said = make("p", {}), rows = make("div")
   said.setAttribute("role", "status")
-  const form = make("form", {}, make("label", {}, "Name ", name),
-    make("button", {className: "wide"}, "Keep this run"))
+  const form = make("form", {}, make("label", {}, say("Name"), " ", name),
+    make("button", {className: "wide"}, say("Keep this run")))
   form.onsubmit = (event) => {
     event.preventDefault()
     if (others(name.value.trim()).length >= MOST) {
-      said.textContent = `${MOST} runs at most: delete one first.`
+      said.textContent = say("{} runs at most: delete one first.", MOST)
     } else { tell("keep", name.value.trim()) }
   }
   const does = (text, title, act, more = {}) =>
@@ -36,13 +37,14 @@ const runs = (model, tell) => {
     const is_of_scene = one.scene === model.scene
     return make("div", {className: "run"},
       make("b", {title: `${one.name} (${one.scene})`}, one.name),
-      does("Open", one.name, go("open", ["run.toml", one.text])),
-      does("Compare", is_of_scene ? one.name : `${one.name}: open it first, as its scene is ${one.scene}`,
+      does(say("Open"), one.name, go("open", ["run.toml", one.text])),
+      does(say("Compare"), is_of_scene ? one.name
+        : say("{}: open it first, as its scene is {}", one.name, say(one.scene)),
         go("compare", one.text), {disabled: !is_of_scene}),
-      does("✕", `Delete ${one.name}`, () => {
+      does("✕", say("Delete {}", one.name), () => {
         store(others(one.name))
         show()
-      }, {ariaLabel: `Delete ${one.name}`}))
+      }, {ariaLabel: say("Delete {}", one.name)}))
   }
   const show = () => rows.replaceChildren(...stored().map(row))
   model.on("kept", () => {
@@ -58,5 +60,5 @@ const runs = (model, tell) => {
   show()
   const words = "Runs under names of their own stay in this browser, five at most."
   return menu("Runs", "Keep this run; open or compare with one that was kept.",
-    make("p", {}, words), form, said, rows)
+    make("p", {}, say(words)), form, said, rows)
 }

@@ -64,7 +64,11 @@ class Tabs:
         ]
         self._beside = dict(zip(TABS[1:], beside, strict=True))
         self.bar = pmui.RadioButtonGroup(
-            options=list(TABS), value=TABS[0], size="small", margin=(0, 12), sx=IN_HEADER
+            options={session.say(tab): tab for tab in TABS},
+            value=TABS[0],
+            size="small",
+            margin=(0, 12),
+            sx=IN_HEADER,
         )
         self.bar.param.watch(lambda event: session.param.update(tab=event.new), "value")
         session.param.watch(lambda event: self._show(event.new), "tab")

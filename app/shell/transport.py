@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -24,7 +24,7 @@ LABELS = {
     "20": "20 iterations/s",
     "fastest": "as fast as it can",
 }
-ENDS = {"Watch": WATCH, "Answer": ANSWER}
+ENDS = {WATCH: "Watch", ANSWER: "Answer"}
 ITERATE = "Iterate"
 """Stands beside these where the run only iterates, as the paper's does."""
 WAYS = (
@@ -181,14 +181,18 @@ class Transport:
     def _arrange(self) -> None:
         """Show the sliders that apply."""
         settings = self._session.wanted
-        offered = ENDS if settings.finish in ENDS.values() else {**ENDS, ITERATE: settings.finish}
-        self._way.param.update(options=offered, value=settings.finish)
+        offered = ENDS if settings.finish in ENDS else {**ENDS, settings.finish: ITERATE}
+        self._way.param.update(options=self._options(offered), value=settings.finish)
         sliders = [self._iteration, self._instant]
         if settings.applies("pgd_modes") and settings.n_substructures > 1:
             sliders.append(self._substructure)
         if list(self._sliders) != sliders:
             self._show_substructure(settings)
             self._sliders[:] = sliders
+
+    def _options(self, offered: Mapping[str, str]) -> dict[str, str]:
+        """Give names, by what they are called."""
+        return {self._session.say(title): name for name, title in offered.items()}
 
     def _end(self, finish: str) -> None:
         """Have the run end in another way; it begins anew."""
@@ -211,36 +215,41 @@ class Transport:
         elif facts is not None and facts.asks:
             label, icon, does = "Run anyway", "warning_amber", AGREES
         if self._run.icon != icon:
-            self._run.param.update(label=label, icon=icon, description=does)
+            say = self._session.say
+            self._run.param.update(label=say(label), icon=icon, description=say(does))
         if self._substructure in self._sliders:
             self._show_substructure(self._session.settings)
 
     def _make_buttons(self) -> None:
+        say = self._session.say
         self._run = button(
-            "Pause",
+            say("Pause"),
             "pause",
             self.toggle,
             min_width=104,
             sx=PLAIN,
             color="primary",
-            description=RUNS,
+            description=say(RUNS),
         )
-        does = "Do one iteration and wait (s)."
-        self._step = button("Step", "skip_next", self.step, variant="outlined", description=does)
-        does = "Start the run again, from its usual start (r)."
-        self._reset = button(
-            "Reset", "restart_alt", self.reset, variant="outlined", description=does
-        )
+        beside = {"variant": "outlined", "description": say("Do one iteration and wait (s).")}
+        self._step = button(say("Step"), "skip_next", self.step, **beside)
+        beside["description"] = say("Start the run again, from its usual start (r).")
+        self._reset = button(say("Reset"), "restart_alt", self.reset, **beside)
         self._way = pmui.RadioButtonGroup(
-            options=ENDS, value=WATCH, size="small", description=WAYS, margin=(4, 10), sx=SMALL
+            options=self._options(ENDS),
+            value=WATCH,
+            size="small",
+            description=say(WAYS),
+            margin=(4, 10),
+            sx=SMALL,
         )
         self._pace = select(
-            "Pace",
-            {label: name for name, label in LABELS.items()},
+            say("Pace"),
+            self._options(LABELS),
             lambda name: self._session.set_pace(PACES[name]),
             value=next(name for name, pace in PACES.items() if pace == self._session.pace),
             width=160,
-            description="Iterations shown in a second; waiting is no part of the run time.",
+            description=say("Iterations shown in a second; waiting is no part of the run time."),
         )
 
     def _make_sliders(self) -> None:

@@ -2,9 +2,9 @@
 const LOOKS = 30
 export function render({model}) {
   const seen = (slug) => plot_of(slug, model.caption)
-  const plots = make("select", {ariaLabel: "Plot"}), tables = make("select", {ariaLabel: "Table"})
+  const plots = make("select", {ariaLabel: say("Plot")}), tables = make("select", {ariaLabel: say("Table")})
   const button = (name, title, onclick) =>
-    make("button", {className: "wide", title, onclick}, name)
+    make("button", {className: "wide", title: say(title), onclick}, say(name))
   const tell = (kind, value = "") => model.send_msg({kind, value})
   const saved = (how) => () => how(`slipfront-${plots.value}`, seen(plots.value))
   let frames = [], filmed = "", seen_last = ""
@@ -42,14 +42,14 @@ export function render({model}) {
   })
   const show = () => {
     const {value} = plots
-    plots.replaceChildren(...model.views.map(([name, slug]) => new Option(name, slug)))
+    plots.replaceChildren(...model.views.map(([name, slug]) => new Option(say(name), slug)))
     if (model.views.some(([, slug]) => slug === value)) { plots.value = value }
   }
-  tables.append(...model.tables.map((name) => new Option(name, name)))
+  tables.append(...model.tables.map((name) => new Option(say(name), name)))
   model.on("views", show)
   show()
   return menu("Take away", "Pictures, animations, tables, and the program of this run.",
-    make("label", {}, "Plot", plots),
+    make("label", {}, say("Plot"), plots),
     button("PNG", "Save the picture, with its name, legend and units.",
       saved(save_png)),
     button("SVG", "The same, as lines and words that can be edited.",
@@ -58,7 +58,7 @@ export function render({model}) {
       animate("instants")),
     button("GIF over iterations", "Save its pictures from the first iteration to the last.",
       animate("iterations")),
-    make("label", {}, "Table", tables),
+    make("label", {}, say("Table"), tables),
     button("CSV", "Save the numbers that are drawn: along the interface at the chosen instant, " +
       "of the loaded end over time, or of all iterations.", () => tell("table", tables.value)),
     button("HTML", "Save this run as one file for a browser, which needs no network: the plots that " +

@@ -51,7 +51,10 @@ class TakeAway(Plain):
     caption = param.String(default="")
     shot = param.Integer(default=0)
 
-    _esm = script("elements.js", "menu.js", "takeaway/gif.js", "exports.js", "takeaway/takeaway.js")
+    _esm = script(
+        *("say.js", "elements.js", "menu.js", "exports.js"),
+        *("takeaway/gif.js", "takeaway/takeaway.js"),
+    )
     _stylesheets: ClassVar[list[str]] = [STYLE, MENU]
 
 

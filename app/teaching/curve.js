@@ -7,7 +7,8 @@ const sketchpad = ({across, up, places, top, values}, sketch, keep) => {
   const along = (x) => left + 10 + (right - left - 20) * share(x)
   const high = (y) => bottom - (bottom - above) * Math.log(y) / Math.log(top)
   const pad = drawn("svg", {viewBox: `0 0 ${width} ${height}`, class: "pad", role: "img",
-    "aria-label": `${up} over ${across}: drawn by hand${values.length ? ", and measured" : ""}`})
+    "aria-label": say(values.length ? "{} over {}: drawn by hand, and measured"
+      : "{} over {}: drawn by hand", say(up), say(across))})
   const put = (tag, attributes, text) => pad.append(drawn(tag, attributes, text))
   const word = (x, y, text, anchor = "middle") =>
     put("text", {x, y, "text-anchor": anchor, "font-size": 12, fill: "currentColor"}, text)
@@ -19,9 +20,9 @@ const sketchpad = ({across, up, places, top, values}, sketch, keep) => {
       "stroke-opacity": 0.15})
     word(left - 5, high(y) + 4, String(y), "end")
   }
-  word((left + right) / 2, height - 4, across)
+  word((left + right) / 2, height - 4, say(across))
   put("text", {transform: `translate(12 ${(above + bottom) / 2}) rotate(-90)`, "font-size": 12,
-    "text-anchor": "middle", fill: "currentColor"}, up.split(" to ")[0])
+    "text-anchor": "middle", fill: "currentColor"}, say(up.split(" to ")[0]))
   const line = drawn("path", {fill: "none", stroke: "#D55E00", "stroke-width": 3})
   const show = () => {
     const points = sketch.map((y, column) => [left + (column + 0.5) * (right - left) / columns, y])
@@ -33,7 +34,7 @@ const sketchpad = ({across, up, places, top, values}, sketch, keep) => {
   values.forEach((value, number) => {
     const x = along(places[number]), y = value === null ? above + 9 : high(value)
     put("circle", {cx: x, cy: y, r: 5, fill: "#0072B2"})
-    if (value === null) { word(x, above + 28, "never") }
+    if (value === null) { word(x, above + 28, say("never")) }
   })
   let last = null
   const draw = (event) => {

@@ -13,7 +13,7 @@ const ON_PAPER = `
   small { color: #444; }`
 const handout = (lesson, texts, address) => {
   const part = ([kind, text]) => {
-    const control = () => lesson.items.find((one) => one.name === text).label
+    const control = () => say(lesson.items.find((one) => one.name === text).label)
     if (kind === "control") { return make("b", {}, control()) }
     if (kind === "value") { return make("b", {innerHTML: texts.get(text) ?? "…"}) }
     return kind === "text" ? text : make(kind, {}, text)
@@ -35,16 +35,16 @@ const handout = (lesson, texts, address) => {
     make("p", {className: "question"}, lesson.question),
     make("ul", {}, ...lesson.choices.map((choice) => make("li", {}, choice))),
     ...(lesson.curve ? [make("div", {className: "picture"}, empty())] : []),
-    make("p", {}, "Why?"), make("div", {className: "room"}),
+    make("p", {}, say("Why?")), make("div", {className: "room"}),
   ]
   const back = make("section", {className: "overleaf"},
     make("h2", {}, `${lesson.choices[lesson.right]}.`), make("p", {}, lesson.why),
     ...paragraphs(lesson.explanation),
     make("div", {className: "plots"},
       ...(lesson.curve ? [full()] : []), ...others.map(picture)),
-    make("p", {}, make("small", {}, `To try it: ${address}`)))
+    make("p", {}, make("small", {}, say("To try it: {}", address))))
   const theme = document.documentElement.dataset.theme ?? ""
   const body = make("body", {className: theme}, ...front, back)
   const head = `<meta charset="utf-8"><title>${lesson.title}</title><style>${ON_PAPER}</style>`
-  return `<!doctype html><html lang="en"><head>${head}</head>${body.outerHTML}</html>`
+  return `<!doctype html><html lang="${document.documentElement.lang}"><head>${head}</head>${body.outerHTML}</html>`
 }

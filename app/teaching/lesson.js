@@ -1,8 +1,10 @@
+const PRINTED =
+  "Save a page to print: the question, with room to write, and the answer overleaf."
 export function render({model}) {
   const {tell, show: put, kinds} = controls(model)
   const LESSON = "the-lesson", CHOICE = "the-choice", COUNT = "the-count"
   const SEEN = "slipfront-lessons-seen"
-  const root = make("section", {ariaLabel: "Lesson"})
+  const root = make("section", {ariaLabel: say("Lesson")})
   let rows = new Map(), places = [], taught_last = "", step = 0, turn = () => {}
   // A browser may refuse to keep anything.
   const seen = () => { try { return localStorage.getItem(SEEN) } catch { return null } }
@@ -35,10 +37,10 @@ export function render({model}) {
     const sketch = sketched(), by_hand = sketch.some((one) => one !== null)
     const pad = sketchpad(axes, sketch, keep)
     if (!axes.values.length) {
-      const words = "Draw what you expect, with the mouse or a finger."
+      const words = say("Draw what you expect, with the mouse or a finger.")
       return [make("figure", {}, pad, make("figcaption", {}, words))]
     }
-    const words = by_hand ? "Your curve, and what was measured" : "What was measured"
+    const words = say(by_hand ? "Your curve, and what was measured" : "What was measured")
     return [make("details", {open: by_hand}, make("summary", {}, words), make("figure", {}, pad))]
   }
   const button = (text, onclick, more = {}) =>
@@ -49,7 +51,7 @@ export function render({model}) {
   }
   const control = (name) => {
     const item = model.lesson.items.find((one) => one.name === name), row = {name, count: 0}
-    row.box = make("span", {className: `control setting-${name}`, title: item.help || ""},
+    row.box = make("span", {className: `control setting-${name}`, title: say(item.help || "")},
       ...kinds[item.kind](row, item))
     rows.set(name, row)
     return row.box
@@ -57,7 +59,7 @@ export function render({model}) {
   const part = ([kind, text, title]) => {
     if (kind === "control") { return control(text) }
     if (kind !== "value") { return kind === "text" ? text : make(kind, {}, text) }
-    const place = make("span", {className: "value", title}, "…")
+    const place = make("span", {className: "value", title: say(title)}, "…")
     places.push([text, place])
     return place
   }
@@ -79,48 +81,48 @@ export function render({model}) {
       one.ariaPressed = chosen === place
       return counted(one, place)
     })
-    const group = make("div", {className: "choices", ariaLabel: "Your prediction"}, ...made)
+    const group = make("div", {className: "choices", ariaLabel: say("Your prediction")}, ...made)
     group.setAttribute("role", "group")
     return group
   }
   const verdict = ({choices, choice, right, why}) => {
     const is = choice < 0 ? "skipped" : choice === right ? "right" : "wrong"
-    const word = {skipped: "", right: "Right: ", wrong: `Not “${choices[choice]}”, but: `}[is]
-    const answer = make("b", {}, `${word}${choices[right]}.`)
+    const words = {skipped: "{1}.", right: "Right: {1}.", wrong: "Not “{0}”, but: {1}."}[is]
+    const answer = make("b", {}, say(words, choices[choice], choices[right]))
     return make("p", {className: `why ${is}`, tabIndex: -1}, answer, " ", why)
   }
   const counts = ({choices: all, right}) => model.poll.counts?.length
-    ? [make("ul", {className: "counts", ariaLabel: "What the class predicted"},
+    ? [make("ul", {className: "counts", ariaLabel: say("What the class predicted")},
       ...all.map((text, place) => {
         const is_right = place === right
-        const said = is_right ? [make("b", {ariaLabel: "Right:"}, "✓ "), text] : [text]
+        const said = is_right ? [make("b", {ariaLabel: say("Right:")}, "✓ "), text] : [text]
         return counted(make("li", {className: is_right ? "right" : ""}, ...said), place)
       }))] : []
   const polled = ({chosen}) => {
     const {leads, predicted, of, counts} = model.poll
     if (predicted === undefined) { return [] }
-    const said = `${predicted} of ${of} have predicted.`
-    const mine = leads ? "" : model.lesson.alone ? " Nobody leads the class at present."
-      : chosen === null ? " Predict, too: the answer comes with the class."
-      : " The answer comes with the class."
+    const said = say("{} of {} have predicted.", predicted, of)
+    const mine = leads ? "" : model.lesson.alone ? "Nobody leads the class at present."
+      : chosen === null ? "Predict, too: the answer comes with the class."
+      : "The answer comes with the class."
     const open = leads && !counts.length
-      ? [button("Show what they predict", () => tell({name: COUNT}, true))] : []
-    return [make("p", {className: "polled"}, said, mine), ...open]
+      ? [button(say("Show what they predict"), () => tell({name: COUNT}, true))] : []
+    return [make("p", {className: "polled"}, said, " ", say(mine)), ...open]
   }
-  const skip = () => button("Show me", () => predict(-1),
-    {title: "See it without a prediction."})
+  const skip = () => button(say("Show me"), () => predict(-1),
+    {title: say("See it without a prediction.")})
   const go_on = ([name, title]) =>
-    name ? [button(`Next: ${title}`, () => open(name), {className: "main"})] : []
-  const leave = () => button("Explore freely", () => open(""),
-    {title: "Leave the lesson: all controls, and the run as it is."})
-  const on_paper = () => button("Handout", () => {
+    name ? [button(say("Next: {}", title), () => open(name), {className: "main"})] : []
+  const leave = () => button(say("Explore freely"), () => open(""),
+    {title: say("Leave the lesson: all controls, and the run as it is.")})
+  const on_paper = () => button(say("Handout"), () => {
     const address = `${location.origin}${location.pathname}?lesson=${model.lesson.name}`
     const page = handout(model.lesson, new Map(model.values), address)
     save(`slipfront-${model.lesson.name}.html`, new Blob([page], {type: "text/html"}))
-  }, {title: "Save a page to print: the question, with room to write, and the answer overleaf."})
+  }, {title: say(PRINTED)})
   // In front of a class one thing is said at a time, in a type for the back row.
   const is_strip = () => model.is_strip && matchMedia("(min-width: 1001px)").matches
-  const folded = (text) => make("details", {}, make("summary", {}, "What it is about"), ...text)
+  const folded = (text) => make("details", {}, make("summary", {}, say("What it is about")), ...text)
   const taught = (lesson) => {
     const heads = [make("small", {}, lesson.place), make("h2", {}, lesson.title)]
     const text = paragraphs(lesson.text)
@@ -145,18 +147,18 @@ export function render({model}) {
   }
   const strip = (parts) => {
     const boxes = parts.map((part) => make("div", {}, ...part)), end = boxes.length - 1
-    const back = button("‹", () => turn(-1), {ariaLabel: "Back", title: "Back (Page ↑)."})
-    const on = button("›", () => turn(1), {ariaLabel: "Go on", title: "Go on (Page ↓)."})
+    const back = button("‹", () => turn(-1), {ariaLabel: say("Back"), title: say("Back (Page ↑).")})
+    const on = button("›", () => turn(1), {ariaLabel: say("Go on"), title: say("Go on (Page ↓).")})
     const place = make("span")
     turn = (by) => {
       step = Math.min(Math.max(step + by, 0), end)
       boxes.forEach((box, number) => { box.hidden = number !== step })
       back.disabled = step === 0
       on.disabled = step === end
-      place.textContent = `${step + 1} of ${boxes.length}`
+      place.textContent = say("{} of {}", step + 1, boxes.length)
     }
     turn(0)
-    return [...boxes, make("nav", {ariaLabel: "Parts of the lesson"}, back, place, on)]
+    return [...boxes, make("nav", {ariaLabel: say("Parts of the lesson")}, back, place, on)]
   }
   const offer = () => {
     const lists = new Map()
@@ -165,17 +167,18 @@ export function render({model}) {
       lists.get(subject).append(
         make("li", {}, button(title, () => open(name)), make("span", {}, question)))
     })
-    const counts = [...lists].map(([subject, list]) => `${list.children.length} in ${subject}`)
-    const words = `New here? Short lessons, ${counts.join(" and ")}: ` +
-      "predict, change one thing, see why."
-    const parts = [...lists].flatMap(([subject, list]) => [make("h4", {}, subject), list])
+    const counts = [...lists].map(([subject, list]) => say("{} in {}", list.children.length, say(subject)))
+    const words = say("New here? Short lessons, {}: predict, change one thing, see why.",
+      counts.join(` ${say("and")} `))
+    const parts = [...lists].flatMap(([subject, list]) => [make("h4", {}, say(subject)), list])
     const away = () => {
       see()
       build()
     }
     return make("div", {className: "offer"},
       make("details", {}, make("summary", {}, words), ...parts),
-      button("×", away, {ariaLabel: "Hide the lessons", title: "Hide; the sidebar has them."}))
+      button("×", away, {ariaLabel: say("Hide the lessons"),
+        title: say("Hide; the sidebar has them.")}))
   }
   const build = () => {
     const {lesson} = model, was_asked = root.querySelector(".choices") !== null

@@ -11,7 +11,7 @@ from app.components.form import ENDS, STYLE
 from app.components.innards import Plain
 from app.components.panes import script
 from app.controls.sidebar import Sidebar
-from app.lessons.lesson import LESSONS, NO_CHOICE, OFFERED, content, readings
+from app.lessons.lesson import LESSONS, NO_CHOICE, content, offered, readings
 from app.session.classroom import Poll, Room
 from app.session.session import Session
 from app.views.catalogue import VIEWS
@@ -117,7 +117,7 @@ class LessonPane(Plain):
     recalls = param.Boolean(default=False)
 
     _esm = script(
-        *("elements.js", "exports.js", "values.js", "points.js", "controls.js"),
+        *("say.js", "elements.js", "exports.js", "values.js", "points.js", "controls.js"),
         *("teaching/curve.js", "teaching/handout.js", "teaching/lesson.js"),
     )
     _stylesheets: ClassVar[list[str]] = [STYLE, OWN_STYLE]
@@ -144,7 +144,7 @@ class Teaching:
         self._sidebar = sidebar
         self.view = LessonPane(
             name="lesson",
-            offered=OFFERED,
+            offered=offered(session.say),
             css_classes=["lesson"],
             sizing_mode="stretch_width",
             margin=0,
@@ -231,7 +231,7 @@ class Teaching:
 
     def _content(self, lesson: Lesson, choice: int | None) -> dict[str, Any]:
         slugs = [view.slug for view in VIEWS if view.name in lesson.views]
-        return {**content(lesson, choice), "slugs": slugs, **self._in_class()}
+        return {**content(lesson, choice, self._session.say), "slugs": slugs, **self._in_class()}
 
     def _in_class(self) -> dict[str, Any]:
         """Say what else there is of a lesson that is followed: its ends are the leader's.

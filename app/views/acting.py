@@ -13,6 +13,7 @@ from app.views.drawing import Box, Word
 from app.views.posed import Posed
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
+from solver.scenes.words import Phrase, joined
 
 ARROW, BESIDE = 38.0, 8.0
 """Length of an arrow at the largest value, and its distance from the side that it points along."""
@@ -86,7 +87,7 @@ def words(posed: Posed, box: Box) -> list[Word]:
         texts = [_value(posed, act) for act in acts]
         if column:
             x, dx = columns[column]
-            found.append(Word(x, y, "\n".join(texts), column, up, dx, dy))
+            found.append(Word(x, y, joined("\n", texts), column, up, dx, dy))
             continue
         sides = (
             (("right", -2.0 * GAP), ("left", 2.0 * GAP)) if len(texts) > 1 else (("center", 0.0),)
@@ -137,7 +138,9 @@ def _value(posed: Posed, act: Act) -> str:
     """Say what acts now; what varies along a side, at both of its ends."""
     unit, name = decimal_scale(float(np.abs(act.values).max()), act.unit)
     now = np.atleast_1d(posed.now(act.values)) / unit
-    return f"{act.symbol} = {' to '.join(sketch.plain(float(one)) for one in now)} {name}"
+    values = [sketch.plain(float(one)) for one in now]
+    value = values[0] if len(values) == 1 else Phrase("{} to {}", *values)
+    return Phrase("{} = {} {}", act.symbol, value, name)
 
 
 def _is_aside(act: Act) -> bool:

@@ -12,6 +12,7 @@ from app.views.legend import Key
 from app.views.scales import Limits, held, spanned
 from app.views.scene import Scene
 from solver.scenes import kind_of
+from solver.scenes.words import Phrase
 
 SHARED = 1.5
 """Times the tension: what neighbours take over from a wire between two others."""
@@ -58,7 +59,7 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
     shown = wires.numbers[:5]
     if wires.broken and wires.broken not in shown:
         shown = (*shown[:4], wires.broken)
-    named = (f"{n}, broken" if n == wires.broken else str(n) for n in shown)
+    named = (Phrase("{}, broken", n) if n == wires.broken else str(n) for n in shown)
     keys = [Key(_color(n, wires), "line", name) for n, name in zip(shown, named, strict=True)]
     return (*keys, *((Key(GREEN, "band", "closed form"),) if is_exact else ()))
 

@@ -13,6 +13,7 @@ from app.views.legend import Key
 from app.views.scales import around, round_up
 from app.views.scene import Scene
 from solver.arrays import Array
+from solver.scenes.words import Phrase
 
 FARTHEST = 5.0
 """Times the displacement of the bodies: a ghost that moves farther is left out."""
@@ -44,7 +45,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing | None:
         colors=Colors(low, high, name),
         keys=(
             Key(GREY, "bare", scene.look.stress),
-            Key(GREY, "bare", f"displacement × {factor:g}"),
+            Key(GREY, "bare", Phrase("displacement × {}", f"{factor:g}")),
             *ghosts,
         ),
         curves=[Curve(one[:, 0], one[:, 1], GHOST, 1.5) for one in outlines],

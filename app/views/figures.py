@@ -30,6 +30,8 @@ from bokeh.models.annotations.legends import ColorBar
 from bokeh.models.glyphs import Patches
 from bokeh.models.widgets import Div
 
+from app.languages.language import Language
+from app.picture.glossary import ENGLISH
 from app.views.colors import GREY, shaded
 from app.views.drawing import View
 from app.views.legend import card_title
@@ -84,12 +86,12 @@ FONT = "Roboto, sans-serif"
 """The colours of words follow the theme: the style sheet has them."""
 
 
-def make_figure(view: View) -> Plot:
+def make_figure(view: View, say: Language = ENGLISH) -> Plot:
     """Make the figure of a view; among its tags is a model with what stands above it."""
     plot, slug = view.plot, view.slug
-    made = _axes(view)
+    made = _axes(view, say)
     if plot.palette:
-        _add_colors(made, view)
+        _add_colors(made, view, say)
     drawn = {"curves": _add_curves(made, view)}
     words = _words() if plot.words else None
     if words is not None:
@@ -125,7 +127,7 @@ def _fit(made: Plot, view: View, words: Text | None, drawn: Mapping[str, ColumnD
         words.js_on_change("text_font_size", fit)
 
 
-def _axes(view: View) -> Plot:
+def _axes(view: View, say: Language) -> Plot:
     """Make empty axes; `bokeh.plotting.figure` makes twice as many models, none of them needed."""
     look, slug = view.plot, view.slug
     made = Plot(
@@ -144,14 +146,14 @@ def _axes(view: View) -> Plot:
         background_fill_color=None,
         border_fill_color=None,
         outline_line_color=None,
-        tags=[Div(text=card_title(view.name, ()), name=f"{slug}.title")],
+        tags=[Div(text=card_title(view.name, (), say=say), name=f"{slug}.title")],
     )
     if look.names:
-        made.add_tools(HoverTool(tooltips=[(look.names, "@name")]))
+        made.add_tools(HoverTool(tooltips=[(say(look.names), "@name")]))
     if not look.x_label:
         return made
-    made.add_layout(_axis("x", look.x_label, view), "below")
-    axis = _axis("y", look.y_label, view)
+    made.add_layout(_axis("x", say(look.x_label), view), "below")
+    axis = _axis("y", say(look.y_label), view)
     made.add_layout(axis, "left")
     if not look.chooses:
         made.add_layout(Grid(dimension=1, axis=axis, grid_line_color=GREY, grid_line_alpha=0.25))
@@ -213,7 +215,7 @@ def _words() -> Text:
     )
 
 
-def _add_colors(made: Plot, view: View) -> None:
+def _add_colors(made: Plot, view: View, say: Language) -> None:
     """Add an image, or bodies, and the scale of their colours."""
     plot, slug = view.plot, view.slug
     palette = list(plot.palette) if not plot.scale else shaded(SHADES, plot.palette)
@@ -234,7 +236,7 @@ def _add_colors(made: Plot, view: View) -> None:
             ticker=BasicTicker(desired_num_ticks=4, min_interval=0 if plot.equal else 1),
             major_label_policy=NoOverlap(),
             color_mapper=mapper,
-            title=plot.scale,
+            title=say(plot.scale),
             title_text_font=FONT,
             title_text_font_size="13px",
             title_text_font_style="normal",

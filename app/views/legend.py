@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from app.picture.glossary import explained
+from app.languages.language import Language
+from app.picture.glossary import ENGLISH, explained
 
 
 @dataclass(frozen=True)
@@ -25,12 +26,12 @@ class Key:
     text: str
 
 
-def card_title(name: str, keys: Sequence[Key], sentence: str = "") -> str:
+def card_title(name: str, keys: Sequence[Key], sentence: str = "", say: Language = ENGLISH) -> str:
     """Write a view's name with its legend beside it, and a sentence below (HTML)."""
     entries = "".join(
         f'<span class="key"><i class="{key.mark}" style="--mark:{key.color}"></i>'
-        f"{explained(escape(key.text))}</span>"
+        f"{explained(escape(say(key.text)), say=say)}</span>"
         for key in keys
     )
-    below = f"<p>{escape(sentence)}</p>" if sentence else ""
-    return f"<b>{explained(escape(name))}</b>{entries}{below}"
+    below = f"<p>{escape(say(sentence))}</p>" if sentence else ""
+    return f"<b>{explained(escape(say(name)), say=say)}</b>{entries}{below}"

@@ -11,6 +11,7 @@ from app.views.legend import Key
 from app.views.scales import ROOM, across, spanned, upright
 from app.views.scene import Scene
 from solver.arrays import Array
+from solver.scenes.words import Phrase
 
 COLORS = (FORCE, BLUE, GREEN, PURPLE, GREY)
 
@@ -30,13 +31,13 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
     shown = [values / (factor or peak) for (_, _, values), peak in zip(paths, peaks, strict=True)]
     low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
     room = (ROOM - 1.0) * (max(high, 0.0) - min(low, 0.0) or 1.0)
-    y = Axis(min(low, 0.0) - room, max(high, 0.0) + room, label=f"Load ({unit})")
+    y = Axis(min(low, 0.0) - room, max(high, 0.0) + room, label=Phrase("{} ({})", "Load", unit))
     curves = [across([0.0], x, color=GREY, alpha=0.4, width=1)]
     keys = []
     for (name, own, _), values, peak, color in zip(paths, shown, peaks, COLORS, strict=False):
         curves.append(Curve(instants, values, color))
         size, prefixed = decimal_scale(peak, own)
-        keys.append(Key(color, "line", f"{name}, {peak / size:.3g} {prefixed}"))
+        keys.append(Key(color, "line", Phrase("{}, {} {}", name, f"{peak / size:.3g}", prefixed)))
     curves.append(upright([time], y, color=VERMILION, width=2))
     now = [np.interp(time, instants, one) for one in shown[: len(COLORS)]]
     return Drawing(x, y, curves, [Marks([time] * len(now), now, VERMILION)], keys=keys)
@@ -49,17 +50,21 @@ def _paths(scene: Scene) -> list[tuple[str, str, Array]]:
     """
     described = scene.run.stand.portrait.described
     found = [
-        (act.symbol, act.where.replace(" ", ", "), act.unit, np.atleast_2d(act.values)[-1])
-        for act in described.acts
+        (act.symbol, act.where, act.unit, np.atleast_2d(act.values)[-1]) for act in described.acts
     ]
     if described.tilt is not None:
         found.insert(0, ("θ", "", "°", np.degrees(described.tilt)))
     shown = [path for path in found if np.ptp(path[-1]) > 0.0] or found
     symbols = [symbol for symbol, *_ in shown]
     return [
-        (symbol if symbols.count(symbol) == 1 else f"{symbol} ({where})", unit, values)
+        (symbol if symbols.count(symbol) == 1 else _placed(symbol, where), unit, values)
         for symbol, where, unit, values in shown
     ]
+
+
+def _placed(symbol: str, where: str) -> str:
+    side, _, axis = where.partition(" ")
+    return Phrase("{} ({}, {})", symbol, side, axis) if axis else Phrase("{} ({})", symbol, side)
 
 
 VIEW = View(

@@ -13,6 +13,7 @@ from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, has_in
 from app.views.legend import Key
 from app.views.scales import spanned, upright
 from app.views.scene import Scene
+from solver.scenes.words import Phrase
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
 UP = Axis(-1.12, 1.12)
@@ -27,7 +28,7 @@ def draw_space(scene: Scene, _kept: None) -> Drawing | None:
     # A substructure of one element may rub at one point only.
     x = spanned(float(modes.positions[0]), float(modes.positions[-1]))
     keys = (
-        Key(GREY, "bare", f"substructure {bases.substructure + 1}"),
+        Key(GREY, "bare", Phrase("substructure {}", bases.substructure + 1)),
         Key(GREY, "bare", "modes of the search" if bases.is_left else news(modes)),
     )
     return Drawing(x, UP, _curves(modes.positions, modes.space_modes, modes), keys=keys)
@@ -52,8 +53,9 @@ def draw_time(scene: Scene, _kept: None) -> Drawing | None:
 
 def news(modes: ShownModes) -> str:
     """Say in words what the iteration did to the basis, in a form whose length hardly changes."""
-    counted = "1 mode" if modes.record.modes == 1 else f"{modes.record.modes} modes"
-    return f"{counted}, {modes.record.added} added, {modes.lost} dropped"
+    record, said = modes.record, "{} modes, {} added, {} dropped"
+    said = "{} mode, {} added, {} dropped" if record.modes == 1 else said
+    return Phrase(said, record.modes, record.added, modes.lost)
 
 
 def _curves(along: np.ndarray, lines: Any, modes: ShownModes) -> list[Curve]:

@@ -34,6 +34,7 @@ from app.views.scene import Scene
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
 from solver.scenes import behind
+from solver.scenes.words import Phrase, joined
 from solver.settings import Settings
 
 MARGIN = 6.0
@@ -97,7 +98,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
         words=acting.words(posed, box),
         contacts=posed.contacts(scene.run.stand.interfaces),
         handles=_handles(posed, portrait, arrows, scene.run.settings),
-        sentence=f"{scene.run.stand.words} {SLIP}",
+        sentence=joined(" ", (scene.run.stand.words, SLIP)),
         keys=(*_keys(posed, last + 1), *ghosts),
         kept=scale,
     )
@@ -208,10 +209,12 @@ def _handles(
 
 def _keys(posed: Posed, parts: int) -> tuple[Key, ...]:
     keys = [Key(color, "square", text) for _, color, text in _statuses(posed)]
-    keys.append(Key(GREY, "bare", f"displacement × {posed.factor:g}"))
+    keys.append(Key(GREY, "bare", Phrase("displacement × {}", f"{posed.factor:g}")))
     if posed.is_long:
         keys.append(Key(GREY, "bare", "thickness not to scale"))
-    return (Key(GREY, "strip", f"{parts} substructures"), *keys) if parts > 1 else tuple(keys)
+    return (
+        (Key(GREY, "strip", Phrase("{} substructures", parts)), *keys) if parts > 1 else tuple(keys)
+    )
 
 
 VIEW = View(

@@ -10,6 +10,7 @@ from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, instant_of
+from solver.scenes.words import Phrase
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,9 @@ class Scene:
     def ghost_name(self) -> str:
         """What it is compared with is called where fields are drawn, with their iteration."""
         before = self.before
-        return f"{self.other}, {before.called(before.shown) if before else 'iteration 0'}"
+        return Phrase(
+            "{}, {}", self.other, before.called(before.shown) if before else "iteration 0"
+        )
 
     @property
     def length(self) -> float:

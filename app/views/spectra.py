@@ -11,6 +11,7 @@ from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, View, has_ins
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned
 from app.views.scene import Scene
+from solver.scenes.words import Phrase
 
 FLOOR = 1e-8
 LEAST = 1e-30
@@ -41,7 +42,7 @@ def draw(scene: Scene, _kept: None) -> Drawing:
         own, more = bases.values
         marks = (_sizes(more, CROSS), _sizes(own, RING))
         keys = (
-            Key(VERMILION, "ring", f"PGD, sub. {bases.substructure + 1}"),
+            Key(VERMILION, "ring", Phrase("PGD, sub. {}", bases.substructure + 1)),
             Key(GREY, "cross", "its field"),
         )
     low, _ = decades([*scaled.ravel(), *more], FLOOR)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.languages.language import Language
 from app.picture.glossary import explained
 from app.picture.labels import FEW, changes_of, label_of
 from app.picture.recording import Recording
@@ -21,6 +22,7 @@ from app.views.scene import Scene
 from app.worker.words import UNKNOWN, number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED
+from solver.scenes.words import Phrase
 from solver.study.finished import FinishedRun
 
 NONE_YET = "no iteration done by then"
@@ -37,17 +39,18 @@ def key_figures(scene: Scene) -> str:
     Errors are those beside a reference; where there is none, they are left out.
     """
     run, before, iteration = scene.run, scene.before, scene.frame.iteration
+    say = scene.look.say
     rows = [_Row("this run", _cells(run, iteration))]
     if before is not None and scene.is_paired:
         rows = _paired(run, before, iteration)
     elif before is not None:
-        name = f"run before ({escape(before.title)})"
+        name = Phrase("run before ({})", escape(before.title))
         rows.append(_Row(name, _cells(before, before.iteration)))
     shown = [name for name in FIGURES if has_reference(run.settings) or name not in ERRORS]
-    head = "".join(f"<th>{explained(name)}</th>" for name in shown)
+    head = "".join(f"<th>{explained(say(name), say=say)}</th>" for name in shown)
     body = "".join(
-        f'<tr><th title="{row.whole or row.name}" aria-label="{row.whole or row.name}">{row.name}'
-        f"</th>{_row(row.cells, shown)}</tr>"
+        f'<tr><th title="{say(row.whole or row.name)}" aria-label="{say(row.whole or row.name)}">'
+        f"{say(row.name)}</th>{_row(row.cells, shown, say)}</tr>"
         for row in rows
     )
     kind = "method paired" if scene.is_paired else "method"
@@ -60,12 +63,12 @@ def _of_the_thing(scene: Scene) -> str:
     lines = [(scene.run, scene.frame, scene.frame.iteration)]
     if scene.is_paired and scene.before is not None and scene.shadow is not None:
         lines.append((scene.before, scene.shadow, scene.before.shown))
-    found = []
+    found, say = [], scene.look.say
     for name, (run, frame, iteration) in zip("BA", lines, strict=False):
-        said = [f"{title} <b>{value}</b>" for title, value in thing(run, frame).items()]
+        said = [f"{say(title)} <b>{value}</b>" for title, value in thing(run, frame).items()]
         said = [f"<b>{name}</b>", *said] if scene.is_paired else said
-        how = f'<span class="how">{_in_short(run, iteration)}</span>'
-        words = "".join(f"<span>{explained(one)}</span>" for one in said)
+        how = f'<span class="how">{say(_in_short(run, iteration))}</span>'
+        words = "".join(f"<span>{explained(one, say=say)}</span>" for one in said)
         found.append(f'<div class="thing">{words}{how}</div>')
     return "".join(found)
 
@@ -109,16 +112,16 @@ def _in_short(run: Recording, iteration: int) -> str:
     if now is None:
         return UNKNOWN
     done = min(iteration, run.searched)
-    counted = "iteration" if done == 1 else "iterations"
+    counted = "{} iteration, {} wrong, {} s" if done == 1 else "{} iterations, {} wrong, {} s"
     error = now["error_force"] if math.isfinite(now["error_force"]) else now["estimated_error"]
     wrong = "0 %" if error < NONE else percent(error)
-    return f"{done} {counted}, {wrong} wrong, {now['seconds']:.2g} s"
+    return Phrase(counted, done, wrong, f"{now['seconds']:.2g}")
 
 
-def _row(cells: Mapping[str, str], shown: Sequence[str]) -> str:
+def _row(cells: Mapping[str, str], shown: Sequence[str], say: Language) -> str:
     if not cells:
-        return f'<td colspan="{len(shown)}">{NONE_YET}</td>'
-    return "".join(f"<td>{cells[name]}</td>" for name in shown)
+        return f'<td colspan="{len(shown)}">{say(NONE_YET)}</td>'
+    return "".join(f"<td>{say(cells[name])}</td>" for name in shown)
 
 
 class _Row(NamedTuple):

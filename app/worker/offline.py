@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from html import escape
 from pathlib import Path
 
+from app.languages.language import Language
 from app.views.drawing import View
 from app.views.scene import Scene
 from app.worker.painter import Painter, caption, seen
@@ -22,7 +23,7 @@ APP = Path(__file__).resolve().parents[1]
 STYLE = APP.parent / "static" / "style.css"
 PROGRAMS = APP / "components" / "unpacked.js", APP / "worker" / "offline.js"
 PAGE = """<!DOCTYPE html>
-<html lang="en">
+<html lang="{lang}">
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Slipfront: {name}</title>
@@ -48,12 +49,12 @@ abbr {{ text-decoration: none; }}
 {library}
 <h1>{name}</h1>
 <p id="status"></p>
-<label class="time">Instant <input type="range" min="0" max="{last}" value="{at}" step="1">
+<label class="time">{instant} <input type="range" min="0" max="{last}" value="{at}" step="1">
 <span id="caption"></span></label>
 <div class="plots">{cards}</div>
 <div id="figures"></div>
-<p>Numbers, as CSV: {tables}.</p>
-<details><summary>All settings</summary><pre>{settings}</pre></details>
+<p>{numbers} {tables}.</p>
+<details><summary>{all_settings}</summary><pre>{settings}</pre></details>
 {figures}
 <script type="module">
 const run = {run}
@@ -83,9 +84,9 @@ def offline_page(
 
     from app.views.figures import make_figure
 
-    settings, look = looked_at.run.settings, looked_at.look
+    settings, look, say = looked_at.run.settings, looked_at.look, looked_at.look.say
     views = seen(settings, look)
-    figures = [make_figure(view) for view in views]
+    figures = [make_figure(view, say) for view in views]
     for figure in figures:
         # What stands above a plot is a part of this page.
         figure.tags = [one for one in figure.tags if not one.name.endswith(".title")]
@@ -93,11 +94,12 @@ def offline_page(
     painter, pictures, words = Painter(), [], []
     for scene, said in scenes:
         pictures.append(b64encode(painter.plots(scene)).decode())
-        words.append({**said, "caption": escape(caption(scene))})
+        words.append({**said, "caption": escape(say(caption(scene)))})
     library = Resources(mode="inline", components=["bokeh"]).js_raw
     run = json.dumps({"pictures": pictures, "words": words})
     return PAGE.format(
-        name=escape(looked_at.run.settings.scene),
+        **_said(say),
+        name=escape(say(settings.scene)),
         style=STYLE.read_text(encoding="utf-8"),
         library="\n".join(f"<script>{text}</script>" for text in library),
         last=len(pictures) - 1,
@@ -112,6 +114,12 @@ def offline_page(
     )
 
 
+def _said(say: Language) -> dict[str, str]:
+    """Give the words of the page in a language, which is one of them."""
+    texts = {"instant": "Instant", "numbers": "Numbers, as CSV:", "all_settings": "All settings"}
+    return {"lang": say.name, **{name: say(text) for name, text in texts.items()}}
+
+
 def _card(view: View, place: str) -> str:
     wide = " wide" if view.plot.equal else ""
     title = f'<div class="title" id="{view.slug}.title"></div>'
@@ -122,4 +130,4 @@ def _link(what: str, scene: Scene) -> str:
     """Write a link to a table that the page has in it."""
     text = b64encode(table(what, scene).encode()).decode()
     name = f"slipfront-{scene.run.settings.scene}-{what}.csv"
-    return f'<a download="{name}" href="data:text/csv;base64,{text}">{what}</a>'
+    return f'<a download="{name}" href="data:text/csv;base64,{text}">{scene.look.say(what)}</a>'

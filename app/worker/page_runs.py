@@ -28,6 +28,7 @@ from app.worker.twin import Twin
 from app.worker.words import before_a_run, before_it_is_agreed, status_line
 from solver.latin import Iterate
 from solver.refusal import RefusedError
+from solver.scenes.words import Phrase
 
 PAST_RUNS = 6
 
@@ -117,12 +118,13 @@ class PageRuns:
         run = WorkerRun(order, self._look, self._urgent, self._references, previous)
         if run.cost.is_to_be_agreed and not order.is_agreed:
             words = before_it_is_agreed(run.cost, has_run=self._before is not None)
-            block = self._painter.say({"status": words})
+            block = self._painter.say({"status": self._look.say(words)})
             self._send(Picture(order.ticket, Facts(is_broken=True, asks=True), block))
             return
         self._run = run
         if self._run.cost.is_large and not order.follows_hand:
-            self._send(File(self._painter.say({"status": before_a_run(self._run.cost)})))
+            words = self._look.say(before_a_run(self._run.cost))
+            self._send(File(self._painter.say({"status": words})))
         self._pair(order)
         settings, before = self._run.recording.settings, self._before
         # Runs of another scene are nothing to compare with.
@@ -257,7 +259,8 @@ class PageRuns:
             self._run = None
             if not isinstance(problem, RefusedError | FloatingPointError):
                 _log.exception("A run broke.")
-            block = self._painter.say({"status": f"<b>{escape(_sentence(problem))}</b>"})
+            said = self._look.say(Phrase("<b>{}</b>", escape(_sentence(problem))))
+            block = self._painter.say({"status": said})
             self._send(Picture(ticket, Facts(is_broken=True), block))
 
 

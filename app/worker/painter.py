@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from app.languages.language import Language
+from app.picture.glossary import ENGLISH
 from app.picture.shown import Look
 from app.views.catalogue import fitting
 from app.views.colors import VERMILION
@@ -20,6 +22,7 @@ from app.wire.block import Attributes, Packer, Quads
 from app.wire.reports import Facts
 from app.worker.readings import values
 from app.worker.telling import told
+from solver.scenes.words import Phrase
 from solver.settings import Settings
 
 TAKE_AWAY, PLOTS = "take-away", "plots"
@@ -37,13 +40,14 @@ class Painter:
 
     def paint(self, scene: Scene, words: Mapping[str, str], facts: Facts) -> bytes:
         """Draw every view that is seen; give what has changed of the page."""
-        seen_now, said = {"caption": caption(scene)}, []
-        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, **sliders(facts)}
+        say = scene.look.say
+        seen_now, said = {"caption": say(caption(scene))}, []
+        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, **sliders(facts, say)}
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
         for view, drawing in self._drawings(scene):
-            said.append([view.slug, told(view, drawing)])
-            models.update(parts(view, drawing))
+            said.append([view.slug, say(told(view, drawing))])
+            models.update(parts(view, drawing, say))
         models[PLOTS] = {"said": said, "bathtub": bathtub(scene), **seen_now}
         return self.say(words, models)
 
@@ -51,7 +55,7 @@ class Painter:
         """Draw every view that is seen; give what has changed of the plots alone."""
         models: dict[str, Attributes] = {}
         for view, drawing in self._drawings(scene):
-            models.update(parts(view, drawing))
+            models.update(parts(view, drawing, scene.look.say))
         return self.packer.pack(models)
 
     def _drawings(self, scene: Scene) -> Iterator[tuple[View, Drawing]]:
@@ -79,13 +83,14 @@ def bathtub(scene: Scene) -> list[Any]:
 def caption(scene: Scene) -> str:
     """Say of which moment of which run a picture is."""
     time, settings = scene.run.stand.instants[scene.instant], scene.run.settings
-    return f"{settings.scene}, t = {time:.3g} s, {scene.run.called(scene.frame.iteration)}"
+    called = scene.run.called(scene.frame.iteration)
+    return Phrase("{}, t = {} s, {}", settings.scene, f"{time:.3g}", called)
 
 
-def sliders(facts: Facts) -> dict[str, Attributes]:
+def sliders(facts: Facts, say: Language = ENGLISH) -> dict[str, Attributes]:
     """Give where the sliders over iterations and instants stand, and what they say."""
     at, done, searched = facts.iteration, max(facts.done, 1), max(facts.searched, 1)
-    said = f"{at} of {searched}" if at <= searched else "answer"
+    said = say(Phrase("{} of {}", at, searched) if at <= searched else "answer")
     last, time = max(facts.instants - 1, 1), f"t = {facts.time:.3g} s"
     return {
         ITERATION: {"end": max(done, 2), "shown": at, "text": said},
@@ -106,17 +111,17 @@ def marked(view: View, drawing: Drawing, place: float | None) -> Drawing:
     return replace(drawing, curves=[*drawing.curves, mark])
 
 
-def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
+def parts(view: View, drawing: Drawing, say: Language = ENGLISH) -> dict[str, Attributes]:
     """Give what the models of a view's figure are set to, by their names."""
     found: dict[str, Attributes] = {
-        "title": {"text": card_title(view.name, drawing.keys, drawing.sentence)}
+        "title": {"text": card_title(view.name, drawing.keys, drawing.sentence, say)}
     }
     for name, axis in (("x", drawing.x), ("y", drawing.y)):
-        found.update(_axis(name, axis))
+        found.update(_axis(name, axis, say))
     found["curves"] = _curves(drawing)
     if view.plot.words:
         found["curves"] = {**found["curves"], **_shifts(drawing.curves)}
-        found["words"] = _words(drawing)
+        found["words"] = _words(drawing, say)
     if view.plot.is_touched:
         found["handles"], found["contacts"] = _handles(drawing), _contacts(drawing)
     for kind in view.plot.marks:
@@ -128,16 +133,16 @@ def parts(view: View, drawing: Drawing) -> dict[str, Attributes]:
     if drawing.colors is not None:
         found["colors"] = {"low": drawing.colors.low, "high": drawing.colors.high}
         if drawing.colors.title is not None:
-            found["color-bar"] = {"title": drawing.colors.title}
+            found["color-bar"] = {"title": say(drawing.colors.title)}
     return {f"{view.slug}.{name}": attributes for name, attributes in found.items()}
 
 
-def _axis(name: str, axis: Axis | None) -> Iterator[tuple[str, Attributes]]:
+def _axis(name: str, axis: Axis | None, say: Language) -> Iterator[tuple[str, Attributes]]:
     if axis is None:
         return
     yield name, {"start": axis.low, "end": axis.high}
     if axis.label is not None:
-        yield f"{name}-axis", {"axis_label": axis.label}
+        yield f"{name}-axis", {"axis_label": say(axis.label)}
     if axis.ticks is not None:
         yield f"{name}-ticks", {"ticks": list(axis.ticks)}
 
@@ -163,11 +168,12 @@ def _columns(marks: Sequence[Any], *names: str) -> Attributes:
     return {name: [getattr(mark, name) for mark in marks] for name in names}
 
 
-def _words(drawing: Drawing) -> Attributes:
+def _words(drawing: Drawing, say: Language) -> Attributes:
     places = _columns(drawing.words, "x", "y", "dx", "dy")
     return {
         **{name: np.array(values, float) for name, values in places.items()},
-        **_columns(drawing.words, "text", "across", "up"),
+        "text": [say(word.text) for word in drawing.words],
+        **_columns(drawing.words, "across", "up"),
     }
 
 

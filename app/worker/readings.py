@@ -9,6 +9,7 @@ from app.views.scene import Scene
 from app.worker.words import number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED
+from solver.scenes.words import Phrase
 from solver.study.finished import FinishedRun
 from solver.study.quantities import reading
 from solver.study.quantity import Quantity
@@ -36,7 +37,8 @@ def values(scene: Scene) -> list[tuple[str, str]]:
         asked = reading(name)
         value = asked(so_far)
         known = is_final or math.isfinite(value)
-        found.append((name, written(value, asked.quantity, iterate.number) if known else OPEN))
+        text = written(value, asked.quantity, iterate.number) if known else OPEN
+        found.append((name, scene.look.say(text)))
     return found
 
 
@@ -46,7 +48,7 @@ def written(value: float, quantity: Quantity, done: int) -> str:
         return NONE
     if math.isinf(value):
         # All that is counted and may never come are iterations.
-        return "not reached" if quantity.unit else f"more than {done}"
+        return "not reached" if quantity.unit else Phrase("more than {}", done)
     if quantity.is_share:
         return percent(value)
     return measured(value, quantity.unit) if quantity.unit else number(value)

@@ -7,6 +7,7 @@ import numpy as np
 from app.views.drawing import Axis, Curve, Drawing, View
 from app.views.legend import Key
 from solver.arrays import Array
+from solver.scenes.words import Phrase, joined
 
 LINES = "line", "dashed", "dotted", "band"
 """Marks of keys that stand for curves."""
@@ -17,27 +18,30 @@ def told(view: View, drawing: Drawing) -> str:
     plot, keys = view.plot, drawing.keys
     if plot.words:
         shown = [*(word.text for word in drawing.words), *(key.text for key in keys)]
-        return f"{drawing.sentence} {', '.join(filter(None, shown))}.".strip()
+        return joined(" ", (drawing.sentence, Phrase("{}.", joined(", ", [*filter(None, shown)]))))
     if drawing.image is not None and not plot.scale:
-        return f"{_axes(view, drawing)}: {_shares(drawing)}."
+        return Phrase("{}: {}.", _axes(view, drawing), _shares(drawing))
     if drawing.colors is not None and (drawing.image is not None or drawing.bodies is not None):
         title = drawing.colors.title or plot.scale
-        return f"{title} from {drawing.colors.low:.3g} to {drawing.colors.high:.3g}, as colours."
+        ends = f"{drawing.colors.low:.3g}", f"{drawing.colors.high:.3g}"
+        return Phrase("{} from {} to {}, as colours.", title, *ends)
     named = [(key.text, _curve_of(key, drawing)) for key in keys if key.mark in LINES]
     is_history = "y" in plot.logarithmic
-    spans = [
-        f"{name} {_span(name, curve, is_history)}"
+    spans: list[str] = [
+        joined(" ", (name, _span(name, curve, is_history)))
         for name, curve in named
         if curve is not None and not _is_rule(curve, drawing)
     ]
     if not spans and drawing.curves:
         whole = np.concatenate([np.asarray(one.y, dtype=float).ravel() for one in drawing.curves])
         spans = [_span("", Curve((), whole, ""), is_history=False)]
-    return f"{_axes(view, drawing)}: {'; '.join(spans)}." if spans else ""
+    return Phrase("{}: {}.", _axes(view, drawing), joined("; ", spans)) if spans else ""
 
 
 def _axes(view: View, drawing: Drawing) -> str:
-    return f"{_label(drawing.y, view.plot.y_label)} over {_label(drawing.x, view.plot.x_label)}"
+    return Phrase(
+        "{} over {}", _label(drawing.y, view.plot.y_label), _label(drawing.x, view.plot.x_label)
+    )
 
 
 def _label(axis: Axis | None, label: str) -> str:
@@ -72,10 +76,10 @@ def _span(name: str, curve: Curve, is_history: bool) -> str:
     if not len(values):
         return "not known yet"
     if is_history:
-        return f"from {values[0]:.2g} to {values[-1]:.2g}"
+        return Phrase("from {} to {}", f"{values[0]:.2g}", f"{values[-1]:.2g}")
     values = np.abs(values) if name.startswith("±") else values
     low, high = values.min() + 0.0, values.max() + 0.0
-    return f"from {low:.3g} to {high:.3g}" if high > low else f"{low:.3g}"
+    return Phrase("from {} to {}", f"{low:.3g}", f"{high:.3g}") if high > low else f"{low:.3g}"
 
 
 def _shares(drawing: Drawing) -> str:
@@ -83,4 +87,4 @@ def _shares(drawing: Drawing) -> str:
     values = drawing.image.values
     names = [key.text for key in drawing.keys if key.mark == "square"]
     shares = [(name, 100.0 * np.mean(values == place)) for place, name in enumerate(names)]
-    return ", ".join(f"{name} {share:.0f} %" for name, share in shares)
+    return joined(", ", [Phrase("{} {} %", name, f"{share:.0f}") for name, share in shares])

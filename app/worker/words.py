@@ -13,6 +13,7 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost
+from solver.scenes.words import Phrase, joined
 
 ENDINGS = {
     Ending.CONVERGED: "✓ converged",
@@ -21,6 +22,12 @@ ENDINGS = {
     Ending.CANCELLED: "■ stopped",
     Ending.DIVERGED: "✗ diverged",
 }
+SOLVED = {
+    "✓ converged": "✓ solved",
+    "■ not converged": "■ not solved",
+    "■ not converged, stalled": "■ not solved, stalled",
+}
+"""What these are in the line that everybody reads."""
 DETAIL = '<span class="asks" tabindex="0">details<span class="detail">{}</span></span>'
 """What is shown to a pointer, the focus, or a tap."""
 STATES = {
@@ -40,6 +47,7 @@ CHANGES = {
     "touch": "{} touch: the bodies would overlap",
 }
 """Of points at instants, by what became of them."""
+PROOF = ": the answer is certified"
 PAUSED = "Run goes on, Step does one iteration."
 REPLAYED = "The run had ended, and begins anew."
 NOTHING_ACTS = "Nothing acts here, so nothing moves: give a load, or move a side or an end."
@@ -48,16 +56,18 @@ UNKNOWN = "–"
 
 def before_a_run(cost: RunCost) -> str:
     """Say what a long or large run will take, until its first picture comes (HTML)."""
-    return f"<b>starting</b>: this will take about {cost}"
+    return Phrase("<b>starting</b>: this will take about {}", str(cost))
 
 
 def before_it_is_agreed(cost: RunCost, *, has_run: bool) -> str:
     """Say that a run has not begun, and how it does (HTML)."""
-    beside = " Until then all plots and numbers are of the run before." if has_run else ""
-    return (
-        f"<b>not begun</b>: this would take about {cost}.<br><b>Run anyway</b>, or choose fewer "
-        f"elements, instants or bodies.{beside}"
+    asked = Phrase(
+        "<b>not begun</b>: this would take about {}.<br><b>Run anyway</b>, or choose fewer "
+        "elements, instants or bodies.",
+        str(cost),
     )
+    beside = "Until then all plots and numbers are of the run before."
+    return joined(" ", (asked, beside)) if has_run else asked
 
 
 def status_line(
@@ -75,9 +85,9 @@ def status_line(
     done = run.searched or frame.iteration
     line = _state(run, frame, state, done)
     if sought is not None:
-        line += f" · <b>showing {run.called(sought)}</b>"
+        line = Phrase("{} · <b>showing {}</b>", line, run.called(sought))
     more = [f"<b>{escape(complaint)}</b>"] if complaint else []
-    more += [f"<b>{escape(run.notice)}</b>"] if run.notice else []
+    more += [Phrase("<b>{}</b>", escape(run.notice))] if run.notice else []
     detail = [_detail(run, frame)]
     detail += [start_line(run)] if run.is_warm else []
     if run.status is not None:
@@ -89,59 +99,63 @@ def status_line(
     if frame.changes is not None:
         more.append(changed_since(frame.changes[0]))
     if run.status is None and more:
-        line += "."
-    whole = f"{' '.join([line, *more])} {DETAIL.format('<br>'.join(detail))}"
-    return explained(whole, COUNTED)
+        line = Phrase("{}.", line)
+    say, details = frame.look.say, Phrase(DETAIL, joined("<br>", detail))
+    return explained(say(joined(" ", [line, *more, details])), COUNTED, say)
 
 
 def changed_since(counts: Mapping[str, int]) -> str:
     """Say how many points, instant by instant, have changed their status, and why."""
-    said = [words.format(counts[name]) for name, words in CHANGES.items() if name in counts]
-    return f"Since the iterate before, of points and instants: {'; '.join(said) or 'none changed'}."
+    said = [Phrase(words, counts[name]) for name, words in CHANGES.items() if name in counts]
+    changed = joined("; ", said) if said else "none changed"
+    return Phrase("Since the iterate before, of points and instants: {}.", changed)
 
 
 def _state(run: Recording, frame: Frame, state: str, done: int) -> str:
     """Say in plain words what a run is at, or what it came to."""
-    counted = "iteration" if done == 1 else "iterations"
     if state == "by hand":
         ending = ENDINGS[run.status.ending] if run.status else "running"
-        return f"<b>follows the slider</b>, {ending} at iteration {done}"
+        return Phrase("<b>follows the slider</b>, {} at iteration {}", ending, done)
     if run.status is None:
-        return STATES[state].format(done)
+        return Phrase(STATES[state], done)
     ending = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending]
-    proof = ": the answer is certified" if frame.iterate.residual is not None else ""
-    ending = ending.replace("converged", "solved")
-    return f"<b>{ending}</b> after {done} {counted}{proof}."
+    is_proven = frame.iterate.residual is not None
+    ending = SOLVED.get(ending, ending)
+    ended = "<b>{}</b> after {} iteration" if done == 1 else "<b>{}</b> after {} iterations"
+    return Phrase("{}{}.", Phrase(ended, ending, done), PROOF if is_proven else "")
 
 
 def _detail(run: Recording, frame: Frame) -> str:
     """Give what the method says of itself."""
     settings, parts = run.settings.values(), run.settings.n_substructures
-    scale = "multiscale" if settings["multiscale"] else "monoscale"
+    cut = "{} substructures, multiscale"
+    cut = cut if settings["multiscale"] else "{} substructures, monoscale"
     ended = AT_REST if run.stand.is_idle else ENDINGS[run.status.ending] if run.status else ""
     found = [ended if run.status else AT_WORK]
-    found.append("one substructure" if parts == 1 else f"{parts} substructures, {scale}")
+    found.append("one substructure" if parts == 1 else Phrase(cut, parts))
     if (bases := frame.bases) is not None:
-        counted = "1 mode" if bases.largest == 1 else f"up to {bases.largest} modes"
-        found.append(f"{counted} a substructure, {bases.found.stored} in all")
+        counted = "1 mode" if bases.largest == 1 else Phrase("up to {} modes", bases.largest)
+        found.append(Phrase("{} a substructure, {} in all", counted, bases.found.stored))
     if (last := run.last) is not None:
         found.append(f"η = {number(last.indicator)}")
         if math.isfinite(last.error_force):
-            found.append(f"friction force error {percent(last.error_force)}")
-        found.append(f"{1e3 * per_iteration(run):.2f} ms per iteration")
-    return " · ".join(found)
+            found.append(Phrase("friction force error {}", percent(last.error_force)))
+        found.append(Phrase("{} ms per iteration", f"{1e3 * per_iteration(run):.2f}"))
+    return joined(" · ", found)
 
 
 def start_line(run: Recording) -> str:
     """Say from where a run started that could have started from the one before it (HTML)."""
     own = "a coarser mesh" if run.settings.start == "nested" else "zero"
     if run.choice is None:
-        return f"Started from {own}, as there was no run before to start from."
+        return Phrase("Started from {}, as there was no run before to start from.", own)
     previous, other = number(run.choice.previous), number(run.choice.own)
-    figures = f"after one iteration its k-free indicator is {previous}; from {own} it is {other}"
+    figures = Phrase(
+        "after one iteration its k-free indicator is {}; from {} it is {}", previous, own, other
+    )
     if run.choice.is_previous:
-        return f"Started from the run before: {figures}."
-    return f"Started from {own}. The run before is not clearly nearer: {figures}."
+        return Phrase("Started from the run before: {}.", figures)
+    return Phrase("Started from {}. The run before is not clearly nearer: {}.", own, figures)
 
 
 def per_iteration(run: Recording) -> float:

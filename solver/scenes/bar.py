@@ -16,7 +16,7 @@ from solver.loads import PRESETS, interpolate
 from solver.reference.closed_form import closed_form
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.words import acting, material, sentence
+from solver.scenes.words import Phrase, Sentence, acting, is_steel
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -228,14 +228,16 @@ def bar(settings: BarSettings) -> Rods:
 def _words(settings: BarSettings) -> str:
     bound = bar(settings).bound
     table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-    ends = f"its right end is {acting(settings.path('load'), 'pulled', 'pushed')}"
+    ends = Phrase("its right end is {}", acting(settings.path("load"), "pulled", "pushed"))
     if settings.support_displacement:
         left = acting(settings.path("support_load"), "moved", "moved back")
-        ends += f", and its left end is {left}"
+        ends = Phrase("{}, and its left end is {}", ends, left)
     if settings.body_force:
-        ends += f"; all along it is {acting(settings.path('body_load'), 'pulled', 'pushed')}"
+        along = acting(settings.path("body_load"), "pulled", "pushed")
+        ends = Phrase("{}; all along it is {}", ends, along)
     held = "" if settings.support_displacement else ", held at its left end"
-    return sentence(f"{material(settings.young)} bar lies on a {table} table{held}; {ends}")
+    body = "a steel bar" if is_steel(settings.young) else "an elastic bar"
+    return Sentence("{} lies on a {} table{}; {}", body, table, held, ends)
 
 
 def _section(settings: BarSettings) -> tuple[float, Array | None]:

@@ -17,9 +17,10 @@ from solver.loads import PRESETS, interpolate
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.sides import AT_REST, LOADED_SIDES, SideSettings
-from solver.scenes.words import acting, listed, material, sentence
+from solver.scenes.words import Phrase, Sentence, acting, is_steel, listed
 
 GAPS = ("flat", "parabola")
+AT = {"left": "{} at its left", "right": "{} at its right", "top": "{} at its top"}
 
 
 class BlockSettings(SideSettings):
@@ -142,7 +143,7 @@ def _gap(settings: BlockSettings, x: Array) -> Array:
 def _words(settings: BlockSettings) -> str:
     support = {"flat": "flat", "parabola": "round"}.get(str(settings.gap), "uneven")
     rough = "rough" if settings.friction else "smooth"
-    acts = []
+    acts: list[str] = []
     for side in LOADED_SIDES:
         if getattr(settings, side) in AT_REST:
             continue
@@ -150,14 +151,14 @@ def _words(settings: BlockSettings) -> str:
         along = settings.path(f"{side}_tangential_load")
         own = [acting(inward, "pressed", "pulled")] if inward.any() else []
         own += [acting(along, "moved", "moved back")] if along.any() else []
-        acts += [f"{' and '.join(own)} at its {side}"] if own else []
+        acts += [Phrase(AT[side], listed(own))] if own else []
     if _body_force(settings) is not None:
         acts.append("loaded all through")
     held = [side for side in LOADED_SIDES if getattr(settings, side) == "clamped"]
-    acts += [f"held at its {side}" for side in held]
+    acts += [Phrase(AT[side], "held") for side in held]
     does = listed(acts) if acts else "left alone"
-    block = f"{material(settings.young)} block lies on a {support} {rough} support"
-    return sentence(f"{block}; it is {does}")
+    block = "a steel block" if is_steel(settings.young) else "an elastic block"
+    return Sentence("{} lies on a {} {} support; it is {}", block, support, rough, does)
 
 
 def _body_force(settings: BlockSettings) -> Array | None:

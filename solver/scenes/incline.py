@@ -19,7 +19,7 @@ from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting, sentence
+from solver.scenes.words import Sentence, acting
 
 
 class InclineSettings(PlaneSettings):
@@ -134,10 +134,10 @@ def incline(settings: InclineSettings) -> Stack:
 
 def _words(settings: InclineSettings) -> str:
     slope = settings.path("slope_load")
-    moves = acting(slope, "rises", "falls", "and falls").replace("and let go", "and falls")
+    moves = acting(slope, "rises", "falls", "rises and falls", "rises and falls")
     rough = "rough" if settings.friction else "smooth"
-    slides = "a spring catches it when it slides down"
-    return sentence(f"a block lies on a {rough} slope that {moves}; {slides}")
+    what = "a block lies on a {} slope that {}; a spring catches it when it slides down"
+    return Sentence(what, rough, moves)
 
 
 INCLINE = Entry(

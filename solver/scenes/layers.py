@@ -14,7 +14,7 @@ from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import acting, counted, material, sentence
+from solver.scenes.words import Phrase, Sentence, acting, counted, is_steel
 
 
 class LayersSettings(PlaneSettings):
@@ -179,13 +179,14 @@ def layers(settings: LayersSettings) -> Stack:
 
 
 def _words(settings: LayersSettings) -> str:
-    stuff = material(settings.young).partition(" ")[2]
-    layers = f"{counted(settings.layers, f'{stuff} layer')}, held at the left"
+    what = "{} steel layers" if is_steel(settings.young) else "{} elastic layers"
+    layers = counted(settings.layers, what)
     pressed = "are pressed together and rub" if settings.pressure else "lie on each other"
     bent, pull = settings.path("bend_load"), settings.path("pull_load")
-    ends = acting(bent, "bent up", "bent down", "and down")
-    ends += f", and {acting(pull, 'pulled', 'pushed')}" if pull.any() else ""
-    return sentence(f"{layers}, {pressed}; the right end is {ends}")
+    ends = acting(bent, "bent up", "bent down", "bent up and down")
+    if pull.any():
+        ends = Phrase("{}, and {}", ends, acting(pull, "pulled", "pushed"))
+    return Sentence("{}, held at the left, {}; the right end is {}", layers, pressed, ends)
 
 
 LAYERS = Entry(

@@ -16,7 +16,7 @@ from solver.loads import PULLS
 from solver.reference.broken_wire import broken_wire
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.words import acting, counted, material, sentence
+from solver.scenes.words import Phrase, Sentence, acting, counted, is_steel
 
 
 class StrandSettings(SceneSettings):
@@ -213,12 +213,12 @@ def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
 
 
 def _words(settings: StrandSettings) -> str:
-    stuff = material(settings.young).partition(" ")[2]
-    broken = f", number {settings.broken} broken," if settings.broken else ""
-    wires = f"{counted(settings.wires, f'{stuff} wire')}{broken} rub on each other"
+    what = "{} steel wires" if is_steel(settings.young) else "{} elastic wires"
+    broken = Phrase(", number {} broken,", settings.broken) if settings.broken else ""
+    wires = Phrase("{}{} rub on each other", counted(settings.wires, what), broken)
     pulled = acting(settings.path("load"), "pulled", "pushed")
     grip = " by one grip" if settings.grip == "displacement" else ""
-    return sentence(f"{wires}; their right ends are {pulled}{grip}")
+    return Sentence("{}; their right ends are {}{}", wires, pulled, grip)
 
 
 def _coarser(settings: StrandSettings) -> Iterator[Problem]:

@@ -1,8 +1,12 @@
-"""Words that sentences about scenes share: how something acts over time, how many there are."""
+"""Words that sentences about scenes share: how something acts over time, how many there are.
+
+A sentence is English, and knows what it was made of (`Phrase`): a page may say it in other words.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -27,39 +31,86 @@ AGAIN = 2
 """Times that a load comes and goes from which it does so again and again."""
 
 
-def counted(number: int, what: str) -> str:
-    """Write how many there are of what is called so in the singular."""
-    word = NUMBERS[number] if number < len(NUMBERS) else str(number)
-    return f"{word} {what}" if number == 1 else f"{word} {what}s"
+TO_AND_FRO, LET_GO = "{} to and fro", "{} and let go"
 
 
-def acting(path: Array, forward: str, backward: str, both: str = "to and fro") -> str:
-    """Say what is done over time by a load: forward where it is positive, backward, or both."""
+class Phrase(str):
+    """A text with what it was made of: a template, as of `str.format`, and what stands in it."""
+
+    __slots__ = ("parts", "template")
+    template: str
+    parts: tuple[Any, ...]
+
+    def __new__(cls, template: str, *parts: Any) -> Phrase:
+        """Put the parts in their places."""
+        made = super().__new__(cls, cls.written(template, parts))
+        made.template, made.parts = template, parts
+        return made
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        """Give what a copy is made of."""
+        return self.template, *self.parts
+
+    @staticmethod
+    def written(template: str, parts: Iterable[Any]) -> str:
+        """Write a template with these parts."""
+        return template.format(*parts)
+
+    def anew(self, say: Callable[[str], str]) -> str:
+        """Say it with another template and other parts."""
+        parts = [say(part) if isinstance(part, str) else part for part in self.parts]
+        return self.written(say(self.template), parts)
+
+
+class Sentence(Phrase):
+    """What begins with a capital, and ends with a full stop."""
+
+    __slots__ = ()
+
+    @staticmethod
+    def written(template: str, parts: Iterable[Any]) -> str:
+        """Write a template with these parts."""
+        text = template.format(*parts)
+        return f"{text[0].upper()}{text[1:]}."
+
+
+def joined(between: str, parts: Sequence[str]) -> Phrase:
+    """Put texts behind each other."""
+    return Phrase(between.join(["{}"] * len(parts)), *parts)
+
+
+def counted(number: int, what: str) -> Phrase:
+    """Say how many there are: as a word, if they are few."""
+    return Phrase(what, NUMBERS[number] if number < len(NUMBERS) else str(number))
+
+
+def acting(
+    path: Array, forward: str, backward: str, both: str = TO_AND_FRO, back: str = LET_GO
+) -> str:
+    """Say what is done over time by a load: forward where it is positive, backward, or both.
+
+    It is said in other words that it is done both ways, and that it comes back.
+    """
     size = np.abs(path)
     peak = float(size.max(initial=0.0))
     if peak == 0.0:
-        return f"not {forward}"
+        return Phrase("not {}", forward)
     if min(path.max(), -path.min()) > 0.0:
-        return f"{forward} {both}"
+        return Phrase(both, forward)
     word = forward if path.max() > 0.0 else backward
     over = np.concatenate([[False], size > 0.5 * peak, [False]])
     times = int(np.sum(over[1:] & ~over[:-1]))
     if times >= AGAIN:
-        return f"{word} again and again"
-    return f"{word} and let go" if size[-1] < 0.5 * peak else word
+        return Phrase("{} again and again", word)
+    return Phrase(back, word) if size[-1] < 0.5 * peak else word
 
 
 def listed(parts: Sequence[str]) -> str:
     """Write parts with commas, and the last with an "and"."""
     *first, last = parts
-    return f"{', '.join(first)} and {last}" if first else last
+    return Phrase("{} and {}", joined(", ", first), last) if first else last
 
 
-def material(young: float) -> str:
-    """Name what is about as stiff as steel, with its article."""
-    return "a steel" if 190e9 <= young <= 220e9 else "an elastic"
-
-
-def sentence(text: str) -> str:
-    """Begin with a capital, and end with a full stop."""
-    return f"{text[0].upper()}{text[1:]}."
+def is_steel(young: float) -> bool:
+    """Tell whether something is about as stiff as steel."""
+    return 190e9 <= young <= 220e9
