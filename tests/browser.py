@@ -88,6 +88,7 @@ class Chrome:
     def leave(self, page: Page) -> None:
         """Close a page: what it has stored is forgotten, and its window is free for another."""
         page.evaluate("localStorage.clear(), sessionStorage.clear()")
+        page.context.clear_cookies()
         page.emulate_media(color_scheme="light")
         page.mouse.move(0.0, 0.0)
         page.goto("about:blank")

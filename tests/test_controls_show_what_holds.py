@@ -142,7 +142,7 @@ def test_only_controls_that_apply_have_a_value(sidebar: Sidebar) -> None:
 def test_columns_of_a_table_have_units() -> None:
     made = item_of("load", BarSettings.definitions()["load"])
     assert made is not None
-    assert made["columns"] == ["time (s)", "force (N)"]
+    assert made["columns"] == [["time", "s"], ["force", "N"]]
     for entry in CATALOGUE.values():
         for definition in entry.settings.definitions().values():
             if isinstance(definition, CurveParameter):

@@ -226,22 +226,6 @@ def test_nothing_is_told_of_the_first_iterate_before_there_is_a_record_of_it() -
     assert {text for _, text in shown.models[0]["lesson"]["values"]} == {"…"}
 
 
-@pytest.mark.parametrize(
-    ("value", "unit", "text"),
-    [
-        (4.0946e-4, "m", "0.409 mm"),
-        (0.2, "m", "0.2 m"),
-        (0.0389, "J", "38.9 mJ"),
-        (-1.11e-3, "J", "-1.11 mJ"),
-        (1200.0, "N", "1.2 kN"),
-        (0.0, "J", "0 J"),
-        (3e-15, "J", "3e-15 J"),
-    ],
-)
-def test_values_have_the_prefix_that_makes_them_short(value: float, unit: str, text: str) -> None:
-    assert measured(value, unit) == text
-
-
 def test_a_run_that_is_alone_has_nothing_before_it() -> None:
     shown = told([])
     shown.run(2, "bar", {**SMALL, "peak": 700})

@@ -62,4 +62,4 @@ def test_axes_of_a_body_at_rest_are_those_of_its_size() -> None:
     assert sides == pytest.approx((-0.002, 0.102, -0.002, 0.052))
     x = loop.draw(scene, None).x
     assert x is not None
-    assert (x.label, x.high) == ("Displacement of the top (µm)", 1.0)
+    assert (x.label, x.unit, x.high) == ("Displacement of the top", "m", 1e-6)

@@ -168,6 +168,6 @@ def test_a_run_of_many_changes_is_named_in_whole_for_who_asks() -> None:
     shown.run(1, "bar", BRIEF, twin=many)
     text = unescape(shown.page["figures"]["text"])
     whole = text.split('aria-label="A (')[1].split('"')[0]
-    assert all(word in whole for word in ("friction 0.4", "young 3 GPa", "max iterations 30"))
+    assert all(word in whole for word in ("friction 0.4", "young 3000 MPa", "max iterations 30"))
     assert "..." not in whole
     assert f'title="A ({whole}"' in text

@@ -11,9 +11,12 @@ import pytest
 from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.recording import COLUMNS
+from app.picture.units import MM
 from app.views import convergence, deformed, error_time, friction, load_path, loop
 from app.views.catalogue import VIEWS, fitting
 from app.views.colors import ORANGE
+from app.views.drawing import POSITION
+from app.views.in_units import in_units
 from app.views.scales import decades
 from app.views.scene import Scene
 from app.worker.telling import told
@@ -112,7 +115,7 @@ def test_all_axes_along_a_scene_run_from_end_to_end(scene: str) -> None:
     settings = looked.run.settings
     for view in fitting(settings):
         drawing = view.draw(looked, None)
-        if view.plot.x_label == "Position x (m)" and drawing is not None and drawing.x is not None:
+        if view.plot.x_label == POSITION and drawing is not None and drawing.x is not None:
             assert (drawing.x.low, drawing.x.high) == (0.0, settings.values()["length"])
 
 
@@ -147,7 +150,7 @@ def test_what_is_told_of_a_plot_is_what_it_shows() -> None:
     fields, history = whole.frame.fields, whole.run.history
     force = fields.friction[:, whole.instant] / 1e3
     said = {
-        view.name: told(view, drawing)
+        view.name: told(view, in_units(drawing, MM))
         for view in fitting(whole.run.settings)
         if (drawing := view.draw(whole, None)) is not None
     }

@@ -10,6 +10,7 @@ import pytest
 from shown_pages import SMALL
 from test_views_say_what_they_draw import looked_at
 
+from app.picture.units import BY_SIZE
 from app.shell.gallery import gallery
 from app.views import picture
 from app.views.catalogue import fitting
@@ -137,9 +138,9 @@ def test_only_settings_that_the_page_shows_are_dragged(scene: str) -> None:
     settings = settings_of(scene, {})
     plots = gallery({})
     names = set(behind(settings).values())
-    plots.let_drag(settings, names | {"instants"})
+    plots.let_drag(settings, names | {"instants"}, BY_SIZE)
     assert set(plots.sliders) == names
-    plots.let_drag(settings, ())
+    plots.let_drag(settings, (), BY_SIZE)
     assert plots.sliders == {}
 
 
@@ -183,5 +184,5 @@ def test_the_picture_says_which_place_is_marked() -> None:
     scene = looked_at("bar")
     marked_there = replace(scene, look=replace(scene.look, place=0.25))
     drawn, plain = (picture.draw(one, None) for one in (marked_there, scene))
-    assert {key.text for key in drawn.keys} - {key.text for key in plain.keys} == {"x = 0.25 m"}
+    assert {key.text for key in drawn.keys} - {key.text for key in plain.keys} == {"x = 250 mm"}
     assert len(drawn.curves) == len(plain.curves) + 1

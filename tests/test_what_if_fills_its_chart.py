@@ -11,20 +11,24 @@ from lone_link import lone_session
 from processes import wait_for
 from sweeps import TINY, Here, tiny
 
+from app.charts.in_units import in_units, scales_of
+from app.picture.units import MM, SI
 from app.session.inquiry import CANCELLED, Inquiry, Lender, part_of
 from app.session.session import Session
-from app.whatif.charted import is_comparable
+from app.whatif.charted import columns_of, drawn, is_comparable
+from app.whatif.fields import form_of
 from app.whatif.question import (
     Question,
     Span,
     askable,
     bathtub,
 )
-from app.whatif.whatif import WhatIf, form_of
+from app.whatif.whatif import WhatIf
 from solver.running.executors import VARIABLE, Processes
 from solver.running.pool import Pool
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
+from solver.study.chart import Panel
 from solver.study.sweep import Row
 
 DEFAULTS = BarSettings.checked({})
@@ -226,3 +230,67 @@ def test_what_is_chosen_is_offered_even_where_it_does_nothing_now() -> None:
     assert "pgd_modes" in [one["name"] for one in form["settings"]]
     assert "modes" in [one["name"] for one in form["quantities"]]
     assert "modes" not in askable(DEFAULTS)
+
+
+def test_fields_and_chart_are_in_the_units_of_the_page(session: Session) -> None:
+    session.watch(units=MM)
+    page = Tab(session, Question((Span("length", "0.9", "1.1", "3"),), "peak_displacement"))
+    page.open()
+    page.settle()
+    shown = page.asker.form["spans"][0]
+    assert (shown["low"], shown["high"], shown["unit"]) == ("900", "1100", "mm")
+    page.tab.hear("span", {"place": 0, "span": {"name": "length", "high": "1200", "unit": "mm"}})
+    assert session.question.spans[0].text == "length=0.9:1.2:3"
+    page.tab.hear("table", None)
+    lines = [one for one in page.asker.file[0].splitlines() if not one.startswith("#")]
+    assert lines[0].startswith("length (mm),peak_displacement (mm),peak_friction,")
+    plan, rows = session.asked.inquiry.plan, session.asked.inquiry.rows
+    assert plan is not None
+    assert [float(one.split(",")[0]) for one in lines[1:]] == pytest.approx([900, 1000, 1100])
+    made = drawn(plan, rows, ("", ""), MM)
+    chart = in_units(made, scales_of(made, MM))
+    assert isinstance(chart, Panel)
+    assert (chart.x.label, chart.y.label) == ("Length L (mm)", "Largest displacement (mm)")
+    assert chart.runs is not None
+    assert sorted(chart.runs.x) == pytest.approx([900.0, 1000.0, 1100.0])
+    assert made.runs is not None
+    assert chart.runs.y == pytest.approx(1e3 * made.runs.y)
+    assert all(" mm: " in one and one.endswith(" mm") for one in chart.runs.said)
+
+
+def test_any_two_columns_are_drawn_over_each_other(session: Session) -> None:
+    question = Question(
+        (Span("peak", "300", "900", "3"), Span("friction", listed="0.2,0.3", spacing="list")),
+        "peak_displacement",
+    )
+    page = Tab(session, question)
+    page.open()
+    page.settle()
+    assert (page.asker.columns["x"], page.asker.columns["y"]) == ("peak", "peak_displacement")
+    plan, rows = session.asked.inquiry.plan, session.asked.inquiry.rows
+    assert plan is not None
+    names = [name for name, _ in page.asker.columns["names"]]
+    place = {one.name: number for number, one in enumerate(plan.readings)}
+    for x in names:
+        for y in names:
+            page.tab.hear("columns", {"x": x, "y": y})
+            assert (page.asker.columns["x"], page.asker.columns["y"]) == (x, y)
+            runs = drawn(plan, rows, (x, y), SI).runs
+            assert runs is not None
+            assert len(runs.x) == len(runs.y) == len(rows)
+    chart = drawn(plan, rows, ("dissipation", "end_displacement"), SI)
+    assert isinstance(chart, Panel)
+    assert chart.runs is not None
+    for at, name in ((chart.runs.x, "dissipation"), (chart.runs.y, "end_displacement")):
+        wanted = {row.number: row.values[place[name]] for row in rows}
+        assert dict(zip(chart.runs.numbers, at, strict=True)) == pytest.approx(wanted)
+    labels = [one.label for one in chart.curves if one.label]
+    assert labels == ["Friction coefficient μ 0.2", "Friction coefficient μ 0.3"]
+    along = [one.x for one in chart.curves if one.label]
+    assert [len(one) for one in along] == [3, 3]
+
+
+def test_a_column_that_the_table_has_not_gives_the_usual_chart(session: Session) -> None:
+    plan = tiny(["peak=300:900:3"], ["peak_displacement"])
+    assert columns_of(plan, ("peak", "seconds")) == ("peak", "peak_displacement")
+    assert columns_of(plan, ("", "")) == ("peak", "peak_displacement")

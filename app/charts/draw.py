@@ -13,8 +13,8 @@ from solver.arrays import Array
 from solver.study.chart import Chart, Map, Panel, PanelAxis
 
 MOST_LABELS = 7
-LONG = 34
-"""Letters of a label up to which it fits beside an axis; of a longer one the unit does."""
+LONG, ACROSS = 34, 60
+"""Letters up to which a label fits beside an axis, and below; of a longer one the unit does."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 SIDES = ["left", "bottom", "right", "top"]
 PLACES: dict[str, list[str]] = {
@@ -89,7 +89,7 @@ def _axes(chart: Chart, before: Chart | None) -> dict[str, Any]:
         "logy": chart.y.logarithmic,
         "xlim": across,
         "ylim": up,
-        "xlabel": _label(chart.x),
+        "xlabel": _label(chart.x, ACROSS),
         "ylabel": _label(chart.y),
         "xticks": _ticks(chart),
         "yticks": _steps(chart.y_values) if _has_steps(chart) else None,
@@ -104,8 +104,8 @@ def _axes(chart: Chart, before: Chart | None) -> dict[str, Any]:
     }
 
 
-def _label(axis: PanelAxis) -> str:
-    return axis.label if len(axis.label) <= LONG else axis.unit
+def _label(axis: PanelAxis, most: int = LONG) -> str:
+    return axis.label if len(axis.label) <= most else axis.unit
 
 
 def _has_steps(chart: Chart) -> TypeGuard[Map]:

@@ -1,5 +1,5 @@
 export function render({model}) {
-  const {tell, named, show: put, kinds} = controls(model)
+  const {tell, called, show: put, kinds} = controls(model)
   const NAMED = "the-named", OPENED = "slipfront-sheets"
   const root = make("div"), sheets = new Map()
   let rows = new Map(), pointed = ""
@@ -23,7 +23,7 @@ export function render({model}) {
       picture.append(...strokes.map((d, kind) => drawn("path", {d, class: kinds[kind]})))
       return make("label", {title: say(title)}, radios[place], picture, say(name))
     })
-    const group = named(item, make("div", {className: "scenes"}, ...labels))
+    const group = called(item, make("div", {className: "scenes"}, ...labels))
     group.setAttribute("role", "radiogroup")
     row.show = (value) => { for (const one of radios) { one.checked = one.value === value } }
     return [group]

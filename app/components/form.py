@@ -6,6 +6,7 @@ the newest message that was obeyed. A control that the user has moved since does
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Any, ClassVar
 
@@ -13,6 +14,7 @@ import param
 
 from app.components.innards import Plain
 from app.components.panes import script
+from app.picture.units import KNOWN, SYSTEMS, steps
 from solver.definitions import CurveParameter, Parameter, about
 
 POINTS, USUAL = "table of points", "usual value"
@@ -21,6 +23,16 @@ ENDS = "the-ends"
 """Among what is shown, the largest value that other settings leave to a slider, by its name."""
 NAMED = "the-named"
 """Among what is shown, the names of controls that words on the page speak of: their sheets open."""
+UNITS = "the-units"
+"""Among what is shown, which of `SYSTEMS` values are shown and typed in."""
+LADDERS = {
+    unit: {units: [list(one) for one in steps(unit, units)] for units in SYSTEMS} for unit in KNOWN
+}
+"""The units that values of an SI unit are read in, of every system, the smallest first."""
+LADDERS_SCRIPT = (
+    f"const LADDERS = {json.dumps(LADDERS, ensure_ascii=False, separators=(',', ':'))}\n"
+)
+"""For `controls.js`."""
 MOST_LISTED = 200
 """Points that a table on the page has; of more there is a drawing."""
 STYLE = """
@@ -89,7 +101,9 @@ class Form(Plain):
     items = param.List(default=[])
     shown = param.Dict(default={})
 
-    _esm = script("say.js", "elements.js", "values.js", "points.js", "controls.js", "form.js")
+    _esm = LADDERS_SCRIPT + script(
+        "say.js", "elements.js", "values.js", "points.js", "controls.js", "form.js"
+    )
     _stylesheets: ClassVar[list[str]] = [STYLE]
 
 
@@ -109,11 +123,10 @@ def shown_value(value: Any) -> Any:
 def item_of(name: str, definition: Parameter) -> dict[str, Any] | None:
     """Say what the control of a setting is; None where there is nothing to choose."""
     record = about(definition)
-    label = f"{record.title} ({record.unit})" if record.unit else record.title
-    item = {"name": name, "label": label, "help": definition.doc}
+    item = {"name": name, "label": record.title, "help": definition.doc}
     if isinstance(definition, CurveParameter):
-        titles = zip((definition.abscissa, definition.ordinate), definition.units, strict=True)
-        columns = [f"{title} ({unit})" if unit else title for title, unit in titles]
+        titles = definition.abscissa, definition.ordinate
+        columns = [list(one) for one in zip(titles, definition.units, strict=True)]
         options = [[value, value] for value in (*definition.presets, POINTS)]
         return {**item, "kind": "curve", "options": options, "columns": columns}
     if isinstance(definition, param.Boolean):
@@ -131,4 +144,5 @@ def item_of(name: str, definition: Parameter) -> dict[str, Any] | None:
         "log": record.logarithmic,
         "whole": isinstance(definition, param.Integer),
         "usual": USUAL,
+        "unit": record.unit,
     }

@@ -1,10 +1,11 @@
 // A path through points that are dragged, added by a double click and taken away by another.
-function drawn_points(item, send) {
+function drawn_points(send) {
   const WIDE = 280, TALL = 110, ROOM = 10
   const picture = drawn("svg", {viewBox: `0 0 ${WIDE} ${TALL}`, class: "path"})
   const help = say("Drag a point; double click adds one, or takes it away.")
   picture.append(drawn("title", {}, help))
   let points = [], limits = [0, 1, 0, 1], held = null, moved = false, fixed = false
+  let told = String
   const across = (x) => ROOM + (WIDE - 2 * ROOM) * (x - limits[0]) / (limits[1] - limits[0])
   const up = (y) => TALL - ROOM - (TALL - 2 * ROOM) * (y - limits[2]) / (limits[3] - limits[2])
   const place = (event) => {
@@ -33,8 +34,7 @@ function drawn_points(item, send) {
     })
     const dots = (fixed ? [] : points).map(([x, y], number) => {
       const dot = drawn("circle", {cx: across(x), cy: up(y), r: 6, fill: "#C24E00"})
-      const told = `${item.columns[0]}: ${short(x)}, ${item.columns[1]}: ${short(y)}`
-      dot.append(drawn("title", {}, told))
+      dot.append(drawn("title", {}, told([x, y].map(short))))
       dot.onpointerdown = (event) => {
         held = number
         moved = false
@@ -82,5 +82,5 @@ function drawn_points(item, send) {
       draw()
     }
   }
-  return {picture, show}
+  return {picture, show, tell: (words) => { told = words }}
 }

@@ -5,17 +5,27 @@ function settled(item, place) {
   if (item.log) { return Number(value.toPrecision(4)) }
   return Number((Math.round(value / item.step) * item.step).toPrecision(12))
 }
-// A value with the prefix of its unit that one reads; the unit may have one already.
-const FACTORS = {n: 1e-9, µ: 1e-6, m: 1e-3, "": 1, k: 1e3, M: 1e6, G: 1e9}
-function measured(value, unit) {
-  const [, prefix = "", base = ""] = /^([nµmkMG]?)((?:m|N|Pa|J)(?:\W.*)?)$/.exec(unit) ?? []
-  const plain = Number(value.toPrecision(3)), size = Math.abs(value) * FACTORS[prefix]
-  if (!base || !size || size < 1e-9 || size >= 1e13) { return `${plain} ${unit}`.trim() }
-  const [best, factor] = Object.entries(FACTORS).findLast(([, one]) => size >= 0.1 * one) ?? ["n", 1e-9]
-  return `${Number((value * FACTORS[prefix] / factor).toPrecision(3))} ${best}${base}`
+// The unit that values of a size are read in, of steps `[name, factor, least]`, and its size in SI.
+function step_of(size, steps) {
+  const rounded = Number(Math.abs(size).toPrecision(3)) * (1 + 1e-9) || 1
+  return steps.findLast(([, , least]) => least <= rounded)
 }
+const labelled = (label, unit) => unit ? `${label} (${unit})` : label
+// Numbers go to and fro between units without what floating point would add to them.
+const scaled = (value, factor) => Number((value / factor).toPrecision(15))
+const in_si = (value, factor) => Number((value * factor).toPrecision(15))
 function written(value, item) {
   const rounded = Number(value.toPrecision(item.log ? 4 : 6)), size = Math.abs(rounded)
   if (size === 0 || (size >= 1e-2 && size < 1e5)) { return rounded.toString() }
   return rounded.toExponential().replace("+", "")
+}
+// What somebody has typed, in SI: in the unit that stands there, or in one that is typed too.
+// What is no number is refused as any other value, in the same words.
+function typed_value(text, known, factor) {
+  const plain = (unit) => unit.replace(/^u/, "µ").replace("²", "2").replace("³", "3").replace("^", "")
+  const form = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*(\D.*)?$/i
+  const [, number, unit] = form.exec(text.trim().replace(",", ".").replace("−", "-")) ?? []
+  if (number === undefined) { return text.trim() }
+  const own = unit ? known.find(([name]) => plain(name) === plain(unit)) : ["", factor]
+  return own ? in_si(Number(number), own[1]) : text.trim()
 }

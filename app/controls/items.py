@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from app.components.form import item_of
+from app.components.form import UNITS, item_of
 from app.controls.comparing import CHOICES
 from app.lessons.lesson import LESSONS
+from app.picture.units import COOKIE, SYSTEMS
 from solver.definitions import about
 from solver.scenes import CATALOGUE, chief_of
 from solver.settings import Settings
@@ -71,6 +72,18 @@ WARM_ITEM = {
     "sheet": HOW[0],
     "group": METHOD,
 }
+UNITS_ITEM: dict[str, Any] = {
+    "name": UNITS,
+    "kind": "choice",
+    "label": "Units",
+    "help": "In which values are shown, typed (another may be typed too, as in 5 mm) and saved. "
+    "Tables have SI where the size chooses; "
+    "links, saved settings and programs always.",
+    "options": [[title, name] for name, title in SYSTEMS.items()],
+    "cookie": COOKIE,
+    "sheet": SEEN,
+    "group": "Units",
+}
 VIEWS_ITEM: dict[str, Any] = {
     "name": VIEWS,
     "kind": "checks",
@@ -93,7 +106,7 @@ def items(settings: type[Settings]) -> list[dict[str, Any]]:
     after = max(place for place, item in enumerate(how) if item["group"] == METHOD) + 1
     how.insert(after, WARM_ITEM)
     first = [item for name in chief if (item := item_of(name, definitions[name]))]
-    others = [COMPARE_ITEM, VIEWS_ITEM, LESSON_ITEM]
+    others = [COMPARE_ITEM, UNITS_ITEM, VIEWS_ITEM, LESSON_ITEM]
     return [NOTE_ITEM, SCENE_ITEM, *first, *what, *how, *others]
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from app.components.form import ENDS, NAMED, POINTS, USUAL, Form, shown_value
+from app.components.form import ENDS, NAMED, POINTS, UNITS, USUAL, Form, shown_value
 from app.controls.comparing import choice_of, pair
 from app.controls.items import (
     COMPARE,
@@ -64,7 +64,12 @@ class Sidebar:
         self.view.on_msg(lambda message: self.hear(**message.data))
         shown = ["wanted", "twin", "warm_start", "chosen", "lesson", "refusal"]
         session.param.watch(lambda *events: self._show(), shown)
+        session.param.watch(self._on_look, "look")
         self._show()
+
+    def _on_look(self, event: Any) -> None:
+        if event.new.units != event.old.units:
+            self._show()
 
     def show_for(self, report: Report | None) -> None:
         """Show the settings of a report that is looked at alone, or those of the run."""
@@ -90,12 +95,13 @@ class Sidebar:
             COMPARE: choice_of(session.twin, settings),
             WARM: session.warm_start,
             VIEWS: [views, seen],
+            UNITS: session.look.units,
             "": self._answered,
             ENDS: ends_of(settings),
             NAMED: [*(lesson.controls if lesson else ()), *self._told_of(acting)],
         }
         if self._report is not None:
-            kept = {SCENE, ENDS, NAMED, ""} if acting else {""}
+            kept = {SCENE, ENDS, NAMED, UNITS, ""} if acting else {""}
             own = {NOTE: self._report.note, **{name: own[name] for name in kept}}
         changes: dict[str, Any] = {"shown": {**values, **own}}
         # Param takes longer to compare the controls with themselves than to pass on the values.
@@ -124,6 +130,8 @@ class Sidebar:
             self._session.warm_start = value
         elif name == VIEWS:
             self._session.draw(value)
+        elif name == UNITS:
+            self._session.watch(units=value)
         elif value is None:
             self._let_go(name)
         elif value == POINTS:

@@ -5,12 +5,10 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from app.picture.units import measured
+from app.picture.units import BY_SIZE, measured
 from solver.definitions import about
 from solver.settings import Settings
 
-PLAIN = 1e-2, 1e4
-"""Sizes of values that are called as their sliders show them."""
 FEW = 2
 """Changes by which a run is called where there is little room."""
 
@@ -21,25 +19,32 @@ def changes_of(settings: Settings, other: Settings) -> dict[str, Any]:
     return {name: value for name, value in settings.values().items() if value != before[name]}
 
 
-def label_of(settings: Settings, changed: dict[str, Any], most: int = FEW) -> str:
+def difference(settings: Settings, other: Settings, units: str) -> str:
+    """Name settings by what differs from others of the same scene."""
+    return label_of(settings, changes_of(settings, other), units)
+
+
+def label_of(
+    settings: Settings, changed: dict[str, Any], units: str = BY_SIZE, most: int = FEW
+) -> str:
     """Name settings by what is new in them, or by the first few of it."""
     definitions = settings.definitions()
     parts = []
     for name, value in list(changed.items())[:most]:
-        parts.append(f"{name.replace('_', ' ')} {_written(value, about(definitions[name]).unit)}")
+        said = _written(value, about(definitions[name]).unit, units)
+        parts.append(f"{name.replace('_', ' ')} {said}")
     more = len(changed) - most
     return ", ".join(parts) + (f" and {more} more" if more > 0 else "")
 
 
-def _written(value: Any, unit: str) -> str:
+def _written(value: Any, unit: str, units: str) -> str:
     if isinstance(value, bool):
         return ("off", "on")[value]
     if isinstance(value, tuple):
         return "points"
     if not isinstance(value, float):
         return f"{value} {unit}".strip()
-    is_plain = value == 0.0 or PLAIN[0] <= abs(value) < PLAIN[1]
-    return f"{value:.4g} {unit}".strip() if is_plain else measured(value, unit, 4)
+    return measured(value, unit, units, 4)
 
 
 def in_titles(settings: Settings, text: str, written: str = "{}") -> str:

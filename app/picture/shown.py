@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.languages.language import SOURCE, Language, language
+from app.picture.units import BY_SIZE
 from solver.reduction.basis import ReductionRecord
 from solver.settings import Settings
 
@@ -172,6 +173,8 @@ class Look:
         What the status line says about the address, or empty.
     readings
         Quantities of the run that are told in words, by their names.
+    units
+        One of `app.picture.units.SYSTEMS`, in which all values are told.
     language
         Of all words.
     """
@@ -186,6 +189,7 @@ class Look:
     views: tuple[str, ...] = ()
     complaint: str = ""
     readings: tuple[str, ...] = ()
+    units: str = BY_SIZE
     language: str = SOURCE
 
     @property

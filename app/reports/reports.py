@@ -131,7 +131,8 @@ class StudyReport(Report):
         )
         if not new:
             return ""
-        was, now_is = label_of(then, old, most=4), label_of(now, new, most=4)
+        units = self._session.look.units
+        was, now_is = label_of(then, old, units, 4), label_of(now, new, units, 4)
         return f"These results are of other settings: {was}. At present: {now_is}."
 
     def _refusal(self) -> str:

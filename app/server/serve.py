@@ -14,6 +14,7 @@ from panel_material_ui.template.base import Page
 
 from app.components.innards import forget
 from app.languages.language import preferred
+from app.picture.units import COOKIE
 from app.server.lateness import Lateness
 from app.session.pages import Pages, most_pages
 from app.session.report_executor import shared_executor
@@ -58,7 +59,7 @@ def open_page() -> Page:
     if missing:
         return _said(NO_CLASS.format(escape(missing)), "missing")
     settings, complaint = settings_from_query(query)
-    sight, more = sight_from_query(query)
+    sight, more = sight_from_query(query, pn.state.cookies.get(COOKIE, ""))
     twin, refused = twin_from_query(query, settings)
     turns = Turns(document.add_next_tick_callback)
     first = room.settings if room else settings
@@ -70,7 +71,8 @@ def open_page() -> Page:
     session.set_pace(PACES[sight.pace])
     complaint = " ".join(filter(None, (complaint, more, refused)))
     chosen = sight.lang or preferred(str(pn.state.headers.get("Accept-Language", "")))
-    session.watch(phase=sight.instant, complaint=complaint, language=chosen)
+    looks = {"units": sight.units, "language": chosen}
+    session.watch(phase=sight.instant, complaint=complaint, **looks)
     session.question = question_from_query(query)
     dashboard = Dashboard(
         session,

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from app.picture.labels import changes_of, label_of
+from app.picture.labels import difference
 from app.picture.usual import hurried, shown, usual_settings
 from app.session.asked import Asked
 from app.session.attendance import Attendance
@@ -102,7 +102,7 @@ class Session(State):
                 self._label, self.twin = "", None
                 self.watch(interface="", substructure=None, place=None, is_held=False)
             elif self.ticket:
-                self._label = label_of(settings, changes_of(settings, self.settings)) or self._label
+                self._label = difference(settings, self.settings, self.look.units) or self._label
             if "is_alone" in how:
                 self._label, self.twin = "", None
             self.settings, self.facts, self._due = settings, None, None

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from app.picture.units import measured
+from app.picture.units import measured, scale_of
 from app.session.report_folder import ReportFolder
 from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, audit
@@ -76,7 +76,7 @@ def stability_of(quick: bool, folder: Path) -> None:
     growing.show(report.sections())
 
 
-def mesh_of_run(scene: str, values: dict[str, Any], of: str, folder: Path) -> None:
+def mesh_of_run(scene: str, values: dict[str, Any], of: str, units: str, folder: Path) -> None:
     """Take a quantity on three meshes, show each value as it comes, and say what they tell."""
     growing, settings, asked = (
         ReportFolder(folder),
@@ -84,14 +84,16 @@ def mesh_of_run(scene: str, values: dict[str, Any], of: str, folder: Path) -> No
         reading(of),
     )
     meshes, own = meshes_around(settings)
-    found, told = list[float](), list[str]()
+    found, told, unit = list[float](), list[str](), asked.quantity.unit
     for number, mesh in enumerate(meshes):
         growing.tell(f"{size_of(mesh)} elements", number / len(meshes))
         found.append(value_on(mesh, asked))
-        value = measured(found[-1], asked.quantity.unit, 4)
+        value = measured(found[-1], unit, units, 4)
         told.append(f"{size_of(mesh)} elements: <b>{value}</b>")
         growing.show([" · ".join(told)])
-    said = answer(Refinement((found[0], found[1], found[2]), own), asked.quantity.unit)
+    factor, name = scale_of(abs(found[-1]), unit, units)
+    first, second, third = (one / factor for one in found)
+    said = answer(Refinement((first, second, third), own), name)
     growing.show([" · ".join(told), f"<br>{said}"])
 
 

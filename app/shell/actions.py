@@ -120,7 +120,8 @@ class Actions:
         """Give the browser the settings of the run, by default under what is not as usual in it."""
         settings = self._session.wanted
         differ = changed(settings)
-        name = shorten(name, LONGEST_NAME) or label_of(settings, differ) or "defaults"
+        called = label_of(settings, differ, self._session.look.units)
+        name = shorten(name, LONGEST_NAME) or called or "defaults"
         self._saved += 1
         self.view.kept = [name, settings.scene, saved(settings, was_warm=False), self._saved]
 

@@ -13,6 +13,7 @@ from app.languages.language import LANGUAGES, SOURCE
 from app.lessons.lesson import LESSONS
 from app.picture.labels import changes_of
 from app.picture.shown import Look
+from app.picture.units import BY_SIZE, SYSTEMS
 from app.picture.usual import usual_settings
 from app.session.classroom import ROOMS, Room
 from app.session.state import DEFAULT_PACE, PACES, TABS, VIEWS
@@ -48,6 +49,8 @@ class Sight:
         "light" or "dark"; the browser writes it where it is not the system's.
     view
         "page" has controls, "present" is for a projector, "embed" for a frame in a course page.
+    units
+        One of `app.picture.units.SYSTEMS`.
     plots
         Names of the views that are drawn, separated by commas; empty has one on each card.
     lang
@@ -63,6 +66,7 @@ class Sight:
     iteration: int = 0
     theme: str = "light"
     view: str = VIEWS[0]
+    units: str = BY_SIZE
     plots: str = ""
     lang: str = ""
     is_still: bool = field(default=False, compare=False)
@@ -77,6 +81,7 @@ SIGHT: dict[str, Any] = {
     "theme": choice(Sight.theme, ("light", "dark"), "", group="", title=""),
     "view": choice(Sight.view, VIEWS, "", group="", title=""),
     "lang": choice(SOURCE, LANGUAGES, "", group="", title=""),
+    "units": choice(Sight.units, SYSTEMS, "", group="", title=""),
 }
 NUMBERS = ("instant", "iteration")
 PLOTS = "plots"
@@ -89,8 +94,11 @@ COMPARED = "compare"
 """Name in an address of what run A has other than the run at work, B, as a JSON object."""
 
 
-def sight_from_query(query: str) -> tuple[Sight, str]:
-    """Read from an address what is looked at; with what was refused and why, or nothing."""
+def sight_from_query(query: str, units: str = BY_SIZE) -> tuple[Sight, str]:
+    """Read from an address what is looked at; with what was refused and why, or nothing.
+
+    Where it says nothing of units, it is in those that the browser keeps, if there are such.
+    """
     found: dict[str, Any] = {}
     refused = []
     for name, text in parse_qsl(query.lstrip("?")):
@@ -102,7 +110,8 @@ def sight_from_query(query: str) -> tuple[Sight, str]:
                 found[name] = checked_value(SIGHT[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
-    first = _first_sight(found.get("lesson", ""))
+    kept = units if units in SYSTEMS else BY_SIZE
+    first = replace(_first_sight(found.get("lesson", "")), units=kept)
     is_still = any(name in found for name in NUMBERS)
     return replace(first, **found, is_still=is_still), complaint_of(refused)
 

@@ -84,7 +84,7 @@ class Dashboard:
         chosen |= {"drag": self._drag, "tab": self._turn, "bathtub": self._ask_over_k}
         self._gallery = gallery(chosen, session.say)
         self._banner = Banner(session)
-        self._sidebar = Sidebar(session, self._teach)
+        self._sidebar = Sidebar(session, lambda name: self._teaching.open(name))
         self._teaching = Teaching(session, self._sidebar)
         undo = Undo(session, self._teaching.take)
         self._actions = Actions(
@@ -177,6 +177,7 @@ class Dashboard:
         watch(lambda *events: self._place(), ["facts", "settings"])
         arranged = ["wanted", "chosen", "lesson", "asks", "view", "tab", "room"]
         watch(lambda *events: self._arrange(), arranged)
+        watch(self._on_look, "look")
 
     def _make_live(self) -> pn.Column:
         words, figures = (text(role=role, tags=[role]) for role in ("status", "figures"))
@@ -198,7 +199,7 @@ class Dashboard:
         self._saver.view.visible = room is None and self._tabs.shows_the_run
         is_free = not (room or session.lesson or self._stage.is_bare)
         self._gallery.offer(there, session.wanted, has_tabs=is_free)
-        self._gallery.let_drag(session.wanted, self._teaching.controls)
+        self._gallery.let_drag(session.wanted, self._teaching.controls, session.look.units)
         self._saver.offer(there)
         # The worker sends what a view had already only when the choice of views changes.
         session.watch(views=tuple(view.name for view in there))
@@ -247,9 +248,6 @@ class Dashboard:
             self.session.question = over_k(self.session.wanted)
             self.session.tab = WHAT_IF
 
-    def _teach(self, name: str) -> None:
-        self._teaching.open(name)
-
     def _dress(self) -> None:
         """Have the style sheet know the view, and whether there is a lesson or its question."""
         classes = ["taught", "asks"] if self.session.asks else ["taught"]
@@ -268,6 +266,10 @@ class Dashboard:
         is_aside = self.session.lesson or self.pulse.narrow or self._stage.is_bare
         self.page.sidebar_open = not is_aside
         self.session.tab = TABS[0]
+
+    def _on_look(self, event: Any) -> None:
+        if event.new.units != event.old.units:
+            self._arrange()
 
     def _on_class(self) -> None:
         """Have the browser keep what leads the class again; show what it shows."""

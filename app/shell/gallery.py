@@ -19,6 +19,7 @@ from app.components.innards import Plain
 from app.components.panes import looks, script
 from app.languages.language import Language
 from app.picture.glossary import ENGLISH
+from app.picture.units import steps
 from app.shell.layout import layout
 from app.views.catalogue import VIEWS, beside
 from app.views.drawing import View
@@ -83,7 +84,7 @@ class Gallery(Plain):
         grid = [found.template, found.row, found.is_long]
         self.param.update(shown=shown, grid=grid)
 
-    def let_drag(self, settings: Settings, names: Collection[str]) -> None:
+    def let_drag(self, settings: Settings, names: Collection[str], units: str) -> None:
         """Have what stands behind these settings dragged, as far as it is in the picture."""
         definitions = settings.definitions()
         items = [
@@ -91,7 +92,11 @@ class Gallery(Plain):
             for name in behind(settings).values()
             if name in names
         ]
-        self.sliders = {item["name"]: {key: item[key] for key in NEEDED} for item in items}
+        self.sliders = {
+            item["name"]: {key: item[key] for key in NEEDED}
+            | {"steps": [list(one) for one in steps(item["unit"], units)]}
+            for item in items
+        }
 
 
 def gallery(choices: dict[str, Callable[[Any], None]], say: Language = ENGLISH) -> Gallery:

@@ -42,8 +42,9 @@ function handles(place, plot, source, model, tap) {
   }
   const label = ({clientX, clientY}, {setting, value}) => {
     const {left, top, width} = place.getBoundingClientRect(), item = model.sliders[setting]
-    const [, name, unit = ""] = /^(.*?)(?: \(([^()]*)\))?$/.exec(say(item.label))
-    said.textContent = `${name}: ${measured(value, unit)}`
+    const [unit, factor] = step_of(value || item.end, item.steps)
+    const told = written(scaled(value, factor), item)
+    said.textContent = `${say(item.label)}: ${told} ${unit}`.trim()
     said.style.top = `${Math.max(clientY - top - 40, 2)}px`
     const room = width - said.offsetWidth - 4
     said.style.left = `${Math.max(Math.min(clientX - left + 10, room), 2)}px`

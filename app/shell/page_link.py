@@ -120,6 +120,7 @@ class PageLink:
             lesson=lesson.name if lesson else "",
             iteration=waits_at(session.facts, goes_on=session.goes_on),
             view=session.view,
+            units=session.look.units,
             plots="" if lesson else session.plots,
             lang=self._lang,
         )

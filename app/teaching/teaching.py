@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 import param
 
-from app.components.form import ENDS, STYLE
+from app.components.form import ENDS, LADDERS_SCRIPT, STYLE, UNITS
 from app.components.innards import Plain
 from app.components.panes import script
 from app.controls.sidebar import Sidebar
@@ -116,7 +116,7 @@ class LessonPane(Plain):
     is_strip = param.Boolean(default=False)
     recalls = param.Boolean(default=False)
 
-    _esm = script(
+    _esm = LADDERS_SCRIPT + script(
         *("say.js", "elements.js", "exports.js", "values.js", "points.js", "controls.js"),
         *("teaching/curve.js", "teaching/handout.js", "teaching/lesson.js"),
     )
@@ -268,7 +268,7 @@ class Teaching:
         """Show on the lesson's controls what those of the sidebar show."""
         holds = self._sidebar.view.shown
         lesson = self._session.lesson
-        names = ("", ENDS, *lesson.controls) if lesson else ()
+        names = ("", ENDS, UNITS, *lesson.controls) if lesson else ()
         self.view.shown = {name: holds[name] for name in names if name in holds}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.picture.units import decimal_scale
+from app.picture.units import scale_of
 from app.views import sketch
 from app.views.drawing import Box, Word
 from app.views.posed import Posed
@@ -21,6 +21,8 @@ LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn."""
 GAP = 4.0
 """Pixels between what is drawn and what is said."""
+BETWEEN = "\u2003"
+"""Between words of one line, whose room follows the type and not the size of the picture."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +78,7 @@ def stroke(act: Act, found: list[Arrow]) -> Array:
     return sketch.joined(strokes)
 
 
-def words(posed: Posed, box: Box) -> list[Word]:
+def words(posed: Posed, box: Box, units: str) -> list[Word]:
     """Give values of all that acts: above and below the bodies, and at their sides' corners."""
     left, right, below, above = box.room
     rows = {"top": (box.high, above, "bottom"), "bottom": (box.low, -below, "top")}
@@ -84,20 +86,16 @@ def words(posed: Posed, box: Box) -> list[Word]:
     found = []
     for (row, column), acts in _said(posed).items():
         y, dy, up = rows[row]
-        texts = [_value(posed, act) for act in acts]
+        texts = [_value(posed, act, units) for act in acts]
         if column:
             x, dx = columns[column]
             found.append(Word(x, y, joined("\n", texts), column, up, dx, dy))
             continue
-        sides = (
-            (("right", -2.0 * GAP), ("left", 2.0 * GAP)) if len(texts) > 1 else (("center", 0.0),)
-        )
-        for text, (across, dx) in zip(texts, sides, strict=False):
-            found.append(Word(0.5 * posed.length, y, text, across, up, dx, dy))
+        found.append(Word(0.5 * posed.length, y, BETWEEN.join(texts), "center", up, dy=dy))
     for act in posed.described.acts:
         if side_of(act) == "body":
             x, y = posed.placed(posed.moved(act.places * [posed.length, posed.height]))[0]
-            found.append(Word(x, y, _value(posed, act), "center", "bottom", dy=GAP))
+            found.append(Word(x, y, _value(posed, act, units), "center", "bottom", dy=GAP))
     return found
 
 
@@ -134,9 +132,9 @@ def _is_opposite(act: Act, other: Act) -> bool:
     return act.unit == other.unit and np.array_equal(act.values, -other.values)
 
 
-def _value(posed: Posed, act: Act) -> str:
+def _value(posed: Posed, act: Act, units: str) -> str:
     """Say what acts now; what varies along a side, at both of its ends."""
-    unit, name = decimal_scale(float(np.abs(act.values).max()), act.unit)
+    unit, name = scale_of(float(np.abs(act.values).max()), act.unit, units)
     now = np.atleast_1d(posed.now(act.values)) / unit
     values = [sketch.plain(float(one)) for one in now]
     value = values[0] if len(values) == 1 else Phrase("{} to {}", *values)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.shown import Wires
-from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Plot, View
 from app.views.legend import Key
-from app.views.scales import Limits, held, spanned
+from app.views.scales import Limits, along, held, spanned
 from app.views.scene import Scene
 from solver.scenes import kind_of
 from solver.scenes.words import Phrase
@@ -31,18 +30,17 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     assert load is not None
     top = max(SHARED * float(np.abs(load).max()), float(axial.max()))
     limits = held(kept, min(-0.1 * top, float(axial.min())), top)
-    factor, unit = decimal_scale(limits[1], "N")
     curves = []
     if wires.exact is not None and wires.exact_positions is not None:
-        exact = wires.exact[:, :, scene.instant] / factor
+        exact = wires.exact[:, :, scene.instant]
         curves += [Curve(wires.exact_positions, one, GREEN, 7) for one in exact]
     for place in np.argsort([number == wires.broken for number in wires.numbers], kind="stable"):
         number = wires.numbers[place]
         width = 3.5 if number == wires.broken else 2.0
-        curves.append(Curve(wires.positions, axial[place] / factor, _color(number, wires), width))
+        curves.append(Curve(wires.positions, axial[place], _color(number, wires), width))
     return Drawing(
-        spanned(0.0, scene.run.settings.length),
-        spanned(*(limit / factor for limit in limits), label=f"Axial force ({unit})"),
+        along(0.0, scene.run.settings.length),
+        spanned(*limits, label="Axial force", unit="N"),
         curves,
         keys=_keys(wires, is_exact=wires.exact is not None),
         kept=limits,
@@ -66,7 +64,7 @@ def _keys(wires: Wires, *, is_exact: bool) -> tuple[Key, ...]:
 
 VIEW = View(
     "Force in the wires",
-    Plot(POSITION, "Axial force (N)"),
+    Plot(POSITION, "Axial force"),
     draw,
     lambda settings: kind_of(settings) == "wires",
 )

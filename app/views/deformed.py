@@ -6,9 +6,8 @@ import numpy as np
 
 from app.picture.portrait import rims
 from app.picture.shown import Mesh
-from app.picture.units import decimal_scale
 from app.views.colors import GHOST, GREY
-from app.views.drawing import Box, Colors, Curve, Drawing, Plot, QuadMesh, View, is_plane
+from app.views.drawing import Axis, Box, Colors, Curve, Drawing, Plot, QuadMesh, View, is_plane
 from app.views.legend import Key
 from app.views.scales import around, round_up
 from app.views.scene import Scene
@@ -36,13 +35,14 @@ def draw(scene: Scene, kept: float | None) -> Drawing | None:
         factor = fit = fitting(mesh, field.largest, fit)
     moved = mesh.nodes + np.float32(factor) * field.displacement
     limits = around(float(field.stress.min()), float(field.stress.max()))
-    unit, name = decimal_scale(max(-limits[0], limits[1]), "Pa")
-    low, high = (limit / unit for limit in limits)
     reach = round_up(factor * reach_of(scene)) if field.largest > 0.0 else 0.0
     outlines, ghosts = ghosts_of(scene, factor)
+    box = _box(scene, reach)
     return Drawing(
-        bodies=QuadMesh(mesh.quads, moved, field.stress / np.float32(unit), _box(scene, reach)),
-        colors=Colors(low, high, name),
+        Axis(box.left, box.right, label="x", unit="m"),
+        Axis(box.low, box.high, label="y", unit="m"),
+        bodies=QuadMesh(mesh.quads, moved, field.stress, box),
+        colors=Colors(*limits, unit="Pa"),
         keys=(
             Key(GREY, "bare", scene.look.stress),
             Key(GREY, "bare", Phrase("displacement × {}", f"{factor:g}")),
@@ -108,7 +108,7 @@ def fitting(mesh: Mesh, largest: float, present: float = 1.0) -> float:
 
 VIEW = View(
     "Deformed bodies",
-    Plot("x (m)", "y (m)", palette=CIVIDIS, scale="MPa", equal=True),
+    Plot("x", "y", palette=CIVIDIS, scale="Pa", equal=True),
     draw,
     is_plane,
 )

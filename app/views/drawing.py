@@ -20,8 +20,8 @@ from solver.arrays import Array
 from solver.scenes import kind_of
 from solver.settings import Settings
 
-POSITION = "Position x (m)"
-"""Title of axes along the bodies."""
+POSITION = "Position x"
+"""Title of axes along the bodies, m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,21 +131,29 @@ class QuadMesh:
 
 @dataclass(frozen=True)
 class Axis:
-    """Its ends, and its label and ticks where they change."""
+    """Its ends, and its label, unit and ticks where they change.
+
+    Attributes
+    ----------
+    unit
+        That of all that stands on it. As a view gives it, it is the SI unit that the page may turn
+        into another (`app.views.in_units`); empty for what stands as it is.
+    """
 
     low: float
     high: float
     label: str | None = None
     ticks: tuple[float, ...] | None = None
+    unit: str = ""
 
 
 @dataclass(frozen=True)
 class Colors:
-    """Values at both ends of a colour map, and their unit."""
+    """Values at both ends of a colour map, and their unit, as that of an axis."""
 
     low: float
     high: float
-    title: str | None = None
+    unit: str = ""
 
 
 @dataclass(frozen=True, eq=False)

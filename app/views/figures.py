@@ -140,7 +140,7 @@ def _axes(view: View, say: Language) -> Plot:
         y_scale=LogScale() if "y" in look.logarithmic else LinearScale(),
         x_range=Range1d(start=1, end=2, name=f"{slug}.x"),
         y_range=Range1d(start=1, end=2, name=f"{slug}.y"),
-        min_border_right=12,
+        min_border_right=16,
         min_border_top=6,
         # The card is seen instead.
         background_fill_color=None,

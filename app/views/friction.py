@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
-from app.views.scales import Limits, across, held, spanned, upright
+from app.views.scales import Limits, across, along, held, upright
 from app.views.scene import Scene
 
 ROOM = 1.25
@@ -21,10 +20,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     if begun.bound is None:
         return None
     limits = _limits(scene, float(begun.bound.max()) or 1.0, kept)
-    factor, unit = decimal_scale(limits[1] / ROOM, "N/m")
-    x = spanned(0.0, scene.length)
-    y = Axis(limits[0] / factor, limits[1] / factor, label=f"Force ({unit})")
-    places, bound = begun.positions, begun.bound / factor
+    x, y = along(0.0, scene.length), Axis(*limits, label="Force", unit="N/m")
+    places, bound = begun.positions, begun.bound
     curves = [
         upright(begun.cuts, y, color=GREY, alpha=0.35, width=1),
         across([0.0], x, color=GREY, alpha=0.4, width=1),
@@ -35,16 +32,15 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if begun.closed_form is not None:
-        curves.append(Curve(places, begun.closed_form[:, instant] / factor, GREEN, 7))
+        curves.append(Curve(places, begun.closed_form[:, instant], GREEN, 7))
         keys.append(Key(GREEN, "band", "closed form"))
     if scene.ghost is not None:
         before, fields, then = scene.ghost
-        curves.append(Curve(before.stand.positions, fields.friction[:, then] / factor, GHOST, 2))
+        curves.append(Curve(before.stand.positions, fields.friction[:, then], GHOST, 2))
         keys.append(Key(GHOST, "line", scene.ghost_name))
     if run.reference is not None:
-        force = run.reference.friction[:, instant] / factor
-        curves.append(Curve(places, force, ORANGE, 4.5))
-    curves.append(Curve(places, scene.frame.fields.friction[:, instant] / factor, BLUE))
+        curves.append(Curve(places, run.reference.friction[:, instant], ORANGE, 4.5))
+    curves.append(Curve(places, scene.frame.fields.friction[:, instant], BLUE))
     return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")), kept=limits)
 
 
@@ -61,7 +57,7 @@ def _limits(scene: Scene, bound: float, kept: Limits | None) -> Limits:
 
 VIEW = View(
     "Friction force",
-    Plot(POSITION, "Force (N/m)"),
+    Plot(POSITION, "Force"),
     draw,
     # Plane bodies have no bound that is known beforehand, and tractions instead.
     lambda settings: not is_plane(settings),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.picture.units import decimal_scale
+from app.picture.units import measured
 from app.views.colors import BLUE, FORCE, GREEN, GREY, PURPLE, VERMILION
 from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
@@ -24,20 +24,27 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
         return None
     units = {unit for _, unit, _ in paths}
     peaks = [float(np.abs(values).max()) or 1.0 for _, _, values in paths]
-    top = max(peaks)
-    factor, unit = decimal_scale(top, units.pop()) if len(units) == 1 else (0.0, "of peak")
+    alike = units.pop() if len(units) == 1 else ""
     time = float(scene.run.stand.instants[scene.instant])
     x = spanned(float(instants[0]), float(instants[-1]))
-    shown = [values / (factor or peak) for (_, _, values), peak in zip(paths, peaks, strict=True)]
+    shown = [
+        values / (1.0 if alike else peak) for (_, _, values), peak in zip(paths, peaks, strict=True)
+    ]
     low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
     room = (ROOM - 1.0) * (max(high, 0.0) - min(low, 0.0) or 1.0)
-    y = Axis(min(low, 0.0) - room, max(high, 0.0) + room, label=Phrase("{} ({})", "Load", unit))
+    y = Axis(
+        min(low, 0.0) - room,
+        max(high, 0.0) + room,
+        label="Load" if alike else Phrase("{} ({})", "Load", "of peak"),
+        unit=alike,
+    )
     curves = [across([0.0], x, color=GREY, alpha=0.4, width=1)]
     keys = []
     for (name, own, _), values, peak, color in zip(paths, shown, peaks, COLORS, strict=False):
         curves.append(Curve(instants, values, color))
-        size, prefixed = decimal_scale(peak, own)
-        keys.append(Key(color, "line", Phrase("{}, {} {}", name, f"{peak / size:.3g}", prefixed)))
+        keys.append(
+            Key(color, "line", Phrase("{}, {}", name, measured(peak, own, scene.look.units)))
+        )
     curves.append(upright([time], y, color=VERMILION, width=2))
     now = [np.interp(time, instants, one) for one in shown[: len(COLORS)]]
     return Drawing(x, y, curves, [Marks([time] * len(now), now, VERMILION)], keys=keys)

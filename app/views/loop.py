@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.shown import Axes
-from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
-from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, View, has_instants
+from app.views.drawing import Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, held, spanned
 from app.views.scene import Scene
@@ -30,25 +28,22 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     now = _pair(run, scene.frame.fields)
     ghost = _newest(scene.before, axes) if scene.before is not None else None
     limits = _limits(run, [now, ghost] if ghost else [now], kept)
-    (x, across), (y, up) = (
-        _axis(quantity, one) for quantity, one in zip((axes.across, axes.up), limits, strict=True)
+    x, y = (
+        spanned(*one, label=title, unit=unit)
+        for (title, unit), one in zip((axes.across, axes.up), limits, strict=True)
     )
-
-    def scaled(pair: Pair, *style: Any, **more: Any) -> Curve:
-        return Curve(pair[0] / across, pair[1] / up, *style, **more)
-
     curves, keys = [], [Key(BLUE, "line", scene.name)]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if ghost is not None:
-        curves.append(scaled(ghost, GHOST, 2))
+        curves.append(Curve(*ghost, GHOST, 2))
         keys.append(Key(GHOST, "line", scene.ghost_name))
     if run.reference is not None:
-        curves.append(scaled(_pair(run, run.reference), ORANGE, 4.5))
-    curves.append(scaled(now, BLUE))
+        curves.append(Curve(*_pair(run, run.reference), ORANGE, 4.5))
+    curves.append(Curve(*now, BLUE))
     time = begun.instants[scene.instant]
     at = [float(np.interp(time, begun.all_instants, one)) for one in now]
-    point = replace(POINT, x=[at[0] / across], y=[at[1] / up])
+    point = replace(POINT, x=at[:1], y=at[1:])
     return Drawing(x, y, curves, (point,), keys=keys, kept=limits)
 
 
@@ -80,15 +75,6 @@ def _newest(run: Recording, axes: Axes) -> Pair | None:
     return None if run.frame is None or run.stand.loop != axes else _pair(run, run.frame)
 
 
-def _axis(quantity: tuple[str, str], limits: Limits) -> tuple[Axis, float]:
-    """Put limits and a unit that suits them on an axis; give the factor of the unit too."""
-    title, unit = quantity
-    size = max(-limits[0], limits[1])
-    angle = (1e-3, "mrad") if size < 0.5 else (1.0, "rad")
-    factor, shown = decimal_scale(size, unit) if unit else angle
-    return spanned(limits[0] / factor, limits[1] / factor, label=f"{title} ({shown})"), factor
-
-
 def _around(
     values: Sequence[np.ndarray], settled: np.ndarray | None, unit: str, old: Limits | None
 ) -> Limits:
@@ -111,7 +97,7 @@ def _ends(values: Sequence[np.ndarray]) -> Limits:
 
 VIEW = View(
     "Hysteresis loop",
-    Plot("End displacement (mm)", "Force (N)", marks=(POINT,)),
+    Plot("End displacement", "Force", marks=(POINT,)),
     draw,
     has_instants,
 )

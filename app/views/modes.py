@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from app.picture.shown import ShownModes
-from app.picture.units import decimal_scale
+from app.picture.units import measured
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, has_instants, is_plane
 from app.views.legend import Key
-from app.views.scales import spanned, upright
+from app.views.scales import along, spanned, upright
 from app.views.scene import Scene
 from solver.scenes.words import Phrase
 
@@ -26,7 +26,7 @@ def draw_space(scene: Scene, _kept: None) -> Drawing | None:
         return None
     modes = bases.modes
     # A substructure of one element may rub at one point only.
-    x = spanned(float(modes.positions[0]), float(modes.positions[-1]))
+    x = along(float(modes.positions[0]), float(modes.positions[-1]))
     keys = (
         Key(GREY, "bare", Phrase("substructure {}", bases.substructure + 1)),
         Key(GREY, "bare", "modes of the search" if bases.is_left else news(modes)),
@@ -44,7 +44,7 @@ def draw_time(scene: Scene, _kept: None) -> Drawing | None:
     scaled = modes.time_functions / np.where(sizes > 0.0, sizes, 1.0)[:, None]
     chosen = upright([float(instants[scene.instant])], UP, color=VERMILION, width=2)
     keys = tuple(
-        Key(color, "line", _length(float(size)))
+        Key(color, "line", measured(float(size), "m", scene.look.units, 2))
         for color, size in zip(RANK_COLORS, sizes, strict=False)
     )
     x = spanned(float(instants[0]), float(instants[-1]))
@@ -64,11 +64,6 @@ def _curves(along: np.ndarray, lines: Any, modes: ShownModes) -> list[Curve]:
         Curve(along, lines[rank], RANK_COLORS[rank], dash="dashed" if modes.born[rank] else "solid")
         for rank in range(len(lines))[::-1]
     ]
-
-
-def _length(size: float) -> str:
-    factor, unit = decimal_scale(size, "m")
-    return f"{size / factor:.2g} {unit}" if size < 99.5 * factor else f"{size / factor:.0f} {unit}"
 
 
 SPACE_MODES = View(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.picture.portrait import THICKNESS, Portrait
-from app.picture.units import decimal_scale
+from app.picture.units import measured
 from app.views import acting
 from app.views.acting import Arrow
 from app.views.colors import (
@@ -71,8 +71,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
     outlines, ghosts = ghosts_of(scene, scale.factor)
     last, place = int(portrait.mesh.parts.max()), scene.look.place
     if place is not None:
-        unit, name = decimal_scale(posed.length, "m")
-        ghosts = [*ghosts, Key(VERMILION, "line", f"x = {place / unit:.3g} {name}")]
+        ghosts = [*ghosts, Key(VERMILION, "line", f"x = {measured(place, 'm', scene.look.units)}")]
     box = _box(posed, scale.reach * posed.size, sizes_of(scene))
     return Drawing(
         bodies=QuadMesh(
@@ -95,7 +94,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
             *_chosen(posed, scene, last),
             *(posed.curve(one, GHOST, 1.5) for one in outlines),
         ],
-        words=acting.words(posed, box),
+        words=acting.words(posed, box, scene.look.units),
         contacts=posed.contacts(scene.run.stand.interfaces),
         handles=_handles(posed, portrait, arrows, scene.run.settings),
         sentence=joined(" ", (scene.run.stand.words, SLIP)),

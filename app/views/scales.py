@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from app.views.drawing import Axis, Curve
+from app.views.drawing import POSITION, Axis, Curve
 
 
 def decades(values: ArrayLike, floor: float) -> tuple[float, float]:
@@ -83,6 +83,11 @@ def spanned(low: float, high: float, **options: Any) -> Axis:
     if not high > low:
         low, high = low - 0.5, high + 0.5
     return Axis(float(low), float(high), **options)
+
+
+def along(low: float, high: float) -> Axis:
+    """Give an axis along the bodies, m."""
+    return spanned(low, high, label=POSITION, unit="m")
 
 
 def in_decades(low: float, high: float) -> Axis:

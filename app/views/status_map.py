@@ -12,7 +12,7 @@ from app.picture.shown import Bytes
 from app.views.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, PURPLE, STICK, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Image, Plot, View
 from app.views.legend import Key
-from app.views.scales import across, spanned, upright
+from app.views.scales import across, along, spanned, upright
 from app.views.scene import Scene
 from solver.arrays import Array
 
@@ -32,7 +32,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
     half_x, half_t = 0.5 * _step(places), 0.5 * _step(instants)
     first_x, last_x = float(places[0]), float(places[-1])
     first_t, last_t = float(instants[0]), float(instants[-1])
-    x = spanned(0.0, scene.length)
+    x = along(0.0, scene.length)
     y = spanned(*_ends(scene, first_t - half_t, last_t + half_t))
     image = Image(
         np.ascontiguousarray((scene.frame.fields.status + 1).astype(np.uint8).T),

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.frames import DrawnFields
-from app.picture.units import decimal_scale
 from app.views.colors import BLUE, GREY, ORANGE, PURPLE
 from app.views.drawing import POSITION, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
-from app.views.scales import Limits, held, spanned, upright
+from app.views.scales import Limits, along, held, spanned, upright
 from app.views.scene import Scene
 
 KEYS = (
@@ -33,29 +32,27 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     shown = [one for each in drawn for one in (each.pressure, each.friction) if one is not None]
     low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
     limits = held(kept, min(low, -top), max(high, top))
-    factor, unit = decimal_scale(max(-limits[0], limits[1]), "Pa")
-    y = spanned(limits[0] / factor, limits[1] / factor, label=f"Traction ({unit})")
+    y = spanned(*limits, label="Traction", unit="Pa")
     curves = [upright(begun.cuts, y, color=GREY, alpha=0.35, width=1)]
     keys, past = list(KEYS), list[Key]()
     if scene.ghost is not None:
         before, fields, then = scene.ghost
-        curves += _pair(before.stand.positions, fields, then, factor, width=1.2)
+        curves += _pair(before.stand.positions, fields, then, width=1.2)
         past.append(Key(BLUE, "thin", scene.ghost_name))
     places = begun.positions
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
-        curves += _pair(places, run.reference, instant, factor, ORANGE, width=4.5)
+        curves += _pair(places, run.reference, instant, ORANGE, width=4.5)
     for sign in (1.0, -1.0):
-        curves.append(Curve(places, sign * bound[:, instant] / factor, GREY, 1.5, "dashed"))
-    curves += _pair(places, now, instant, factor)
-    return Drawing(spanned(0.0, scene.length), y, curves, keys=(*keys, *past), kept=limits)
+        curves.append(Curve(places, sign * bound[:, instant], GREY, 1.5, "dashed"))
+    curves += _pair(places, now, instant)
+    return Drawing(along(0.0, scene.length), y, curves, keys=(*keys, *past), kept=limits)
 
 
 def _pair(
     places: np.ndarray,
     fields: DrawnFields,
     instant: int,
-    factor: float,
     color: str = "",
     width: float = 2.5,
 ) -> list[Curve]:
@@ -63,9 +60,8 @@ def _pair(
     found = []
     for field, own in ((fields.pressure, PURPLE), (fields.friction, BLUE)):
         if field is not None:
-            values = field[:, instant] / factor
-            found.append(Curve(places, values, color or own, width))
+            found.append(Curve(places, field[:, instant], color or own, width))
     return found
 
 
-VIEW = View("Contact tractions", Plot(POSITION, "Traction (Pa)"), draw, is_plane)
+VIEW = View("Contact tractions", Plot(POSITION, "Traction"), draw, is_plane)

@@ -2,13 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from app.charts.layers import Here
+from app.picture.units import measured, minus
 from solver.settings import Settings
 from solver.study.chart import Chart
-from solver.study.sweep import Plan, Varied
-from solver.study.sweep.chart import is_map, ordered
+from solver.study.sweep import Plan, Row, Varied
+from solver.study.sweep.chart import chart_of, is_map, ordered
+from solver.study.sweep.columns import against, columns
+
+
+def columns_of(plan: Plan, chosen: tuple[str, str]) -> tuple[str, str]:
+    """Give the columns that are drawn, across and up: as chosen, or what is asked over what varies.
+
+    A setting of names stands across as it is.
+    """
+    usual = ordered(plan)[0].name, plan.readings[0].name
+    return chosen if all(name in (*columns(plan), usual[0]) for name in chosen) else usual
+
+
+def is_usual(plan: Plan, x: str, y: str) -> bool:
+    """Tell whether a chart of these columns is that of a quantity over what varies."""
+    return x == ordered(plan)[0].name and columns(plan)[y].place is not None
+
+
+def drawn(plan: Plan, rows: Sequence[Row], chosen: tuple[str, str], units: str) -> Chart:
+    """Make the chart of two columns, whatever has come of the plan so far, in SI."""
+
+    def tell(value: float, unit: str) -> str:
+        return minus(measured(value, unit, units, 4))
+
+    x, y = columns_of(plan, chosen)
+    if is_usual(plan, x, y):
+        return chart_of(plan, rows, columns(plan)[y].place or 0, tell)
+    return against(plan, rows, x, y, tell)
 
 
 def stands(plan: Plan, chart: Chart, settings: Settings) -> Here | None:

@@ -29,6 +29,8 @@ VARY, OF = "vary", "of"
 VALUES, COARSE = 13, 10
 """Values of a range: along a curve, and along each side of a map."""
 TENTH = 0.1
+BESIDE = ("peak_friction", "end_displacement", "stiffness", "dissipation", "stuck_share")
+"""Taken of every run for the table and its plots: together 1 to 6 % of its time (measured)."""
 CUTS = (1, 2, 5, 10, 20)
 """Numbers of substructures that are compared."""
 
@@ -102,7 +104,8 @@ class Question:
         SettingError
             For whatever of it cannot be run.
         """
-        plan = plan_of(self.asked(settings), self.vary, [self.of])
+        beside = [name for name in BESIDE if QUANTITIES[name].applies(settings)]
+        plan = plan_of(self.asked(settings), self.vary, [self.of, *beside])
         for name in plan.idle():
             remedy = "vary another setting"
             raise SettingError(name, "varied", "settings that do something here", remedy)

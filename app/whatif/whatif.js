@@ -22,7 +22,8 @@ const typed = (className, ariaLabel, tell) => {
 const spanned = (place, heading, tell) => {
   const shown = {}
   const send = (more = {}) => tell("span", {place, span: {name: select.value, low: low.value,
-    high: high.value, count: count.value, spacing: spacing.value, listed: listed.value, ...more}})
+    high: high.value, count: count.value, spacing: spacing.value, listed: listed.value, unit: unit.textContent,
+    ...more}})
   const label = (words) => `${heading}: ${words}`
   const select = make("select", {ariaLabel: label("setting"), onchange: () => send()})
   const low = typed("low", label("from"), send), high = typed("high", label("to"), send)
@@ -31,20 +32,21 @@ const spanned = (place, heading, tell) => {
   const spacing = make("select", {ariaLabel: label("spacing"), onchange: () => send()})
   filled(spacing, [["even", "even steps"], ["log", "even ratios"], ["list", "a list"]], "even")
   const names = make("span"), refused = make("span", {className: "refused", role: "alert"})
-  const parts = [low, "to", high, "in", count, "values,"].map((one) =>
+  const unit = make("span"), own_unit = make("span")
+  const parts = [low, "to", high, unit, "in", count, "values,"].map((one) =>
     typeof one === "string" ? make("span", {}, one) : one)
-  const row = make("div", {className: "row"}, make("b", {}, heading), select, ...parts, listed,
+  const row = make("div", {className: "row"}, make("b", {}, heading), select, ...parts, listed, own_unit,
     spacing, names, refused)
   shown.row = row
   shown.show = (form) => {
     const span = form.spans[place] ?? {name: "", spacing: "even"}
     const own = form.settings.find(({name}) => name === span.name)
-    const options = form.settings.map((one) =>
-      [one.name, one.unit ? `${one.title} (${one.unit})` : one.title])
+    const options = form.settings.map((one) => [one.name, one.title])
     filled(select, place ? [["", "nothing else"], ...options] : options, span.name)
     const isNamed = Boolean(own?.of.length), isListed = span.spacing === "list"
     for (const one of parts) { one.hidden = !span.name || isListed }
-    listed.hidden = !span.name || !isListed || isNamed
+    listed.hidden = own_unit.hidden = !span.name || !isListed || isNamed
+    unit.textContent = own_unit.textContent = span.unit ?? ""
     spacing.hidden = !span.name || isNamed
     names.hidden = !isNamed
     spacing.value = span.spacing
@@ -86,11 +88,21 @@ export function render({model}) {
     button("Table (CSV)", "Save the table of all runs.", () => tell("table")), " ",
     button("Chart (SVG)", "Save the chart.", () => save_svg(NAME, picture())), " ",
     button("Chart (PNG)", "Save the chart, painted.", () => save_png(NAME, picture())))
-  const progress = make("div", {className: "row"}, bar, far, exports)
+  const choose = () => tell("columns", {x: across.value, y: up.value})
+  const [up, across] = ["Drawn up", "Drawn across"].map((ariaLabel) =>
+    make("select", {ariaLabel, onchange: choose}))
+  const drawn_columns = make("span", {className: "columns"}, "Plot ", up, " over ", across)
+  const progress = make("div", {className: "row"}, bar, far, drawn_columns, exports)
   const legend = make("div", {className: "legend title"})
   const ended = make("span", {role: "status", className: "unseen"})
   const root = make("div", {className: "all"}, ready, ...spans.map(({row}) => row), asked, meshes, progress,
     legend, ended)
+  const follow_columns = () => {
+    const {names = [], x, y} = model.columns
+    drawn_columns.hidden = !names.length
+    filled(up, names, y ?? "")
+    filled(across, names, x ?? "")
+  }
   let wasBusy = false
   const follow_chart = () => {
     const {id, legend: keys, label} = model.chart
@@ -140,10 +152,12 @@ export function render({model}) {
   model.on("mesh", follow_meshes)
   model.on("progress", follow)
   model.on("chart", follow_chart)
+  model.on("columns", follow_columns)
   model.on("file", () => save(model.file[1], new Blob([model.file[0]], {type: "text/csv"})))
   show()
   follow()
   follow_meshes()
   follow_chart()
+  follow_columns()
   return root
 }

@@ -2,43 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, ClassVar
 
 import param
 
 from app.charts.filling import Filling
+from app.charts.in_units import in_units, placed, scales_of
 from app.charts.keys import legend
 from app.components.innards import Plain
 from app.components.panes import STATIC, column, script
-from app.picture.labels import label_of
-from app.picture.usual import changed, hurried
+from app.picture.units import SYSTEMS, of_files, scale_of
+from app.picture.usual import hurried
 from app.session.session import Session
 from app.session.studies import mesh_of_run
-from app.whatif.charted import is_comparable, is_of, stands
+from app.whatif.charted import columns_of, drawn, is_comparable, is_of, is_usual, stands
+from app.whatif.fields import NO_SECOND, form_of, in_si, watched
 from app.whatif.question import (
     READY,
     Question,
-    Span,
-    askable,
     bathtub,
     changed_quantity,
     changed_span,
-    names_of,
-    offered,
 )
-from solver.definitions import SettingError, about
+from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
-from solver.study.quantities import QUANTITIES, reading
-from solver.study.sweep import Plan
-from solver.study.sweep.chart import chart_of
+from solver.study.quantities import reading
+from solver.study.sweep import Plan, Row
+from solver.study.sweep.columns import columns
 from solver.study.sweep.report import counts
 from solver.study.sweep.table import csv_of
 
-NO_SECOND = Span()
 FILE = "what-if.csv"
 
 
@@ -56,6 +53,8 @@ class Asker(Plain):
         `words`, and the `found` HTML.
     chart
         The `id` of its figure, its `legend`, and a `label` for those who do not see it.
+    columns
+        The `names` and titles of what may be drawn, and which are: `x` and `y`.
     file
         A text that the browser is to save, its name, and a number that tells it from others.
     """
@@ -64,6 +63,7 @@ class Asker(Plain):
     progress = param.Dict(default={})
     mesh = param.Dict(default={})
     chart = param.Dict(default={})
+    columns = param.Dict(default={})
     file = param.List(default=[])
 
     _esm = script("elements.js", "exports.js", "whatif/chart.js", "whatif/whatif.js")
@@ -95,6 +95,7 @@ class WhatIf:
         self._meshed: tuple[dict[str, Any], str] | None = None
         self._filling = Filling(session.turns.soon, self.put_drawn)
         self._scene = session.wanted.scene
+        self._columns = "", ""
         self.view = column(role="paper what-if", margin=(4, 10), visible=False)
 
     def open(self) -> None:
@@ -124,7 +125,7 @@ class WhatIf:
 
     def hear(self, kind: str, value: Any) -> None:
         """Follow what the user does."""
-        {
+        does: dict[str, Callable[[], object]] = {
             "span": lambda: self._on_span(**value),
             "quantity": lambda: self._on_quantity(**value),
             "ready": lambda: self._on_ready(value),
@@ -134,7 +135,9 @@ class WhatIf:
             "there": lambda: self._filling.go_on(value),
             "run": lambda: self._on_run(value),
             "table": self._on_table,
-        }[kind]()
+            "columns": lambda: self._on_columns(value["x"], value["y"]),
+        }
+        does[kind]()
         self._refresh()
 
     def start(self) -> None:
@@ -147,7 +150,7 @@ class WhatIf:
         """Follow the fields of a setting; a second one without a name is none."""
         session = self._session
         spans = [*session.question.spans, NO_SECOND][:2]
-        spans[place] = changed_span(session.wanted, spans[place], span)
+        spans[place] = changed_span(session.wanted, spans[place], in_si(session.wanted, span))
         chosen = tuple(one for one in spans if one.name)
         session.question = Question(chosen, session.question.of)
 
@@ -159,6 +162,10 @@ class WhatIf:
         _, make = READY[title]
         self._session.question = make(self._session.wanted) or self._session.question
         self.start()
+
+    def _on_columns(self, x: str, y: str) -> None:
+        """Draw other columns of the table."""
+        self._columns = x, y
 
     def _on_run(self, number: int) -> None:
         """Open the run of a point, unless its settings were refused; the page watches as it did."""
@@ -178,7 +185,13 @@ class WhatIf:
         elif self._can_ask_of_meshes():
             self._meshed = settings.values(), self._session.question.of
             of = self._session.question.of
-            work = partial(mesh_of_run, settings.scene, hurried(settings).values(), of)
+            work = partial(
+                mesh_of_run,
+                settings.scene,
+                hurried(settings).values(),
+                of,
+                self._session.look.units,
+            )
             job.ask(reading(of).title, work)
 
     def _can_ask_of_meshes(self) -> bool:
@@ -202,7 +215,9 @@ class WhatIf:
         if self._asker is not None and inquiry.plan is not None:
             rows = sorted(inquiry.rows, key=lambda row: row.number)
             count = self._asker.file[2] + 1 if self._asker.file else 1
-            self._asker.file = [csv_of(inquiry.plan, rows), FILE, count]
+            units = of_files(self._session.look.units)
+            text = csv_of(inquiry.plan, rows, partial(scale_of, 0.0, units=units), SYSTEMS[units])
+            self._asker.file = [text, FILE, count]
 
     def _refresh(self) -> None:
         if self._asker is None:
@@ -215,10 +230,26 @@ class WhatIf:
                 self._drawn = plan
                 self._filling.clear()
                 self._label()
-            chart = chart_of(plan, inquiry.rows)
-            self._filling.show(chart, self._ghost(plan), stands(plan, chart, settings))
-        form, progress = form_of(self._session.question, settings), self._progress()
+            self._show_chart(plan, settings)
+        units = self._session.look.units
+        form, progress = form_of(self._session.question, settings, units), self._progress()
         self._asker.param.update(form=form, progress=progress, mesh=self._mesh())
+
+    def _show_chart(self, plan: Plan, settings: Settings) -> None:
+        """Show what has come of a plan, with the chart before, in the units of the page."""
+        chart, before = self._chart(plan, self._session.asked.inquiry.rows), self._ghost(plan)
+        scales = scales_of(chart, self._session.look.units)
+        x, y = columns_of(plan, self._columns)
+        is_there = is_usual(plan, x, y)
+        here = placed(stands(plan, chart, settings), scales) if is_there else None
+        found = [[name, one.title] for name, one in columns(plan).items()]
+        assert self._asker is not None
+        self._asker.columns = {"names": found, "x": x, "y": y}
+        ghost = before and in_units(before, scales)
+        self._filling.show(in_units(chart, scales), ghost, here)
+
+    def _chart(self, plan: Plan, rows: Sequence[Row]) -> Chart:
+        return drawn(plan, rows, self._columns, self._session.look.units)
 
     def _keep_to(self, settings: Settings) -> None:
         """Propose something else where another scene knows nothing of what is asked."""
@@ -230,7 +261,10 @@ class WhatIf:
 
     def _ghost(self, plan: Plan) -> Chart | None:
         before = self._session.asked.inquiry.before
-        return chart_of(*before) if before and is_comparable(plan, before[0]) else None
+        if before is None or not is_comparable(plan, before[0]):
+            return None
+        alike = columns_of(plan, self._columns) == columns_of(before[0], self._columns)
+        return self._chart(*before) if alike else None
 
     def _label(self) -> None:
         """Say beside the chart what it shows; nothing where there is none."""
@@ -260,37 +294,3 @@ class WhatIf:
             "words": " ".join(filter(None, (inquiry.notice, words))),
             "moved": not is_of(plan, question.asked(wanted)),
         }
-
-
-def watched(settings: Settings, wanted: Settings, varied: Collection[str]) -> Settings:
-    """Give the settings of a point as a page watches its run: to the end that it wants to see."""
-    ends = {"accuracy"} if settings.finish == "none" else {"accuracy", "finish"}
-    return settings.replace(**{name: getattr(wanted, name) for name in ends - set(varied)})
-
-
-def form_of(question: Question, settings: Settings) -> dict[str, Any]:
-    """Say what the fields offer, what they say, and what of it is refused."""
-    definitions = settings.definitions()
-    names = offered(settings)
-    names |= {one.name: definitions[one.name] for one in question.spans if one.name in definitions}
-    quantity, _, at = question.of.partition("@")
-    quantities = askable(settings)
-    quantities |= {quantity: QUANTITIES[quantity]} if quantity in QUANTITIES else {}
-    rest = changed(settings)
-    title = label_of(settings, rest, most=len(rest))
-    return {
-        "settings": [
-            {"name": name, "title": about(one).title, "unit": about(one).unit, "of": names_of(one)}
-            for name, one in names.items()
-        ],
-        "spans": [{**vars(one)} for one in (*question.spans, NO_SECOND)[:2]],
-        "quantities": [
-            {"name": name, "title": one.title, "at": one.parameter.words if one.parameter else ""}
-            for name, one in quantities.items()
-        ],
-        "quantity": quantity,
-        "at": at,
-        "refusals": question.refusals(settings),
-        "ready": [[title, help] for title, (help, make) in READY.items() if make(settings)],
-        "rest": title or "defaults",
-    }

@@ -42,7 +42,7 @@ def key_figures(scene: Scene) -> str:
     say = scene.look.say
     rows = [_Row("this run", _cells(run, iteration))]
     if before is not None and scene.is_paired:
-        rows = _paired(run, before, iteration)
+        rows = _paired(run, before, iteration, scene.look.units)
     elif before is not None:
         name = Phrase("run before ({})", escape(before.title))
         rows.append(_Row(name, _cells(before, before.iteration)))
@@ -86,12 +86,12 @@ def thing(run: Recording, frame: Frame) -> dict[str, str]:
     solution = Solution(frame.iterate, [], run.status or CANCELLED)
     energy = FinishedRun(run.settings, solution, False, frame.sampler.loop).dissipated.sum()
     found = {
-        title: measured(float(along[column]), unit),
+        title: measured(float(along[column]), unit, look.units),
         "Slips": percent(float(np.mean((status != 0) & (status != STATUS_OPEN)))),
-        "Energy lost": measured(float(energy), "J"),
+        "Energy lost": measured(float(energy), "J", look.units),
     }
     if (stress := _stress(frame)) is not None:
-        found["Largest stress"] = measured(stress, "Pa")
+        found["Largest stress"] = measured(stress, "Pa", look.units)
     return {name: text.replace("-", "−") for name, text in found.items()}
 
 
@@ -132,20 +132,22 @@ class _Row(NamedTuple):
     whole: str = ""
 
 
-def _paired(run: Recording, twin: Recording, iteration: int) -> list[_Row]:
+def _paired(run: Recording, twin: Recording, iteration: int, units: str) -> list[_Row]:
     """Give the figures of run B, and of run A as far as B in iterations, and in time."""
     return [
-        _compared("B", run, twin, "as A", iteration),
-        _compared("A", twin, run, "as B", twin.shown),
+        _compared("B", run, twin, "as A", iteration, units),
+        _compared("A", twin, run, "as B", twin.shown, units),
         _at_equal_time(run, twin, iteration),
     ]
 
 
-def _compared(name: str, run: Recording, other: Recording, alike: str, iteration: int) -> _Row:
+def _compared(
+    name: str, run: Recording, other: Recording, alike: str, iteration: int, units: str
+) -> _Row:
     """Give the figures of a run, which is called by what it has other than the other one."""
     changes = changes_of(run.settings, other.settings)
     few, all_of_them = (
-        f"{name} ({escape(label_of(run.settings, changes, most) or alike)})"
+        f"{name} ({escape(label_of(run.settings, changes, units, most) or alike)})"
         for most in (FEW, len(changes))
     )
     return _Row(few, _cells(run, iteration), all_of_them)

@@ -12,9 +12,11 @@ import numpy as np
 from app.languages.language import Language
 from app.picture.glossary import ENGLISH
 from app.picture.shown import Look
+from app.picture.units import titled
 from app.views.catalogue import fitting
 from app.views.colors import VERMILION
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
+from app.views.in_units import in_units
 from app.views.legend import card_title
 from app.views.scales import upright
 from app.views.scene import Scene
@@ -63,7 +65,7 @@ class Painter:
             drawing = view.draw(scene, self._kept.get(view.slug))
             if drawing is not None:
                 self._kept[view.slug] = drawing.kept
-                yield view, marked(view, drawing, scene.look.place)
+                yield view, in_units(marked(view, drawing, scene.look.place), scene.look.units)
 
     def say(
         self, words: Mapping[str, str], models: Mapping[str, Attributes] | None = None
@@ -117,7 +119,7 @@ def parts(view: View, drawing: Drawing, say: Language = ENGLISH) -> dict[str, At
         "title": {"text": card_title(view.name, drawing.keys, drawing.sentence, say)}
     }
     for name, axis in (("x", drawing.x), ("y", drawing.y)):
-        found.update(_axis(name, axis, say))
+        found.update(_axis(name, axis, say, is_fitted=drawing.bodies is not None))
     found["curves"] = _curves(drawing)
     if view.plot.words:
         found["curves"] = {**found["curves"], **_shifts(drawing.curves)}
@@ -132,17 +134,21 @@ def parts(view: View, drawing: Drawing, say: Language = ENGLISH) -> dict[str, At
         found.update(_bodies(drawing.bodies))
     if drawing.colors is not None:
         found["colors"] = {"low": drawing.colors.low, "high": drawing.colors.high}
-        if drawing.colors.title is not None:
-            found["color-bar"] = {"title": say(drawing.colors.title)}
+        if drawing.colors.unit:
+            found["color-bar"] = {"title": drawing.colors.unit}
     return {f"{view.slug}.{name}": attributes for name, attributes in found.items()}
 
 
-def _axis(name: str, axis: Axis | None, say: Language) -> Iterator[tuple[str, Attributes]]:
+def _axis(
+    name: str, axis: Axis | None, say: Language, *, is_fitted: bool
+) -> Iterator[tuple[str, Attributes]]:
+    """Give what an axis says, and where it ends unless bodies are fitted into it."""
     if axis is None:
         return
-    yield name, {"start": axis.low, "end": axis.high}
+    if not is_fitted:
+        yield name, {"start": axis.low, "end": axis.high}
     if axis.label is not None:
-        yield f"{name}-axis", {"axis_label": say(axis.label)}
+        yield f"{name}-axis", {"axis_label": say(titled(axis.label, axis.unit))}
     if axis.ticks is not None:
         yield f"{name}-ticks", {"ticks": list(axis.ticks)}
 

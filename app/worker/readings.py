@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from app.picture.units import measured
+from app.picture.units import BY_SIZE, measured
 from app.views.scene import Scene
 from app.worker.words import number, percent
 from solver.latin import Solution
@@ -37,12 +37,12 @@ def values(scene: Scene) -> list[tuple[str, str]]:
         asked = reading(name)
         value = asked(so_far)
         known = is_final or math.isfinite(value)
-        text = written(value, asked.quantity, iterate.number) if known else OPEN
+        text = written(value, asked.quantity, iterate.number, scene.look.units) if known else OPEN
         found.append((name, scene.look.say(text)))
     return found
 
 
-def written(value: float, quantity: Quantity, done: int) -> str:
+def written(value: float, quantity: Quantity, done: int, units: str = BY_SIZE) -> str:
     """Write a quantity of a run of so many iterations with its unit (HTML)."""
     if math.isnan(value):
         return NONE
@@ -51,4 +51,4 @@ def written(value: float, quantity: Quantity, done: int) -> str:
         return "not reached" if quantity.unit else Phrase("more than {}", done)
     if quantity.is_share:
         return percent(value)
-    return measured(value, quantity.unit) if quantity.unit else number(value)
+    return measured(value, quantity.unit, units) if quantity.unit else number(value)

@@ -11,10 +11,12 @@ import numpy as np
 from app.picture.frames import DrawnFields
 from app.picture.recording import COLUMNS, History, Recording
 from app.picture.shown import instant_of
+from app.picture.units import SYSTEMS, of_files, scale_of, titled
 from app.views.scene import Scene
 from solver.checked import dump
 
 Row = Sequence[object]
+Factor = np.float32
 UNITS = {"seconds": "run time (s)"}
 """Of the columns of a history; the others are counts and shares."""
 
@@ -39,7 +41,8 @@ def table(what: str, scene: Scene) -> str:
 def _head(scene: Scene) -> Iterator[str]:
     stand, fields = scene.run.stand, scene.frame.fields
     yield f"Slipfront, {scene.run.settings.scene}, {stand.interface}"
-    yield f"{scene.name} at {scene.run.called(scene.frame.iteration)}; SI units"
+    system = SYSTEMS[of_files(scene.look.units)]
+    yield f"{scene.name} at {scene.run.called(scene.frame.iteration)}; {system}"
     shown, whole = len(stand.instants), scene.run.settings.instants
     if shown < whole:
         yield f"{shown} of {whole} instants"
@@ -69,13 +72,14 @@ def _fields(scene: Scene) -> Iterator[tuple[str, Recording, DrawnFields]]:
 def _points(scene: Scene) -> Iterator[Row]:
     """Give the fields along the interface at the chosen instant."""
     has_pressure = scene.frame.fields.pressure is not None
-    unit = "Pa" if has_pressure else "N/m"
-    pressure = ["pressure (Pa)"] if has_pressure else []
-    yield ["run", "time (s)", "position (m)", f"friction ({unit})", *pressure, "status"]
+    told = [("position", "m"), ("friction", "Pa" if has_pressure else "N/m"), ("pressure", "Pa")]
+    heads, factors = _in_units(scene, told if has_pressure else told[:2])
+    yield ["run", "time (s)", *heads, "status"]
     for name, run, fields in _fields(scene):
         column = instant_of(scene.look.phase, fields.friction.shape[1])
         columns = [run.stand.positions, fields.friction[:, column]]
         columns += [] if fields.pressure is None else [fields.pressure[:, column]]
+        columns = [one / factor for one, factor in zip(columns, factors, strict=True)]
         time = _number(run.stand.instants[column])
         for values, status in zip(
             zip(*columns, strict=True), fields.status[:, column], strict=True
@@ -86,16 +90,22 @@ def _points(scene: Scene) -> Iterator[Row]:
 def _instants(scene: Scene) -> Iterator[Row]:
     """Give force and displacement of the loaded end over time."""
     axes = scene.run.stand.loop
-    yield [
-        "run",
-        "time (s)",
-        *(f"{title} ({unit or 'rad'})" for title, unit in (axes.across, axes.up)),
-    ]
+    heads, (across, up) = _in_units(scene, [axes.across, axes.up])
+    yield ["run", "time (s)", *heads]
     for name, run, fields in _fields(scene):
         load = run.stand.load if fields.load is None else fields.load
         if load is not None and run.stand.loop == axes:
-            for row in zip(run.stand.all_instants, fields.end_displacement, load, strict=True):
+            values = fields.end_displacement / across, load / up
+            for row in zip(run.stand.all_instants, *values, strict=True):
                 yield [name, *map(_number, row)]
+
+
+def _in_units(scene: Scene, told: Sequence[tuple[str, str]]) -> tuple[list[str], list[Factor]]:
+    """Give heads of columns, and what their values in SI are divided by."""
+    units = of_files(scene.look.units)
+    found = [scale_of(0.0, unit, units) for _, unit in told]
+    heads = [titled(title, name) for (title, _), (_, name) in zip(told, found, strict=True)]
+    return heads, [np.float32(factor) for factor, _ in found]
 
 
 def _iterations(scene: Scene) -> Iterator[Row]:

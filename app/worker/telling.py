@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.picture.units import titled
 from app.views.drawing import Axis, Curve, Drawing, View
 from app.views.legend import Key
 from solver.arrays import Array
@@ -22,7 +23,7 @@ def told(view: View, drawing: Drawing) -> str:
     if drawing.image is not None and not plot.scale:
         return Phrase("{}: {}.", _axes(view, drawing), _shares(drawing))
     if drawing.colors is not None and (drawing.image is not None or drawing.bodies is not None):
-        title = drawing.colors.title or plot.scale
+        title = drawing.colors.unit or plot.scale
         ends = f"{drawing.colors.low:.3g}", f"{drawing.colors.high:.3g}"
         return Phrase("{} from {} to {}, as colours.", title, *ends)
     named = [(key.text, _curve_of(key, drawing)) for key in keys if key.mark in LINES]
@@ -45,7 +46,7 @@ def _axes(view: View, drawing: Drawing) -> str:
 
 
 def _label(axis: Axis | None, label: str) -> str:
-    return axis.label if axis is not None and axis.label else label
+    return titled(axis.label, axis.unit) if axis is not None and axis.label else label
 
 
 def _curve_of(key: Key, drawing: Drawing) -> Curve | None:

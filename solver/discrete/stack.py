@@ -68,8 +68,9 @@ def _given(given: Given, side: str, component: int) -> Act:
     first, last = ends_of(side)
     unit = "m" if given.prescribed else "Pa"
     is_normal = away[component] != 0.0
-    symbol = "u" if given.prescribed else "σ" if is_normal else "τ"
-    where = f"{side} {'xy'[component]}"
+    along = "xy"[component]
+    symbol = f"u_{along}" if given.prescribed else "σ" if is_normal else "τ"
+    where = f"{side} {along}"
     if np.any(given.slope):
         values = np.stack([given.mean - given.slope, given.mean + given.slope])
         return Act(where, symbol, np.stack([first, last]), towards, away, values, unit)

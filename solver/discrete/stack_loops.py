@@ -23,7 +23,7 @@ def loop_of_stack(scene: StackData, problem: Problem) -> Loop:
     if scene.sides["right"].y.prescribed:
         return _deflection(problem)
     return Loop(
-        ("Rotation of the end", ""), ("Moment", "N m"), end_rotation(problem), _moment(scene)
+        ("Rotation of the end", "rad"), ("Moment", "N·m"), end_rotation(problem), _moment(scene)
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +22,7 @@ MARGIN = 0.06
 """Share of an axis that lies beyond the values on either side."""
 SAMPLED = 0.5
 """Share of the points up to which runs are few."""
+Tell = Callable[[float, str], str]
 NEVER, NONE = "never", "none: a run with these settings has no such value"
 
 
@@ -31,9 +32,17 @@ def charts(plan: Plan, rows: Sequence[Row]) -> list[Chart]:
     return [_filled(one) if isinstance(one, Map) and _is_sampled(one.z) else one for one in made]
 
 
-def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0) -> Chart:
-    """Make the chart of a reading, whatever has come of the plan so far."""
-    return (_map if is_map(plan) else _panel)(plan, rows, place)
+def plainly(value: float, unit: str) -> str:
+    """Write a value with its unit."""
+    return f"{value:.4g} {unit}".strip().replace("-", "−")
+
+
+def chart_of(plan: Plan, rows: Sequence[Row], place: int = 0, tell: Tell = plainly) -> Chart:
+    """Make the chart of a reading, whatever has come of the plan so far, in SI.
+
+    Words in it have values as `tell` writes them, of a value and its unit.
+    """
+    return (_map if is_map(plan) else _panel)(plan, rows, place, tell)
 
 
 def ordered(plan: Plan) -> list[Varied]:
@@ -74,10 +83,10 @@ def is_wide(values: Array) -> bool:
     return bool(values.size and values.min() > 0.0 and values.max() > DECADES * values.min())
 
 
-def _map(plan: Plan, rows: Sequence[Row], place: int) -> Map:
+def _map(plan: Plan, rows: Sequence[Row], place: int, tell: Tell) -> Map:
     across, up = ordered(plan)
     x, y = (np.array(axis.values, dtype=float) for axis in (across, up))
-    good = _factor(plan, place) * grid(plan, rows, place)
+    good = factor_of(plan, place) * grid(plan, rows, place)
     good = (good.T if plan.axes[0] is across else good)[np.argsort(y)][:, np.argsort(x)]
     return Map(
         plan.readings[place].title,
@@ -87,7 +96,7 @@ def _map(plan: Plan, rows: Sequence[Row], place: int) -> Map:
         np.sort(y),
         _scale(plan, place, good),
         good,
-        _runs(plan, rows, place),
+        runs_of(plan, rows, place, tell),
     )
 
 
@@ -109,11 +118,11 @@ def _filled(chart: Map) -> Map:
     return replace(chart, z=filled, is_sampled=True)
 
 
-def _panel(plan: Plan, rows: Sequence[Row], place: int) -> Panel:
+def _panel(plan: Plan, rows: Sequence[Row], place: int, tell: Tell) -> Panel:
     across, *up = ordered(plan)
-    runs = _runs(plan, rows, place)
+    runs = runs_of(plan, rows, place, tell)
     curves = []
-    for hue, label in enumerate(_labels(plan, up), start=1):
+    for hue, label in enumerate(labels_of(plan, up, tell), start=1):
         own = np.flatnonzero(runs.hues == hue)
         own = own[np.argsort(runs.x[own])]
         if not across.is_numeric:  # nothing lies between names
@@ -126,14 +135,14 @@ def _panel(plan: Plan, rows: Sequence[Row], place: int) -> Panel:
     x_axis, y_axis = _scale_of(plan, across), _scale(plan, place, runs.y)
     return Panel(
         plan.readings[place].title,
-        replace(x_axis, limits=_limits(_places(across), x_axis, across.is_numeric)),
-        replace(y_axis, limits=_limits(runs.y, y_axis)),
+        replace(x_axis, limits=limits_of(_places(across), x_axis, across.is_numeric)),
+        replace(y_axis, limits=limits_of(runs.y, y_axis)),
         tuple(curves),
         runs,
     )
 
 
-def _limits(values: Array, axis: PanelAxis, is_numeric: bool = True) -> tuple[float, float]:
+def limits_of(values: Array, axis: PanelAxis, is_numeric: bool = True) -> tuple[float, float]:
     """Give what an axis shows: all values with a margin, from zero where that is as near."""
     known = values[np.isfinite(values)]
     if not known.size:
@@ -148,18 +157,21 @@ def _limits(values: Array, axis: PanelAxis, is_numeric: bool = True) -> tuple[fl
     return (0.0 if 0.0 <= low < by else low - by, high + by)
 
 
-def _labels(plan: Plan, up: Sequence[Varied]) -> list[str]:
+def labels_of(plan: Plan, up: Sequence[Varied], tell: Tell) -> list[str]:
     """Name the curves of a chart; a single one needs no name."""
-    return [f"{plan.title(axis)} {text}" for axis in up for text in _texts(plan, axis)] or [""]
+    return [f"{plan.title(axis)} {text}" for axis in up for text in _texts(plan, axis, tell)] or [
+        ""
+    ]
 
 
-def _runs(plan: Plan, rows: Sequence[Row], place: int) -> Runs:
+def runs_of(plan: Plan, rows: Sequence[Row], place: int, tell: Tell) -> Runs:
+    """Give where the runs stand on the chart of a reading, and what they came to."""
     across, *up = ordered(plan)
     numbers = np.array([row.number for row in rows], dtype=int)
     where = dict(
         zip((axis.name for axis in plan.axes), np.unravel_index(numbers, plan.shape), strict=True)
     )
-    values = _factor(plan, place) * np.array([row.values[place] for row in rows], dtype=float)
+    values = factor_of(plan, place) * np.array([row.values[place] for row in rows], dtype=float)
     values[~np.isfinite(values)] = np.nan
     level = where[up[0].name] if up else np.zeros(len(rows), dtype=int)
     on_map = is_map(plan)
@@ -170,23 +182,25 @@ def _runs(plan: Plan, rows: Sequence[Row], place: int) -> Runs:
         values,
         level + 1,
         np.array([row.holds for row in rows], dtype=bool) & np.isfinite(values),
-        _said(plan, rows, place, {axis.name: where[axis.name] for axis in (across, *up)}),
+        _said(plan, rows, place, {axis.name: where[axis.name] for axis in (across, *up)}, tell),
     )
 
 
-def _said(plan: Plan, rows: Sequence[Row], place: int, where: dict[str, Indices]) -> list[str]:
+def _said(
+    plan: Plan, rows: Sequence[Row], place: int, where: dict[str, Indices], tell: Tell
+) -> list[str]:
     """Say of every run where it stands, and what it came to or why that is no answer."""
     axes = {axis.name: axis for axis in plan.axes}
     texts = {
-        name: [f"{plan.title(axes[name])} {text}" for text in _texts(plan, axes[name])]
+        name: [f"{plan.title(axes[name])} {text}" for text in _texts(plan, axes[name], tell)]
         for name in where
     }
-    factor, unit = _factor(plan, place), _unit(plan, place)
+    factor, unit = factor_of(plan, place), unit_of(plan, place)
     said = []
     for i, row in enumerate(rows):
         point = ", ".join(texts[name][places[i]] for name, places in where.items())
         value = row.values[place]
-        number = f"{_written(factor * value)} {unit}".strip() if math.isfinite(value) else ""
+        number = tell(factor * value, unit) if math.isfinite(value) else ""
         said.append(f"{point}: {'; '.join(filter(None, (number, _reason(row, value))))}")
     return said
 
@@ -198,15 +212,10 @@ def _reason(row: Row, value: float) -> str:
     return NEVER if math.isinf(value) else NONE if math.isnan(value) else ""
 
 
-def _written(value: float) -> str:
-    return f"{value:.4g}".replace("-", "−")
-
-
-def _texts(plan: Plan, axis: Varied) -> list[str]:
+def _texts(plan: Plan, axis: Varied, tell: Tell) -> list[str]:
     """Write the values of a setting, with their unit."""
     values = map(plain, axis.values)
-    texts = (one if isinstance(one, str) else _written(one) for one in values)
-    return [f"{one} {plan.unit(axis)}".strip() for one in texts]
+    return [one if isinstance(one, str) else tell(one, plan.unit(axis)) for one in values]
 
 
 def _places(axis: Varied) -> Array:
@@ -224,14 +233,15 @@ def _scale_of(plan: Plan, axis: Varied) -> PanelAxis:
 def _scale(plan: Plan, place: int, values: Array) -> PanelAxis:
     """Give the scale of a reading: of decades, where it goes over several."""
     wide = is_wide(values[np.isfinite(values)])
-    return PanelAxis(plan.readings[place].title, _unit(plan, place), wide)
+    return PanelAxis(plan.readings[place].title, unit_of(plan, place), wide)
 
 
-def _factor(plan: Plan, place: int) -> float:
+def factor_of(plan: Plan, place: int) -> float:
     """Give by what a reading is multiplied: shares are told in per cent."""
     return 100.0 if plan.readings[place].quantity.is_share else 1.0
 
 
-def _unit(plan: Plan, place: int) -> str:
+def unit_of(plan: Plan, place: int) -> str:
+    """Give the unit in which a reading is told."""
     quantity = plan.readings[place].quantity
     return "%" if quantity.is_share else quantity.unit
