@@ -27,7 +27,7 @@ class Page:
         self.drawing, self.size, box = drawing, (wide, tall), drawing.bodies.box
         across, up = box.right - box.left, box.high - box.low
         inner = tall - LINE * sum(box.lines)
-        wanted = 0.45 * inner if box.flattest else up * wide / across
+        wanted = box.filled * inner if box.flattest else up * wide / across
         aside = box.room[2] + box.room[3]
         self.unit = max(min((inner - wanted) / aside, wide / 400, 1.6), 0.35)
         lines = (0, 0, *box.lines)
@@ -97,6 +97,12 @@ def test_all_that_is_drawn_is_seen_at_any_size_and_no_word_lies_on_another(scene
 @pytest.mark.parametrize("size", CARDS)
 def test_long_bodies_take_three_quarters_of_the_width(scene: str, size: tuple[int, int]) -> None:
     assert np.ptp(undeformed(Page(pictured(looked_at(scene)), *size))[:, 0]) >= 0.75 * size[0]
+
+
+def test_layers_are_thick_enough_to_tell_them_apart_in_a_low_band() -> None:
+    shown, band = looked_at("layers"), 110
+    high = np.ptp(undeformed(Page(pictured(shown), 940, band))[:, 1])
+    assert high / shown.run.stand.portrait.described.bodies >= 0.1 * band
 
 
 @pytest.mark.parametrize("scene", ["block", "incline"])

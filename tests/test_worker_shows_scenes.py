@@ -176,12 +176,11 @@ def test_a_run_without_a_reference_says_nothing_of_errors(layers: int, known: bo
 
 
 def test_magnification_shows_the_displacement_and_holds_while_it_does() -> None:
-    none = np.zeros((0, 4), np.int32)
-    mesh = Mesh(np.array([[0.0, 0.0], [0.5, 0.1]], dtype=np.float32), none, none[:, 0])
-    assert fitting(mesh, 1e-5) == 2000.0
-    assert fitting(mesh, 1.3e-5, 2000.0) == 2000.0
-    assert fitting(mesh, 1e-2, 2000.0) == 2.0
-    assert fitting(mesh, 0.0, 20.0) == 20.0
+    size = 0.5
+    assert fitting(size, 1e-5) == 2000.0
+    assert fitting(size, 1.3e-5, 2000.0) == 2000.0
+    assert fitting(size, 1e-2, 2000.0) == 2.0
+    assert fitting(size, 0.0, 20.0) == 20.0
 
 
 def test_limits_hold_as_long_as_they_suit() -> None:

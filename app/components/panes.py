@@ -29,6 +29,16 @@ HEADER = {
 """Its parts have all of its width; the name of the page goes where there is no room for it."""
 
 
+CLOSE = {
+    "& .MuiSelect-select": {
+        "fontSize": "14px",
+        "lineHeight": "23px",
+        "padding": "6px 22px 6px 8px !important",
+    }
+}
+"""A list in a row of others has no room to spare."""
+
+
 def column(*parts: Any, role: str, **options: Any) -> pn.Column:
     """Put parts one below the other."""
     return pn.Column(*parts, **{"margin": 0, **looks(role), **options})
@@ -55,7 +65,7 @@ def select(
     label: str, options: Any, choose: Callable[[Any], None] = lambda value: None, **more: Any
 ) -> pmui.Select:
     """Give a small list to choose from; `choose` is told what is chosen."""
-    made = pmui.Select(label=label, options=options, size="small", **more)
+    made = pmui.Select(label=label, options=options, size="small", sx=CLOSE, **more)
     made.param.watch(lambda event: choose(event.new), "value")
     return made
 

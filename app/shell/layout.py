@@ -15,6 +15,8 @@ LONG = 2.5
 """Times its height from which a scene is as long that its picture gets the whole width."""
 A_ROW, ROWS = 3, 2
 """Cards beside each other at most, and rows of them that fit the window."""
+LEAST = 152
+"""Height of a card with two lines of legend, in which the title of an axis is seen, px."""
 BESIDE = (
     ("p",),
     ("p a",),
@@ -82,10 +84,10 @@ def _in_rows(count: int, *, has_band: bool) -> Layout:
     rows = max(-(-count // A_ROW), 1)
     of_rows = [count // rows + (number < count % rows) for number in range(rows)]
     spans = [6 // of_row for of_row in of_rows for _ in range(of_row)]
-    band = (30 if rows > 1 else 38) if has_band else 0
+    band = (32 if rows > 1 else 38) if has_band else 0
     seen = min(rows, ROWS)
     gaps = 8 * (seen - 1 + has_band) / seen
-    row = f"max(120px, {(100 - band) / seen:g}% - {gaps:g}px)"
+    row = f"max({LEAST}px, {(100 - band) / seen:g}% - {gaps:g}px)"
     first = f"max(110px, {band}%) " if has_band else ""
     areas = [f"auto / span {span}" for span in spans]
     return Layout(

@@ -52,7 +52,7 @@ class Looks:
     def _interface(self) -> Any:
         what = "The one whose forces and status are drawn; a tap on it in the picture chooses it."
         say = self._session.say
-        return select(say("Interface"), [], self._choose, width=145, description=say(what))
+        return select(say("Interface"), [], self._choose, width=118, description=say(what))
 
     @cached_property
     def _stress(self) -> Any:

@@ -36,7 +36,8 @@ AGREES = "Run anyway, however long that takes (space)."
 FIXED = 6
 """Buttons, pace and sliders, which always stand there."""
 PLAIN = {"whiteSpace": "nowrap"}
-SMALL = {"& button": {"textTransform": "none", "padding": "4px 14px"}}
+SMALL = {"& button": {"textTransform": "none", "padding": "4px 9px"}}
+NARROW = {"minWidth": 0, "padding": "4px 7px"}
 PLAYED_IN, SOONEST = 8.0, 0.025
 """Seconds in which one plays through time, and least between two instants that are shown."""
 
@@ -58,8 +59,8 @@ class Transport:
         self._next = session.turns.timer(self.play_on)
         self._make_buttons()
         self._make_sliders()
-        styles = {"flex": "1 1 320px"}
-        self._sliders = row(self._iteration, self._instant, min_width=320, styles=styles)
+        styles = {"flex": "1 1 312px"}
+        self._sliders = row(self._iteration, self._instant, min_width=312, styles=styles)
         parts = self._run, self._step, self._reset, self._way, self._pace
         for part in parts:
             part.margin = (5, 4, 5, 10 if part is self._run else 4)
@@ -226,15 +227,19 @@ class Transport:
             say("Pause"),
             "pause",
             self.toggle,
-            min_width=104,
+            min_width=98,
             sx=PLAIN,
             color="primary",
             description=say(RUNS),
         )
-        beside = {"variant": "outlined", "description": say("Do one iteration and wait (s).")}
-        self._step = button(say("Step"), "skip_next", self.step, **beside)
+        beside = {
+            "variant": "outlined",
+            "sx": NARROW,
+            "description": say("Do one iteration and wait (s)."),
+        }
+        self._step = button(say("Step"), "", self.step, **beside)
         beside["description"] = say("Start the run again, from its usual start (r).")
-        self._reset = button(say("Reset"), "restart_alt", self.reset, **beside)
+        self._reset = button(say("Reset"), "", self.reset, **beside)
         self._way = pmui.RadioButtonGroup(
             options=self._options(ENDS),
             value=WATCH,
@@ -248,7 +253,7 @@ class Transport:
             self._options(LABELS),
             lambda name: self._session.set_pace(PACES[name]),
             value=next(name for name, pace in PACES.items() if pace == self._session.pace),
-            width=160,
+            width=134,
             description=say("Iterations shown in a second; waiting is no part of the run time."),
         )
 

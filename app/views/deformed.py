@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.portrait import rims
-from app.picture.shown import Mesh
 from app.views.colors import GHOST, GREY
 from app.views.drawing import Axis, Box, Colors, Curve, Drawing, Plot, QuadMesh, View, is_plane
 from app.views.legend import Key
@@ -32,7 +31,7 @@ def draw(scene: Scene, kept: float | None) -> Drawing | None:
     fit = kept or 1.0
     factor = scene.look.magnification
     if factor is None:
-        factor = fit = fitting(mesh, field.largest, fit)
+        factor = fit = fitting(float(np.ptp(mesh.nodes, axis=0).max()), field.largest, fit)
     moved = mesh.nodes + np.float32(factor) * field.displacement
     limits = around(float(field.stress.min()), float(field.stress.max()))
     reach = round_up(factor * reach_of(scene)) if field.largest > 0.0 else 0.0
@@ -91,12 +90,11 @@ def _box(scene: Scene, reach: float) -> Box:
     )
 
 
-def fitting(mesh: Mesh, largest: float, present: float = 1.0) -> float:
+def fitting(size: float, largest: float, present: float = 1.0) -> float:
     """Give a magnification of 1, 2 or 5 times a power of ten at which a displacement shows.
 
-    The present one is kept as long as it does.
+    It shows on bodies of this size, m. The present one is kept as long as it does.
     """
-    size = float(np.ptp(mesh.nodes, axis=0).max())
     if not (np.isfinite(largest) and largest > 0.0):
         return present
     wanted = SHOWN * size / largest

@@ -99,6 +99,8 @@ class Box:
         Lines of words below and above these.
     flattest
         Metres up in a pixel, at least, where heights are not to scale; 0 where they are.
+    filled
+        Share of the height, without words, that bodies are to have where it is not to scale.
     """
 
     left: float
@@ -108,6 +110,7 @@ class Box:
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     lines: tuple[int, int] = (0, 0)
     flattest: float = 0.0
+    filled: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)

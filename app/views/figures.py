@@ -43,9 +43,9 @@ const wide = figure.inner_width, tall = figure.inner_height
 if (!(wide > 1 && tall > 1 && right > left)) { return }
 // Words have the size of type; of the rest, what is beside the bodies takes what these leave.
 const line = words ? LINE * parseFloat(words.text_font_size.value) / 13 : 0
-const [, , under = 0, over = 0, lines_under = 0, lines_over = 0, flattest = 0] = rooms
+const [, , under = 0, over = 0, lines_under = 0, lines_over = 0, flattest = 0, filled] = rooms
 const aside = under + over, inner = tall - line * (lines_under + lines_over)
-const wanted = flattest ? 0.45 * inner : (high - low) * wide / (right - left)
+const wanted = flattest ? filled * inner : (high - low) * wide / (right - left)
 const unit = Math.max(Math.min((inner - wanted) / (aside || 1), wide / 400, 1.6), 0.35)
 const [before, after, below, above] = [0, 0, lines_under, lines_over].map((count, side) =>
   unit * rooms[side] + line * count)

@@ -39,12 +39,17 @@ from solver.settings import Settings
 
 MARGIN = 6.0
 """Pixels that are left free on every side."""
-THICKEST, LAYER = 72.0, 32.0
+FILLED, LAYERS_FILL = 0.45, 0.65
+"""Shares of its height that bodies have where that is not to scale: of rods, and of layers."""
+THICKEST, LAYER = 72.0, 40.0
 """Pixels of the thickness of a rod, and of a layer, at most; neither is to scale."""
 SHADES = shaded(64)
-STEPS = 0.01, 0.02, 0.03, 0.045, 0.06, 0.09
+STEPS = 0.008, 0.01, 0.02, 0.03, 0.045, 0.06, 0.09
 """Shares of the bodies' size that displacements usually take."""
 STATUSES = ((0, STICK, "stick"), (-1, BACKWARD, "slip −"), (1, FORWARD, "slip +"))
+LEANEST = 4.0
+"""Times their height that long bodies count at most, where a displacement is to show: room for one
+that bends far would leave them thin."""
 FEW_BODIES = 8
 """Bodies above each other with room for a broad band between them."""
 
@@ -107,9 +112,10 @@ def _scale(scene: Scene, kept: Scale | None) -> Scale:
     """Give the scale of what is seen; while a hand moves a slider, the one that there is."""
     portrait, chosen = scene.run.stand.portrait, scene.look.magnification
     size = max(portrait.size)
+    shows = min(size, LEANEST * portrait.size[1]) if portrait.described.height is not None else size
     factor = chosen or (kept.factor if kept else 1.0)
     if chosen is None and not (kept and scene.look.is_held):
-        factor = fitting(portrait.mesh, scene.frame.pose.largest, factor)
+        factor = fitting(shows, scene.frame.pose.largest, factor)
     share = factor * reach_of(scene) / size
     least = kept.reach if kept and (scene.look.is_held or share >= 0.4 * kept.reach) else 0.0
     return Scale(factor, least if share <= least else _stepped(share))
@@ -158,6 +164,7 @@ def _box(posed: Posed, moves: float, sizes: Array) -> Box:
         room=(rooms["left"], rooms["right"], rooms["bottom"], rooms["top"]),
         lines=acting.lines_of(posed),
         flattest=_flattest(posed),
+        filled=FILLED if described.height is None else LAYERS_FILL,
     )
 
 

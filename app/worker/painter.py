@@ -225,4 +225,4 @@ def _bodies(bodies: QuadMesh) -> Iterator[tuple[str, Attributes]]:
         yield "along", {"x": bodies.along}
     box = bodies.box
     ends = box.left, box.right, box.low, box.high
-    yield "box", {"edge": [*ends, *box.room, *box.lines, box.flattest]}
+    yield "box", {"edge": [*ends, *box.room, *box.lines, box.flattest, box.filled]}
