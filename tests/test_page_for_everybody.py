@@ -43,7 +43,7 @@ TEXTS = """() => {
 """All that is to be read on a page."""
 ALIKE = {"Iteration", "Iteration:", "LATIN", "Live", "Block", "Mode n", "Slipfront"}
 """Words of the first view that are the same in English and in German."""
-SYMBOLS = re.compile(r"[^A-Za-z]*|t = .*|F, .*|±μp|[a-z]+_[a-z_]+|replay|.*\d (mm|µm|J|s|N|kN)")
+SYMBOLS = re.compile(r"[^A-Za-z]*|t = .*|F, .*|±μp|[a-z]+_[a-z_]+|replay|.*\d (mm|µm|mJ|J|s|N|kN)")
 """What is no word, and the names of the small pictures on buttons."""
 
 

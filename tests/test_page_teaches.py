@@ -89,7 +89,7 @@ def test_lessons_are_offered_until_one_has_seen_them_and_stay_in_the_sidebar(
     page.get_by_role("combobox", name="Lesson").select_option("broken-wire")
     expect(lesson(page)).to_contain_text("Where is a broken wire whole again?")
     expect(slider(page, "Friction coefficient")).not_to_be_visible()
-    expect(value(page, "Length over which a broken wire regains its force")).to_have_text("0.2 m")
+    expect(value(page, "Length over which a broken wire regains its force")).to_have_text("200 mm")
     expect(page.get_by_text("New here?")).to_have_count(0)
     page.goto(page.url.partition("?")[0] + "?lesson=best-k")
     pad = lesson(page).get_by_role("img", name="over Factor on k")
