@@ -32,10 +32,10 @@ WAYS = (
     "beside it; or have the answer at once."
 )
 RUNS, REPLAYS = "Run or pause the iteration (space).", "Replay the run from its start (space)."
+RESETS = "Start the run again, from its usual start (r)."
 AGREES = "Run anyway, however long that takes (space)."
 FIXED = 6
 """Buttons, pace and sliders, which always stand there."""
-PLAIN = {"whiteSpace": "nowrap"}
 SMALL = {"& button": {"textTransform": "none", "padding": "4px 9px"}}
 NARROW = {"minWidth": 0, "padding": "4px 7px"}
 PLAYED_IN, SOONEST = 8.0, 0.025
@@ -228,18 +228,14 @@ class Transport:
             "pause",
             self.toggle,
             min_width=98,
-            sx=PLAIN,
+            sx={"whiteSpace": "nowrap"},
             color="primary",
             description=say(RUNS),
         )
-        beside = {
-            "variant": "outlined",
-            "sx": NARROW,
-            "description": say("Do one iteration and wait (s)."),
-        }
-        self._step = button(say("Step"), "", self.step, **beside)
-        beside["description"] = say("Start the run again, from its usual start (r).")
-        self._reset = button(say("Reset"), "", self.reset, **beside)
+        beside: dict[str, Any] = {"variant": "outlined", "sx": NARROW}
+        once, anew = say("Do one iteration and wait (s)."), say(RESETS)
+        self._step = button(say("Step"), "", self.step, description=once, **beside)
+        self._reset = button(say("Reset"), "", self.reset, description=anew, **beside)
         self._way = pmui.RadioButtonGroup(
             options=self._options(ENDS),
             value=WATCH,

@@ -67,7 +67,8 @@ def form_of(question: Question, settings: Settings, units: str = BY_SIZE) -> dic
     quantity, _, at = question.of.partition("@")
     quantities = askable(settings)
     quantities |= {quantity: QUANTITIES[quantity]} if quantity in QUANTITIES else {}
-    rest = changed(settings)
+    varied = {one.name for one in question.spans}
+    rest = {name: value for name, value in changed(settings).items() if name not in varied}
     title = label_of(settings, rest, units, most=len(rest))
     return {
         "settings": [
