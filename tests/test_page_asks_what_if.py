@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 from browser import Chrome, Server
-from pages import ENDLESS, Visit, comes_true, open_sheets, press, status, visits
+from pages import ENDLESS, Visit, card, comes_true, open_sheets, press, slider, status, visits
 from playwright.sync_api import Locator, Page, expect
 from test_page_for_everybody import violations
 
@@ -83,6 +83,27 @@ def mapped(server: Server, chrome: Chrome) -> Iterator[Page]:
         expect(opened.get_by_text(ENDED).first).to_be_visible()
         has(opened, "answer", "=== 49")
         yield opened
+
+
+def test_values_of_k_that_one_tries_grow_into_a_bathtub_that_leads_to_what_if(
+    open_page: Visit,
+) -> None:
+    query = "?elements=20&substructures=2&instants=11&plots=Convergence&pace=fastest"
+    page = open_page(query, 1280, 720)
+    earlier = card(page, "Convergence").locator(".key", has_text="k × ")
+    corner = page.get_by_role("button", name=re.compile("^Iterations to 1 %"))
+    expect(status(page)).to_contain_text("certified")
+    for count in (1, 2):
+        expect(corner).to_be_hidden()
+        slider(page, "Factor on k").press("ArrowRight")
+        # What stands in the status comes with the first picture of the new run.
+        expect(earlier).to_have_count(count)
+        expect(status(page)).to_contain_text("certified")
+    corner.click()
+    over = page.get_by_role("combobox", name=re.compile("setting")).first
+    expect(over).to_have_value("k_scale")
+    expect(page.get_by_role("button", name="Start")).to_be_visible()
+    expect(chart(page)).to_have_count(0)
 
 
 def test_a_stranger_has_the_bathtub_in_two_clicks_and_a_third_opens_one_of_its_runs(

@@ -216,10 +216,8 @@ class PageRuns:
         def scenes() -> Iterator[tuple[Scene, Mapping[str, str]]]:
             for instant in chosen:
                 look = replace(self._look, phase=instant / max(instants - 1, 1))
-                there = replace(
-                    scene, frame=run.frame(look), instant=int(instant), look=look,
-                    shadow=scene.shadow and replace(scene.shadow, look=look),
-                )  # fmt: skip
+                frame, shadow = run.frame(look), scene.shadow and replace(scene.shadow, look=look)
+                there = replace(scene, frame=frame, instant=int(instant), look=look, shadow=shadow)
                 yield there, self._words(run, there)
 
         return offline_page(scenes(), scene, int(np.searchsorted(chosen, scene.instant)))
