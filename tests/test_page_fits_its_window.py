@@ -75,7 +75,7 @@ CUT = """() => {
   return found
 }"""
 """Titles of axes that are longer than their plot has room for."""
-SIZES = (1440, 900), (1280, 720), (1000, 700), (720, 450)
+SIZES = (1240, 900), (1280, 720), (1000, 700), (720, 450)
 
 
 def nothing_collides(page):

@@ -29,7 +29,7 @@ STYLE = """
 .pane input:not([type=file]) { display: block; padding: 4px 6px; font: inherit; color: inherit;
   background: transparent; border-radius: 4px;
   border: 1px solid color-mix(in srgb, currentColor 30%, transparent); }
-@media (min-width: 641px) and (max-width: 1199px) { .action span { display: none; } }
+@media (min-width: 641px) and (max-width: 1279px) { .action span { display: none; } }
 @media (min-width: 641px) and (max-width: 799px) { .step { display: none; } }
 @media (max-width: 899px) { .action { padding: 0 5px; } }
 @media (max-width: 640px) {
