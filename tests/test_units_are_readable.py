@@ -46,9 +46,9 @@ IN_SI = {
         (0.0, "N", "0 N"),
         (40.0, "°", "40 °"),
         (0.3, "", "0.3"),
-        (1e30, "Pa", "1e+30 Pa"),
+        (1e30, "Pa", "1·10³⁰ Pa"),
         (-1.11e-3, "J", "-1.11 mJ"),
-        (3e-15, "J", "3e-15 J"),
+        (3e-15, "J", "3·10⁻¹⁵ J"),
     ],
 )
 def test_a_value_is_told_as_one_says_it(value: float, unit: str, said: str) -> None:
@@ -58,9 +58,9 @@ def test_a_value_is_told_as_one_says_it(value: float, unit: str, said: str) -> N
 @pytest.mark.parametrize(
     ("value", "unit", "in_mm", "in_si"),
     [
-        (5e-5, "m", "0.05 mm", "5e-05 m"),
-        (3.46e8, "Pa", "346 MPa", "3.46e+08 Pa"),
-        (2.1e11, "Pa", "210000 MPa", "2.1e+11 Pa"),
+        (5e-5, "m", "0.05 mm", "5·10⁻⁵ m"),
+        (3.46e8, "Pa", "346 MPa", "3.46·10⁸ Pa"),
+        (2.1e11, "Pa", "210000 MPa", "2.1·10¹¹ Pa"),
         (1200.0, "N", "1200 N", "1200 N"),
         (5000.0, "N/m", "5 N/mm", "5000 N/m"),
         (0.0, "m", "0 mm", "0 m"),
@@ -71,7 +71,7 @@ def test_a_value_is_told_as_one_says_it(value: float, unit: str, said: str) -> N
 def test_a_chosen_system_holds_whatever_the_size(
     value: float, unit: str, in_mm: str, in_si: str
 ) -> None:
-    assert measured(value, unit, MM).replace("2.1e+05", "210000") == in_mm
+    assert measured(value, unit, MM) == in_mm
     assert measured(value, unit, SI) == in_si
 
 

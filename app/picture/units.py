@@ -33,6 +33,7 @@ OF_MM = {
 LATER = {"GPa": 10.0}
 """Where a step begins that is not taken from 1 on: a stress of 3000 MPa is told as that."""
 EXPONENTS = str.maketrans({"^": "", "2": "²", "3": "³"})
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class UnitStep(NamedTuple):
@@ -93,10 +94,16 @@ def minus(text: str) -> str:
 def measured(value: float, unit: str, units: str = BY_SIZE, digits: int = 3) -> str:
     """Write a value with its unit."""
     factor, name = scale_of(abs(value), unit, units)
-    text = f"{value / factor:.{digits}g}"
-    scaled = float(text)
+    scaled = float(f"{value / factor:.{digits}g}")
     if units == BY_SIZE and unit and scaled and not 1e-3 <= abs(scaled) < 1e5:
-        text, name = f"{value:.{digits}g}", unit
-    elif 1.0 <= abs(scaled) < 1e5:
-        text = f"{scaled:g}"
-    return f"{text} {name}".strip()
+        scaled, name = value, unit
+    return f"{rounded(scaled, digits)} {name}".strip()
+
+
+def rounded(value: float, digits: int = 3) -> str:
+    """Write a number, where it is very large or small with a power of ten."""
+    text = f"{value:.{digits}g}"
+    if 1.0 <= abs(value) < 1e7:
+        text = f"{float(text):.7g}"
+    digit, letter, exponent = text.partition("e")
+    return f"{digit}·10{str(int(exponent)).translate(RAISED)}" if letter else text

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from app.picture.units import minus, rounded
 from solver.arrays import Array
 
 BREAK = np.full((1, 4), np.nan)
@@ -104,4 +105,4 @@ def turned(points: Array, angle: float) -> Array:
 
 def plain(value: float) -> str:
     """Write a number with three digits at most, and zero without a sign."""
-    return f"{value:.3g}".replace("-", "−") if abs(value) > 1e-9 else "0"
+    return minus(rounded(value)) if abs(value) > 1e-9 else "0"
