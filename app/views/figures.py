@@ -188,7 +188,7 @@ def _axis(name: str, label: str, view: View) -> Axis:
         return LogAxis(major_label_policy=NoOverlap(), **style)
     # Labels are half of what a browser paints.
     least = 1 if name in look.whole else 0
-    if name == "y":
+    if name == "y" and not look.chooses:
         style["formatter"] = CustomJSTickFormatter(code=POWERS)
     return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
 
