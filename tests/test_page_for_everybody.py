@@ -9,6 +9,8 @@ from axe_playwright_python.sync_playwright import Axe
 from pages import Visit, card, comes_true, one_page, press, slider, status
 from playwright.sync_api import Locator, Page, expect
 
+from app.picture.units import minus, rounded
+
 SERIOUS = ("serious", "critical")
 EXCEPTIONS = {
     "aria-progressbar-name": "the page component's own bar, which never moves",
@@ -244,6 +246,14 @@ def test_the_value_under_a_pointer_that_rests_is_that_of_the_plot_that_came_ther
         page.mouse.wheel(0.0, 60.0)
     expect(value).to_have_count(0)
     page.set_viewport_size({"width": 1280, "height": 720})
+
+
+def test_numbers_beside_an_axis_are_written_as_those_in_words(page: Page) -> None:
+    numbers = [4e8, -5e-5, 2.34e-12, -1000.0, 0.25, 0.0]
+    along = """(numbers) => Bokeh.index.roots.flatMap(({model}) => model.left ?? [])
+      .find(({formatter}) => formatter.type === "CustomJSTickFormatter")
+      .formatter.doFormat(numbers, {loc: 0})"""
+    assert page.evaluate(along, numbers) == [minus(rounded(one, 6)) for one in numbers]
 
 
 def test_keys_move_the_run_only_where_it_is_seen(page: Page) -> None:

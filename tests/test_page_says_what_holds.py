@@ -196,10 +196,10 @@ def test_a_phone_is_known_by_what_it_asks_with() -> None:
 @pytest.mark.parametrize(
     ("value", "text"),
     [
-        (9.98e-11, "1.0·10<sup>-10</sup>"),
-        (2.3e-4, "2.3·10<sup>-4</sup>"),
+        (9.98e-11, "1·10⁻¹⁰"),
+        (2.3e-4, "2.3·10⁻⁴"),
         (0.0164, "0.0164"),
-        (4e6, "4.0·10<sup>6</sup>"),
+        (4e6, "4·10⁶"),
         (0.0, "0"),
         (float("nan"), "–"),
     ],

@@ -9,6 +9,7 @@ from bokeh.models import CustomJSTickFormatter
 from bokeh.plotting import figure
 
 from app.charts.layers import Here, Layer, layers, limits
+from app.picture.units import TICKS
 from solver.arrays import Array
 from solver.study.chart import Chart, Map, Panel, PanelAxis
 
@@ -24,9 +25,6 @@ PLACES: dict[str, list[str]] = {
     "Rectangles": SIDES,
 }
 """Columns that say where a mark is."""
-
-SHORT = "return String(Number(tick.toPrecision(6))).replaceAll('-', '−')"
-"""A number as one writes it, and not 1.000e−3."""
 
 hv.extension("bokeh")
 # Where there is no graphics card, canvas is faster, and its lines are clean.
@@ -80,7 +78,7 @@ def _axes(chart: Chart, before: Chart | None) -> dict[str, Any]:
     across, up = limits(chart, before)
     linear = {"x": not chart.x.logarithmic, "y": not chart.y.logarithmic}
     formatters = {
-        f"{name}formatter": CustomJSTickFormatter(code=SHORT) for name, one in linear.items() if one
+        f"{name}formatter": CustomJSTickFormatter(code=TICKS) for name, one in linear.items() if one
     }
     return {
         **formatters,

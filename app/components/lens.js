@@ -35,7 +35,7 @@ export function render({model}) {
   }
   const written = (value, axis) => {
     const unit = /\(([^()]*)\)$/.exec(axis.axis_label ?? "")?.[1] ?? ""
-    return `${Number(value.toPrecision(3))} ${unit}`.trim().replace("-", "−")
+    return `${powers(Number(value.toPrecision(3)))} ${unit}`.trim()
   }
   const read = () => {
     const at = place(), [across] = figure?.model.below ?? [], [up] = figure?.model.left ?? []

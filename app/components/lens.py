@@ -22,5 +22,5 @@ button { width: 26px; height: 24px; padding: 0; cursor: pointer;
 class Lens(Plain):
     """Shows the values under the pointer, and a button on the card that one looks at."""
 
-    _esm = script("say.js", "within.js", "lens.js")
+    _esm = script("say.js", "within.js", "picture/powers.js", "lens.js")
     _stylesheets: ClassVar[list[str]] = [STYLE]

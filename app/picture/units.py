@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,9 @@ LATER = {"GPa": 10.0}
 """Where a step begins that is not taken from 1 on: a stress of 3000 MPa is told as that."""
 EXPONENTS = str.maketrans({"^": "", "2": "²", "3": "³"})
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+POWERS = Path(__file__).with_name("powers.js").read_text(encoding="utf-8")
+TICKS = f"{POWERS}return powers(Number(tick.toPrecision(6)))"
+"""Writes the numbers of an axis: 4·10⁸ and not 4.000e+8."""
 
 
 class UnitStep(NamedTuple):
@@ -102,8 +106,12 @@ def measured(value: float, unit: str, units: str = BY_SIZE, digits: int = 3) -> 
 
 def rounded(value: float, digits: int = 3) -> str:
     """Write a number, where it is very large or small with a power of ten."""
-    text = f"{value:.{digits}g}"
-    if 1.0 <= abs(value) < 1e7:
-        text = f"{float(text):.7g}"
-    digit, letter, exponent = text.partition("e")
-    return f"{digit}·10{str(int(exponent)).translate(RAISED)}" if letter else text
+    near = float(f"{value:.{digits}g}")
+    is_far = near != 0.0 and np.isfinite(near) and not 1e-3 <= abs(near) < 1e7
+    return power(value, digits) if is_far else f"{near:.7g}"
+
+
+def power(value: float, digits: int) -> str:
+    """Write a number with a power of ten."""
+    digit, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{float(digit):g}·10{str(int(exponent)).translate(RAISED)}"

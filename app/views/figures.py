@@ -33,17 +33,11 @@ from bokeh.models.widgets import Div
 
 from app.languages.language import Language
 from app.picture.glossary import ENGLISH
+from app.picture.units import TICKS
 from app.views.colors import GREY, shaded
 from app.views.drawing import View
 from app.views.legend import card_title
 
-POWERS = """
-const value = Number(tick.toPrecision(6)), size = Math.abs(value), plain = !size || size >= 1e-3
-const text = plain && size < 1e5 ? `${value}` : value.toExponential().replace("+", "")
-return text.replace("-", "−").replace(/e.*/, (e) =>
-  "·10" + [...e.slice(1)].map((one) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[one] ?? "⁻").join(""))
-"""
-"""Numbers as one writes them, and not 4.000e+8: along y, as places and times have fewer digits."""
 FIT = """
 const [left, right, low, high, ...rooms] = box.data.edge
 if (figure.properties.inner_width.is_unset) { return }
@@ -188,8 +182,9 @@ def _axis(name: str, label: str, view: View) -> Axis:
         return LogAxis(major_label_policy=NoOverlap(), **style)
     # Labels are half of what a browser paints.
     least = 1 if name in look.whole else 0
+    # Along x, and up maps of time, numbers have few digits.
     if name == "y" and not look.chooses:
-        style["formatter"] = CustomJSTickFormatter(code=POWERS)
+        style["formatter"] = CustomJSTickFormatter(code=TICKS)
     return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.picture.units import titled
+from app.picture.units import rounded, titled
 from app.views.drawing import Axis, Curve, Drawing, View
 from app.views.legend import Key
 from solver.arrays import Array
@@ -24,7 +24,7 @@ def told(view: View, drawing: Drawing) -> str:
         return Phrase("{}: {}.", _axes(view, drawing), _shares(drawing))
     if drawing.colors is not None and (drawing.image is not None or drawing.bodies is not None):
         title = drawing.colors.unit or plot.scale
-        ends = f"{drawing.colors.low:.3g}", f"{drawing.colors.high:.3g}"
+        ends = rounded(drawing.colors.low), rounded(drawing.colors.high)
         return Phrase("{} from {} to {}, as colours.", title, *ends)
     named = [(key.text, _curve_of(key, drawing)) for key in keys if key.mark in LINES]
     is_history = "y" in plot.logarithmic
@@ -77,10 +77,10 @@ def _span(name: str, curve: Curve, is_history: bool) -> str:
     if not len(values):
         return "not known yet"
     if is_history:
-        return Phrase("from {} to {}", f"{values[0]:.2g}", f"{values[-1]:.2g}")
+        return Phrase("from {} to {}", rounded(values[0], 2), rounded(values[-1], 2))
     values = np.abs(values) if name.startswith("±") else values
     low, high = values.min() + 0.0, values.max() + 0.0
-    return Phrase("from {} to {}", f"{low:.3g}", f"{high:.3g}") if high > low else f"{low:.3g}"
+    return Phrase("from {} to {}", rounded(low), rounded(high)) if high > low else rounded(low)
 
 
 def _shares(drawing: Drawing) -> str:

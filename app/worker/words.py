@@ -11,6 +11,7 @@ from app.picture.glossary import explained
 from app.picture.labels import in_titles
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
+from app.picture.units import power
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost
 from solver.scenes.words import Phrase, joined
@@ -170,12 +171,8 @@ def number(value: float) -> str:
     """Write a positive number over many decades."""
     if not math.isfinite(value):
         return UNKNOWN
-    if value == 0.0:
-        return "0"
-    if 1e-3 <= value < 1e3:
-        return f"{value:.3g}"
-    digits, exponent = f"{value:.1e}".split("e")
-    return f"{digits}·10<sup>{int(exponent)}</sup>"
+    is_near = value == 0.0 or 1e-3 <= value < 1e3
+    return f"{value:.3g}" if is_near else power(value, 2)
 
 
 def percent(value: float) -> str:
