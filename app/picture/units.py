@@ -107,7 +107,7 @@ def measured(value: float, unit: str, units: str = BY_SIZE, digits: int = 3) -> 
 def rounded(value: float, digits: int = 3) -> str:
     """Write a number, where it is very large or small with a power of ten."""
     near = float(f"{value:.{digits}g}")
-    is_far = near != 0.0 and np.isfinite(near) and not 1e-3 <= abs(near) < 1e7
+    is_far = near != 0.0 and np.isfinite(near) and not 1e-3 <= abs(near) < 1e6
     return power(value, digits) if is_far else f"{near:.7g}"
 
 

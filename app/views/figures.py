@@ -182,8 +182,8 @@ def _axis(name: str, label: str, view: View) -> Axis:
         return LogAxis(major_label_policy=NoOverlap(), **style)
     # Labels are half of what a browser paints.
     least = 1 if name in look.whole else 0
-    # Along x, and up maps of time, numbers have few digits.
-    if name == "y" and not look.chooses:
+    # Along x, and where a height chooses what one looks at, numbers have few digits.
+    if name == "y" and look.chooses in ("", "time"):
         style["formatter"] = CustomJSTickFormatter(code=TICKS)
     return LinearAxis(ticker=BasicTicker(desired_num_ticks=4, min_interval=least), **style)
 
