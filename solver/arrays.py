@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,3 +24,17 @@ def as_slice(rows: Indices) -> slice | Indices:
     """Give rows as a slice when they follow each other, so that reading them copies nothing."""
     first = int(rows[0]) if len(rows) else 0
     return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
+
+
+def stacked(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """Put fields of space, or of space and time, one below the other.
+
+    What does not change with time has a single column, unless another of them does.
+    """
+    shape = np.broadcast_shapes(*(field.shape[1:] for field in fields))
+    return np.concatenate([np.broadcast_to(field, (len(field), *shape)) for field in fields])
+
+
+def at_instant(field: Array, instant: int) -> Array:
+    """Give what a field has at an instant, shape (n, 1); a single column is of all instants."""
+    return field if field.shape[1] == 1 else field[:, instant : instant + 1]

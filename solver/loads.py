@@ -16,6 +16,8 @@ DECAY = np.array([1.0, -0.85, 0.7, -0.55, 0.4, -0.25, 0.1])
 HELD = 0.25
 """Share of the interval after which "hold" stays where it is, and "delayed" and "cycles" begin."""
 CYCLES = 6
+LOOSE = 0.2
+"""Share of its pressure that a bolt has left when it has loosened."""
 
 
 def interpolate(points: Pairs | Array, where: Array) -> Array:
@@ -78,6 +80,16 @@ PULLS: dict[str, Callable[[Array, int], Array]] = {
     "cycles": lambda phase, seed: _pulls(_after_hold(phase), seed),
 }
 """Presets that never push, for what carries tension alone."""
+
+_loosening = _polyline(np.array([1.0, LOOSE]))
+_pulsating_press = _polyline(np.array([1.0, *[LOOSE, 1.0] * CYCLES]))
+PRESSURES: dict[str, Callable[[Array, int], Array]] = {
+    "steady": lambda phase, seed: np.ones_like(phase),
+    "loosening": lambda phase, seed: _loosening(_after_hold(phase), seed),
+    "tightening": lambda phase, seed: 1.0 + LOOSE - _loosening(_after_hold(phase), seed),
+    "shaken": lambda phase, seed: _pulsating_press(_after_hold(phase), seed),
+}
+"""Presets of what presses: all of it at first, or in the end, and never nothing."""
 
 
 def instants_of(duration: float, number: int) -> Array:

@@ -50,7 +50,7 @@ def boundary_of(problem, reference):
     law = problem.friction
     displacement = reference.displacement / problem.scales.displacement
     friction = reference.friction_force / problem.scales.force
-    share = law.tangential.bound / np.bincount(law.points, weights=law.tangential.bound)[law.points]
+    share = law.tangential.most / np.bincount(law.points, weights=law.tangential.most)[law.points]
     force = np.zeros((problem.n_rows, problem.n_instants))
     force[law.tangent.above] = share[:, None] * friction[law.points]
     for part in problem.substructures:

@@ -158,7 +158,7 @@ def test_along_the_search_direction_slider_and_spring_carry_the_same_force(seed,
     friction = force[tangent.above]
     slider = along.slider(moved, force)
     np.testing.assert_allclose(friction, (slider - tangent.jump(moved)) / along.softness[:, None])
-    bound = along.bound[:, None] + (along.friction[:, None] * force[normal.above] if opens else 0.0)
+    bound = along.bound + (along.friction[:, None] * force[normal.above] if opens else 0.0)
     assert np.all(np.abs(friction) <= bound + 1e-9)
     slip = np.diff(slider, axis=1, prepend=0.0)
     slips = np.abs(slip) > 1e-9

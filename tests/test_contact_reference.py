@@ -40,7 +40,7 @@ def components(of, found):
             bound = law.tangential.friction[:, None] * fields.normal_force
             yield fields.opening, slip, fields.normal_force, bound, fields.tangential_force
         else:
-            bound = np.broadcast_to(law.tangential.bound[:, None], slip.shape)
+            bound = np.broadcast_to(law.tangential.bound, slip.shape)
             yield None, slip, None, bound, fields.tangential_force
     assert np.isfinite(displacement).all()
 

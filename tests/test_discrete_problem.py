@@ -97,7 +97,7 @@ def test_stiffnesses_bounds_and_body_forces_of_the_parts_add_up_to_the_bar(chose
             body[part.dofs] += part.body_force
     lengths = tributary(chosen.elements, chosen.length / chosen.elements)
     law = problem.friction
-    bound = np.bincount(law.points, weights=law.tangential.bound) * problem.scales.force
+    bound = np.bincount(law.points, weights=law.tangential.most) * problem.scales.force
     whole = rod_stiffness(chosen.elements, float(chosen.elements)).toarray()
     np.testing.assert_allclose(stiffness, whole, rtol=1e-12)
     np.testing.assert_allclose(bound, scene.bound * lengths, rtol=1e-12)

@@ -74,7 +74,7 @@ def test_the_local_stage_obeys_the_bound_that_its_slip_has_left(seed, opens, two
     force = k[:, None] * (moved - incoming)
     slip = np.diff(tangent.jump(moved), axis=1, prepend=0.0)
     gone = np.minimum(np.cumsum(np.abs(slip), axis=1) / length, 1.0)
-    bound = plain.bound[:, None] * np.ones(times)
+    bound = plain.bound * np.ones(times)
     if opens:
         bound = bound + plain.friction[:, None] * force[normal.above]
     bound = bound * (1.0 + (ratio - 1.0) * gone)

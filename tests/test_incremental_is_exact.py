@@ -52,7 +52,7 @@ def problems(draw: st.DrawFn) -> Problem:
 
 def bounds(of: Problem) -> np.ndarray:
     law = of.friction
-    return np.bincount(law.points, weights=law.tangential.bound)[:, None] * of.scales.force
+    return np.bincount(law.points, weights=law.tangential.most)[:, None] * of.scales.force
 
 
 def assert_coulomb(of: Problem, found: Reference) -> None:

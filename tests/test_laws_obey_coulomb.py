@@ -253,7 +253,7 @@ def test_the_local_stage_obeys_every_law_along_its_search_direction(seed, substr
         if name.startswith("cut"):
             assert np.array_equal(displacement[cut.first], displacement[cut.second])
             assert np.all(np.abs(force[cut.first] + force[cut.second]) <= rounding)
-    bound = law.tangential.bound[:, None]
+    bound = law.tangential.bound
     slip = np.diff(displacement[law.tangent.above], axis=1, prepend=0.0)
     friction = force[law.tangent.above]
     assert np.all(np.abs(friction) <= bound + rounding)

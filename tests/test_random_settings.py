@@ -73,7 +73,7 @@ def numbers(low, high):
 
 def tables(definition, extent):
     """Points of any size: plateaus, jumps and reversals among them."""
-    low = 0.0 if definition.ordinate == "factor" else -1e15
+    low = 0.0 if definition.ordinate in ("factor", "pressure") else -1e15
     values = numbers(low, 1e15) | st.sampled_from([0.0, 900.0, 1e-6, 1e6])
     return paired(values, extent)
 

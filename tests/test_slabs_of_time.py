@@ -75,6 +75,7 @@ def cyclic(scene: str, cycles: int = 4, **changes: Any) -> Problem:
         ("block", {}),
         ("bar", {}),
         ("bar", {"friction_law": "compliant"}),
+        ("bar", {"pressure_load": "shaken"}),
         ("strand", {}),
     ],
 )

@@ -22,9 +22,14 @@ def settings_of(scene: str, **changes: Any) -> Settings:
 
 
 @pytest.mark.parametrize("head", ["", "time,force\n", "Time, Force\n", "time,load\n"])
-def test_the_only_path_takes_it(head: str) -> None:
+def test_the_only_path_of_a_load_takes_it(head: str) -> None:
     found, _ = load_in(head + TABLE, "path.csv", settings_of("bar"))
     assert found.changed() == {"load": ROWS}
+
+
+def test_a_pressure_is_named() -> None:
+    found, _ = load_in(f"time,pressure_load\n{TABLE}", "path.csv", settings_of("bar"))
+    assert found.changed() == {"pressure_load": ROWS}
 
 
 @pytest.mark.parametrize("name", ["top_normal_load", "top_tangential_load"])

@@ -45,7 +45,7 @@ def test_a_point_sticks_again_where_friction_at_its_bound_would_drive_its_slip()
         moved, force = iterate.local_displacement, iterate.boundary_local_force
         above = law.tangent.above
         # Held at its bound against the slip that there was, from where it stood before.
-        bound = -way * law.tangential.bound[:, None]
+        bound = -way * law.tangential.bound
         slipped = iterate.local_incoming[above] + bound / iterate.k[above, None]
         slipped -= np.concatenate([np.zeros((len(above), 1)), moved[above][:, :-1]], axis=1)
         assert np.all((way * slipped)[stick[law.points]] <= 1e-12 * np.abs(moved).max())

@@ -18,7 +18,7 @@ DEFINITIONS = BarSettings.definitions()
 
 
 def curves(definition):
-    low = 0.0 if definition.ordinate == "factor" else -1e15
+    low = 0.0 if definition.ordinate in ("factor", "pressure") else -1e15
     abscissae = st.lists(st.floats(-1e15, 1e15), min_size=1, max_size=5, unique=True).map(sorted)
     ordinates = st.lists(st.floats(low, 1e15), min_size=5, max_size=5)
     tables = st.tuples(abscissae, ordinates).map(

@@ -21,7 +21,8 @@ class Stand:
     cuts
         Positions where substructures meet, m.
     bound
-        Friction bound mu p at the positions, N/m; None where it depends on the pressure.
+        Friction bound mu p at the positions, N/m, shape (n_positions, n_instants), or
+        (n_positions, 1) where it stays the same; None where it depends on the pressure.
     coefficient
         Coefficient of friction at the positions there; else None.
     loop

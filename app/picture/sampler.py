@@ -89,8 +89,10 @@ class Sampler:
         if law.opens:
             coefficient = floats(law.mean_by_point(law.tangential.friction)[self._rows])
         else:
-            whole = law.by_point(law.tangential.most)[self._rows]
-            bound = floats(whole * problem.scales.force / self._lengths)
+            whole = law.by_point(law.tangential.highest)[self._rows]
+            if whole.shape[1] > 1:
+                whole = whole[:, self._columns]
+            bound = floats(whole * problem.scales.force / self._lengths[:, None])
         load = loop.force if isinstance(loop.force, np.ndarray) else None
         return Stand(
             interface=self.interface,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Mapping
+
 from solver.checked import dump
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables
@@ -39,7 +41,8 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
     Raises
     ------
     SettingError
-        If no path applies, several do and the head names none of them, or the table is refused.
+        If no path applies; if several do, the head names none of them, and not just one is of a
+        load; or if the table is refused.
     """
     paths = {
         name: definition
@@ -56,8 +59,7 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
             "a load path, of which none applies",
             "have a side displaced or loaded first",
         )
-    heads = heads_of(text)
-    chosen = [name for name in paths if len(paths) == 1 or name in heads]
+    chosen = _meant(paths, heads_of(text))
     if len(chosen) != 1:
         raise SettingError(
             "the table",
@@ -70,6 +72,13 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
     ends = max(ends_of_tables(found).values())
     found = found.replace(duration=ends) if ends > 0.0 else found
     return found, _said_of(found, name)
+
+
+def _meant(paths: Mapping[str, CurveParameter], heads: Container[str]) -> list[str]:
+    """Name the paths that the head names, or else the only one, or those of a load."""
+    named = [name for name in paths if name in heads]
+    loads = [name for name, path in paths.items() if about(path).group == "Load"]
+    return named or (list(paths) if len(paths) == 1 else loads)
 
 
 def cut_off(settings: Settings) -> str:

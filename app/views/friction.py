@@ -21,7 +21,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         return None
     limits = _limits(scene, float(begun.bound.max()) or 1.0, kept)
     x, y = along(0.0, scene.length), Axis(*limits, label="Force", unit="N/m")
-    places, bound = begun.positions, begun.bound
+    places = begun.positions
+    bound = begun.bound[:, min(instant, begun.bound.shape[1] - 1)]
     curves = [
         upright(begun.cuts, y, color=GREY, alpha=0.35, width=1),
         across([0.0], x, color=GREY, alpha=0.4, width=1),

@@ -57,17 +57,18 @@ class Rods(RodsData):
         if self.body_force is not None:
             middle = np.array([[0.5, 0.5]])
             yield Act("body", "b", middle, right, right, self.body_force, "N/m")
-        x = PRESSED[np.interp(PRESSED, self.nodes / self.length, self.bound) > 0.0]
+        most = self.bounds.max(axis=1)
+        x = PRESSED[np.interp(PRESSED, self.nodes / self.length, most) > 0.0]
         if self.pressure is not None and len(x):
             places = np.stack([x, np.ones_like(x)], axis=1)
-            pressure = np.full(len(self.instants), self.pressure)
-            yield Act("top y", "p", places, OUTWARD["bottom"], OUTWARD["top"], pressure, "N/m")
+            ways = OUTWARD["bottom"], OUTWARD["top"]
+            yield Act("top y", "p", places, *ways, self.pressure, "N/m")
 
     def _holds(self) -> Iterator[Hold]:
         yield Hold("clamp", "left", moved=self.support)
         if self.wires > 1:
             return
-        rubs = np.flatnonzero(self.bound > 0.0)
+        rubs = np.flatnonzero(self.bounds.any(axis=1))
         for run in np.split(rubs, np.flatnonzero(np.diff(rubs) > 1) + 1):
             if len(run) > 1:
                 first, last = run[[0, -1]] / self.elements

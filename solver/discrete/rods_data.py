@@ -28,7 +28,8 @@ class RodsData:
     elements, substructures
         Of one rod: numbers of equal linear elements, and of parts that they are dealt to.
     bound
-        Friction bound mu p at the nodes of an interface, shape (n_nodes,), N/m.
+        Friction bound mu p at the nodes of an interface, N/m, shape (n_nodes,), or where it changes
+        with time (n_nodes, n_instants).
     load
         Force at the right end of every rod, or with a rigid grip that of a rod which carries
         nothing but its share, shape (n_instants,), N.
@@ -50,7 +51,8 @@ class RodsData:
         Stiffness of every element over `stiffness`, shape (n_elements,), where it varies; the mean
         of the inverse is 1.
     pressure
-        p behind the bound, N/m, for whoever draws it, where one number says it.
+        p behind the bound over time, shape (n_instants,), N/m, for whoever draws it, where one
+        number says it at every instant.
     """
 
     length: float
@@ -67,13 +69,18 @@ class RodsData:
     support: Array | None = None
     body_force: Array | None = None
     section: Array | None = None
-    pressure: float | None = None
+    pressure: Array | None = None
     friction_law: FrictionLaw = field(default_factory=Coulomb)
 
     @property
     def nodes(self) -> Array:
         """Positions of the nodes of a rod, shape (n_nodes,), m."""
         return np.linspace(0.0, self.length, self.elements + 1)
+
+    @property
+    def bounds(self) -> Array:
+        """The bound, shape (n_nodes, n_instants), or (n_nodes, 1) where it stays the same, N/m."""
+        return self.bound.reshape(self.elements + 1, -1)
 
     @property
     def rubbing_sides(self) -> int:
@@ -89,7 +96,7 @@ class RodsData:
         if elements < COARSEST:
             return None
         nodes = np.linspace(0.0, self.length, elements + 1)
-        bound = np.interp(nodes, self.nodes, self.bound)
+        bound = np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, self.bound)
         section = self._section_between(nodes)
         return replace(self, elements=elements, substructures=1, bound=bound, section=section)
 

@@ -128,7 +128,7 @@ def _friction(scene: RodsData, pieces: Pieces, number: int) -> Contact:
     positions = np.zeros(points[-1] + 1)
     positions[points] = scene.nodes[node]
     below = pieces.below(number)
-    bound = scene.bound[node] * weights / scene.stiffness
+    bound = scene.bounds[node] * weights[:, None] / scene.stiffness
     sliders = Sliders.of_known_bound(Component(pieces.above(number), below), bound)
     return Contact(
         tangential=scene.friction_law.on(sliders, weights, scene.length),

@@ -63,6 +63,10 @@ class Contact(Pairs):
         """Give the law whose sliders begin elsewhere, as `Tangential.begun`."""
         return replace(self, tangential=self.tangential.begun(start))
 
+    def during(self, some: slice) -> Self:
+        """Give the law of some instants alone."""
+        return replace(self, tangential=self.tangential.during(some))
+
     @property
     def opens(self) -> bool:
         """Whether contact may be lost."""
@@ -138,14 +142,14 @@ class Contact(Pairs):
         )
 
     def capacity(self, held: NDArray[np.bool_]) -> float:
-        """Give the friction force that it can carry without pressing, beside the supports.
+        """Give the friction force that it can ever carry without pressing, beside the supports.
 
         Parameters
         ----------
         held
             Rows whose displacement is prescribed, shape (n_rows,).
         """
-        return float(self.tangential.bound[~held[self.tangent.above]].sum())
+        return float(self.tangential.bound.max(axis=1)[~held[self.tangent.above]].sum())
 
     def carried(self, force: Array) -> float:
         """Give the largest force on a pair where it may open, of that of all rows."""
@@ -205,6 +209,7 @@ class Contact(Pairs):
         """
         size = len(self.positions)
         none, own = np.zeros(size), first + np.arange(size)
+        nothing = none[:, None]
         no, yes = np.zeros(size, dtype=bool), np.ones(size, dtype=bool)
         bound = self.by_point(self.tangential.bound)
         friction = self.mean_by_point(self.tangential.friction)
@@ -220,7 +225,7 @@ class Contact(Pairs):
         # Without friction what is in series along changes nothing, and tells the jump from others.
         sprung = self.compliance if bound.any() or friction.any() else soft
         tangential = Rules(no, none, own, friction, bound, sprung, *ages)
-        return [Rules(yes, gap, own, none, none, soft, ratio, length), tangential]
+        return [Rules(yes, gap, own, none, nothing, soft, ratio, length), tangential]
 
     @property
     def acts(self) -> bool:

@@ -22,7 +22,7 @@ class Frictionless(Tangential):
 
     def __post_init__(self) -> None:
         none = np.zeros(len(self.component.above))
-        object.__setattr__(self, "bound", none)
+        object.__setattr__(self, "bound", none[:, None])
         object.__setattr__(self, "friction", none)
 
     def begun(self, start: Array) -> Frictionless:

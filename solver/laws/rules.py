@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array, Indices
+from solver.arrays import stacked as in_rows
 
 
 @dataclass(frozen=True, eq=False)
 class Rules:
-    """What the jumps obey, stacked; shape (n,) each.
+    """What the jumps obey, stacked; shape (n,) each, but for the bound.
 
     Attributes
     ----------
@@ -26,7 +27,8 @@ class Rules:
     friction
         Coefficient mu, 0 of normal jumps.
     bound
-        Friction force r that needs no normal force, scaled; 0 of normal jumps.
+        Friction force r that needs no normal force, scaled, shape (n, n_instants), or (n, 1) where
+        it stays the same; 0 of normal jumps.
     compliance
         Displacement in series with the jump, per force, scaled; 0 of normal jumps. What is said of
         the jump is then said of the jump and it together.
@@ -47,7 +49,12 @@ class Rules:
     @property
     def smooth(self) -> NDArray[np.bool_]:
         """Tangential jumps without friction."""
-        return np.asarray(~self.normal & (self.friction == 0.0) & (self.bound == 0.0))
+        return np.asarray(~self.normal & (self.friction == 0.0) & ~self.bounded)
+
+    @property
+    def bounded(self) -> NDArray[np.bool_]:
+        """Jumps whose friction ever needs no normal force."""
+        return np.asarray(self.bound.any(axis=1))
 
     def kept(self, moving: Indices) -> Rules:
         """Keep the unknown jumps; friction needs its normal force among them."""
@@ -69,14 +76,11 @@ class Rules:
         )
 
     def bounds(self, force: Array) -> Array:
-        """Give the largest friction force, r + mu f_n, of the same shape as the forces."""
-        shape = -1, *[1] * (force.ndim - 1)
-        carried = self.friction.reshape(shape) * force[self.partner]
-        return np.asarray(self.bound.reshape(shape) + np.maximum(carried, 0.0))
+        """Give the largest friction force, r + mu f_n, of all forces, (n, n_instants)."""
+        carried = self.friction[:, None] * force[self.partner]
+        return np.asarray(self.bound + np.maximum(carried, 0.0))
 
 
 def stacked(rules: Sequence[Rules]) -> Rules:
     """Put the rules of all components of all interfaces one after the other."""
-    return Rules(
-        *(np.concatenate([getattr(one, name.name) for one in rules]) for name in fields(Rules))
-    )
+    return Rules(*(in_rows([getattr(one, name.name) for one in rules]) for name in fields(Rules)))

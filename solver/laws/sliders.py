@@ -30,13 +30,14 @@ class Sliders(Tangential):
 
     @classmethod
     def of_known_bound(cls, component: Component, bound: Array) -> Self:
-        """Make those whose friction force is at most r, whatever presses."""
-        return cls(component=component, bound=bound, friction=np.zeros(len(bound)))
+        """Make those whose friction force is at most r, (n_pairs,) or also (..., n_instants)."""
+        own = bound.reshape(len(bound), -1)
+        return cls(component=component, bound=own, friction=np.zeros(len(bound)))
 
     @classmethod
     def of_contact(cls, component: Component, friction: Array) -> Self:
         """Make those whose friction force is at most mu N."""
-        return cls(component=component, bound=np.zeros(len(friction)), friction=friction)
+        return cls(component=component, bound=np.zeros((len(friction), 1)), friction=friction)
 
     def rule(self, k: Array, n_instants: int) -> TangentialRule:
         """Prepare the law for one k and so many instants."""
@@ -51,13 +52,13 @@ class SliderRule:
     springs
         Its search directions.
     reach, grows
-        How far the jump may stay behind z, shape (n_pairs, 1), and by how much more per pressing
-        force.
+        How far the jump may stay behind z, of the shape of the bound, and by how much more per
+        pressing force, shape (n_pairs, 1).
     """
 
     def __init__(self, law: Sliders, k: Array, n_instants: int) -> None:
         self.springs = Springs(law.component, k)
-        self.reach = law.bound[:, None] * self.springs.soft
+        self.reach = law.bound * self.springs.soft
         self.grows = law.friction[:, None] * self.springs.soft
         self._play = Play(len(law.bound), n_instants, law.start)
 

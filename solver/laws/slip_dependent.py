@@ -78,9 +78,9 @@ class SlipDependentSliders(Sliders):
         return np.asarray(super().allowed(pressing, slip) * self.factor(gone))
 
     @property
-    def most(self) -> Array:
-        """Largest value that the bound ever has."""
-        return np.asarray(self.bound * np.maximum(self.ratio, 1.0))
+    def highest(self) -> Array:
+        """Largest value that slip may give the bound, of its shape."""
+        return np.asarray(self.bound * np.maximum(self.ratio, 1.0)[:, None])
 
     def rule(self, k: Array, n_instants: int) -> TangentialRule:
         """Prepare the law for one k and so many instants."""

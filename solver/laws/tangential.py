@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import Array, stacked
 from solver.laws.interface import Component
 from solver.refusal import RefusedError
 
@@ -36,7 +36,8 @@ class Tangential(ABC):
     component
         Rows of the pairs.
     bound
-        r, the friction force of each pair that needs no pressing one, (n_pairs,), non-negative.
+        r, the friction force of each pair that needs no pressing one, non-negative: shape
+        (n_pairs, n_instants), or (n_pairs, 1) where it stays the same.
     friction
         Coefficient mu of each pair, shape (n_pairs,), non-negative; 0 where the pressure is known.
     softness
@@ -57,7 +58,7 @@ class Tangential(ABC):
     start: Array | None = None
 
     of_pairs: ClassVar[tuple[str, ...]] = ()
-    """Attributes of shape (n_pairs,) of its dataclass."""
+    """Attributes of its dataclass that have a row a pair."""
 
     @abstractmethod
     def rule(self, k: Array, n_instants: int) -> TangentialRule:
@@ -66,7 +67,7 @@ class Tangential(ABC):
     @property
     def divided_by(self) -> tuple[Array, ...]:
         """What the pairs of a point divide their force by, if it is positive; (n_pairs,) each."""
-        return (self.bound,)
+        return (self.most,)
 
     def slider(self, displacement: Array, force: Array | None) -> Array:
         """Give the slip of every pair up to every instant, shape (n_pairs, n_instants), scaled.
@@ -110,7 +111,7 @@ class Tangential(ABC):
         slip
             Increments, same shape.
         """
-        bound = self.bound[:, None]
+        bound = self.bound
         if pressing is not None:
             bound = bound + self.friction[:, None] * np.maximum(pressing, 0.0)
         return np.broadcast_to(bound, slip.shape)
@@ -118,13 +119,22 @@ class Tangential(ABC):
     @property
     def most(self) -> Array:
         """Largest value that the bound r ever has, shape (n_pairs,)."""
+        return np.asarray(self.highest.max(axis=1))
+
+    @property
+    def highest(self) -> Array:
+        """Largest value that slip may give the bound, of its shape."""
         return self.bound
+
+    def during(self, some: slice) -> Self:
+        """Give the law of some instants alone."""
+        return self if self.bound.shape[1] == 1 else self._with(bound=self.bound[:, some])
 
     @classmethod
     def joined(cls, laws: Sequence[Self]) -> Self:
         """Put the pairs of laws between two bodies one after the other."""
         values: dict[str, Any] = {
-            name: np.concatenate([getattr(law, name) for law in laws])
+            name: stacked([getattr(law, name) for law in laws])
             for name in cls.of_pairs
             if getattr(laws[0], name) is not None
         }

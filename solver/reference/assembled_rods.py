@@ -8,7 +8,7 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
 from solver.reference.band import Band
-from solver.reference.changing_bound import bounds_of, least_with_changing_bound
+from solver.reference.changing_bound import Bounds, bounds_of, least_with_changing_bound
 from solver.reference.search import Minimum, Search
 from solver.reference.solution import States
 
@@ -27,19 +27,23 @@ class AssembledRods:
         self._movable = np.ones(problem.n_dofs)
         self._movable[self._fixed] = 0.0
         self._bounds = bounds_of(problem)
-        self._search = Search(self.band, self._bounds.first * self._movable, self._movable)
+        self._search = self._search_with(self._bounds[0])
 
     def at_dofs(self, status: States) -> Array:
         """Give statuses of the points as those of degrees of freedom, (n_instants, n_dofs)."""
         found = np.zeros((status.shape[1], len(self._movable)))
         found[:, self.point_dofs] = status.T
-        return found * self._search.rubs
+        return found
 
-    def minimise(self, force: Array, moved: Array, status: Array, gone: Array) -> Minimum | None:
+    def minimise(
+        self, instant: int, force: Array, moved: Array, status: Array, gone: Array
+    ) -> Minimum | None:
         """Minimise phi over one instant, from a guess of the statuses; None where it has none.
 
         Parameters
         ----------
+        instant
+            Its number.
         force, status, gone
             Load, guess, and accumulated slip before, shape (n_dofs,).
         moved
@@ -47,16 +51,21 @@ class AssembledRods:
         """
         given = np.zeros(len(force))
         given[self._fixed] = moved
-        found = self._least(self._movable * (force - self.band.product(given)), status, gone)
+        bounds = self._bounds[min(instant, len(self._bounds) - 1)]
+        search = self._search if len(self._bounds) == 1 else self._search_with(bounds)
+        load = self._movable * (force - self.band.product(given))
+        found: Minimum | None
+        if bounds.stay:
+            found = search(load, status * search.rubs)
+        else:
+            found = least_with_changing_bound(
+                self.band, bounds, self._movable, load, status * search.rubs, gone
+            )
         if found is not None:
             found.increment[self._fixed] = moved
             slip = gone[self._fixed] + np.abs(moved)
-            found.pull[self._fixed] = self._bounds.at(slip, self._fixed) * np.sign(moved)
+            found.pull[self._fixed] = bounds.at(slip, self._fixed) * np.sign(moved)
         return found
 
-    def _least(self, force: Array, status: Array, gone: Array) -> Minimum | None:
-        if self._bounds.stay:
-            return self._search(force, status)
-        return least_with_changing_bound(
-            self.band, self._bounds, self._movable, force, status, gone
-        )
+    def _search_with(self, bounds: Bounds) -> Search:
+        return Search(self.band, bounds.first * self._movable, self._movable)

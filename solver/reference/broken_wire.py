@@ -55,14 +55,20 @@ def broken_wire(scene: RodsData) -> BrokenWire | None:
     Returns
     -------
     The solution, or None where no wire is broken, where its neighbours rub on others too and pass
-    on what they took over, or where friction is not Coulomb's.
+    on what they took over, where friction is not Coulomb's, or where the bound changes with time
+    and the grip is rigid or wires slip away from the break.
     """
     if scene.friction_law != Coulomb():
         return None
     if scene.broken is None or scene.rubbing_sides != scene.wires - 1:
         return None
+    if scene.rigid_grip and scene.bound.ndim > 1:
+        return None
     tension = _tension(scene) if scene.rigid_grip else scene.load
-    left, right = _sides(scene, tension)
+    sides = _sides(scene, tension)
+    if sides is None:
+        return None
+    left, right = sides
     lost = np.concatenate([left.normal_force, right.normal_force[-2::-1]])
     return BrokenWire(
         tension=tension,
@@ -73,8 +79,8 @@ def broken_wire(scene: RodsData) -> BrokenWire | None:
     )
 
 
-def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm]:
-    """Give the bars left and right of the break, from their far ends to the break."""
+def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm] | None:
+    """Give the bars left and right of the break, from their far ends to the break, if they can."""
     assert scene.broken is not None
     node, sides = scene.broken[1], scene.rubbing_sides
     found = []
@@ -89,10 +95,9 @@ def _sides(scene: RodsData, tension: Array) -> tuple[ClosedForm, ClosedForm]:
             load=tension,
             bound=sides * scene.bound[: elements + 1],
         )
-        solved = closed_form(side)
-        assert solved is not None
-        found.append(solved)
-    return found[0], found[1]
+        found.append(closed_form(side))
+    left, right = found
+    return None if left is None or right is None else (left, right)
 
 
 def _tension(scene: RodsData) -> Array:
@@ -104,7 +109,9 @@ def _tension(scene: RodsData) -> Array:
     tension = scene.load
     largest = float(np.abs(tension).max())
     for _ in range(STEPS):
-        slipped = sum(side.end_displacement for side in _sides(scene, tension))
+        sides = _sides(scene, tension)
+        assert sides is not None  # the bound stays the same
+        slipped = sum(side.end_displacement for side in sides)
         softer = scene.stiffness / scene.length * slipped / (scene.rubbing_sides + 1)
         change = 0.5 * (scene.load - tension - softer)
         tension = tension + change

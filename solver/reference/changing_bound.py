@@ -28,7 +28,7 @@ TRIALS = 50
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """Friction bounds of degrees of freedom, shape (n_dofs,) each, scaled.
+    """Friction bounds of degrees of freedom at one instant, shape (n_dofs,) each, scaled.
 
     Attributes
     ----------
@@ -60,15 +60,21 @@ class Bounds:
         return np.asarray(self.first[some] + (self.last - self.first)[some] * share)
 
 
-def bounds_of(problem: Problem) -> Bounds:
-    """Give the bounds of the only interface, which is on a support."""
+def bounds_of(problem: Problem) -> list[Bounds]:
+    """Give the bounds of the only interface, which is on a support.
+
+    Returns
+    -------
+    Those of every instant, or of all where they stay the same.
+    """
     law, rules = problem.friction, rules_of(problem)
     rubbing = problem.row_dofs[law.tangent.above]
-    first, ratio = np.zeros(problem.n_dofs), np.ones(problem.n_dofs)
+    bound = law.tangential.bound
+    first, ratio = np.zeros((problem.n_dofs, bound.shape[1])), np.ones(problem.n_dofs)
     length = np.full(problem.n_dofs, np.inf)
-    np.add.at(first, rubbing, law.tangential.bound)
+    np.add.at(first, rubbing, bound)
     ratio[rubbing], length[rubbing] = rules.ratio[law.points], rules.slip_length[law.points]
-    return Bounds(first, first * ratio, length)
+    return [Bounds(own, own * ratio, length) for own in np.ascontiguousarray(first.T)]
 
 
 def least_with_changing_bound(

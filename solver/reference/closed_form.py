@@ -5,6 +5,11 @@ L. So the normal force N(x, t) follows the load F(t) with play R(x): on a rising
 larger of its old value and F - R, on a falling one the smaller of its old value and F + R. This
 holds for every bound mu p >= 0 along the bar and every load path from rest, full sliding included,
 and gives the loading, unloading and reloading formulas of solver/README.md, 6 for a uniform bound.
+
+Where the bound changes with time it holds as long as what it leaves stuck is within the bound, to
+an element's length: the sections that a load reaches are then those to the right of one, as ever. A
+bar that stuck beyond what its bound has fallen to slips in its middle, away from any end, and this
+says nothing of it.
 """
 
 from __future__ import annotations
@@ -13,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver.arrays import Array
+from solver.arrays import ROUNDING, Array
 from solver.discrete.rods_data import RodsData
 from solver.laws import Coulomb
 from solver.laws.play import play
@@ -60,39 +65,42 @@ def closed_form(scene: RodsData) -> ClosedForm | None:
     Parameters
     ----------
     scene
-        The bar; its bound mu p is linear between nodes.
+        The bar; its bound mu p is linear between nodes, and between instants.
 
     Returns
     -------
     The solution, or None for a bar whose support moves or that carries body forces: there, the
-    normal force is no play operator of the load. Also None for a bar of varying section, and
-    where friction is not Coulomb's.
+    normal force is no play operator of the load. Also None for a bar of varying section, where
+    friction is not Coulomb's, and where a falling bound makes the bar slip in its middle.
     """
     if scene.support is not None or scene.body_force is not None or scene.section is not None:
         return None
     if scene.friction_law != Coulomb():
         return None
-    nodal = _normal_force(scene, _grip_beyond(scene, 0.0, with_end=True))
-    middle = _normal_force(scene, _grip_beyond(scene, 0.5))
-    sections = np.concatenate([nodal[:1], middle, nodal[-1:]])
+    reach = np.concatenate([_grip_beyond(scene, 0.0), np.zeros_like(scene.bounds[:1])])
+    between = np.concatenate([reach[:1], _grip_beyond(scene, 0.5), reach[-1:]])
+    friction = -np.diff(_normal_force(scene, between), axis=0)
+    most = -np.diff(between, axis=0)
+    if np.any(np.abs(friction) > most + ROUNDING * (reach.max() + np.abs(scene.load).max())):
+        return None
+    nodal = _normal_force(scene, reach)
     elongation = _mean_normal_force(scene, nodal) * scene.length / scene.elements / scene.stiffness
     displacement = np.zeros_like(nodal)
     np.cumsum(elongation, axis=0, out=displacement[1:])
-    return ClosedForm(nodal, -np.diff(sections, axis=0), displacement)
+    return ClosedForm(nodal, friction, displacement)
 
 
-def _grip_beyond(scene: RodsData, share: float | Array, *, with_end: bool = False) -> Array:
-    """Give R at a share of every element's length, shape (n_elements,), N; then at L if wanted.
+def _grip_beyond(scene: RodsData, share: float | Array) -> Array:
+    """Give R at a share of every element's length, shape (n_elements, n_instants or 1), N.
 
-    Of shares of shape (n_shares, 1) it gives (n_shares, n_elements).
+    Of shares of shape (n_shares, 1, 1) it gives (n_shares, ...).
     """
     size = scene.length / scene.elements
-    left, right = scene.bound[:-1], scene.bound[1:]
+    left, right = scene.bounds[:-1], scene.bounds[1:]
     whole = 0.5 * size * (left + right)
-    beyond = np.cumsum(whole[::-1])[::-1] - whole
+    beyond = np.cumsum(whole[::-1], axis=0)[::-1] - whole
     rest = 1.0 - share
-    found = beyond + 0.5 * size * rest * (rest * left + (1.0 + share) * right)
-    return np.append(found, 0.0) if with_end else found
+    return np.asarray(beyond + 0.5 * size * rest * (rest * left + (1.0 + share) * right))
 
 
 def _normal_force(scene: RodsData, reach: Array) -> Array:
@@ -103,11 +111,11 @@ def _mean_normal_force(scene: RodsData, nodal: Array) -> Array:
     """Average over each element, shape (n_elements, n_instants), by the trapezoidal rule."""
     parts = -(-SECTIONS // scene.elements)
     total = 0.5 * (nodal[:-1] + nodal[1:])
-    shares = np.arange(1, parts)[:, None] / parts
+    shares = np.arange(1, parts)[:, None, None] / parts
     size = max(AT_ONCE // nodal.size, 1)
     for first in range(0, parts - 1, size):
         reach = _grip_beyond(scene, shares[first : first + size])
-        forces = _normal_force(scene, reach.ravel())
+        forces = _normal_force(scene, reach.reshape(-1, reach.shape[-1]))
         total += forces.reshape(-1, *total.shape).sum(axis=0)
     mean: Array = total / parts
     return mean

@@ -55,7 +55,8 @@ class Distance:
     load
         Forces that act on the structure, shape (n, n_instants), N.
     bound
-        Friction forces that are allowed without any pressure, shape (n_forces,), N.
+        Friction forces that are allowed without any pressure, N, shape (n_forces, n_instants), or
+        (n_forces, 1) where they stay the same.
     dofs
         Degrees of freedom at interfaces, shape (n,).
     normal
@@ -90,7 +91,7 @@ class Distance:
         self._force = reference.contact_force * determinate
         self._displacement_size = self._norm(self._displacement) or 1.0
         force_size, load_size = self._norm(self._force), self._norm(load)
-        allowed = self._norm(np.outer(bound, np.ones(len(time_weights))))
+        allowed = self._norm(bound * np.ones(len(time_weights)))
         # Without a known bound it is the load alone that contact forces can vanish beside.
         vanishes = force_size <= VANISHING * (min(load_size, allowed) or load_size)
         self.force_size = (load_size if vanishes else force_size) or 1.0

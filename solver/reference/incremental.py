@@ -96,7 +96,7 @@ class IncrementalRod:
             done, from_guess = structure.band.solutions, starts.from_guess
             begin = guesses[instant] if guesses is not None and from_guess else status
             load = structure.load_steps[instant] + balance
-            least = structure.minimise(load, structure.moves[instant], begin, gone)
+            least = structure.minimise(instant, load, structure.moves[instant], begin, gone)
             if least is None:
                 jumps = True
                 break

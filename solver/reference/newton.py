@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import ROUNDING, Array, Indices
+from solver.arrays import ROUNDING, Array, Indices, at_instant
 from solver.laws import OPEN
 from solver.laws.rules import Rules
 from solver.reference.condensation import Condensation
@@ -86,7 +86,7 @@ class Newton:
         load = condensed.load[:, instant] - self._load - self.response.on_base(self._force)
         before = rules.compliance * self._force - condensed.shift[:, instant] + self._shift
         held = before - np.where(rules.normal, self._opening, 0.0)
-        sides = Sides(load[:, None], rules.bound[:, None], held[:, None])
+        sides = Sides(load[:, None], at_instant(rules.bound, instant), held[:, None])
         step = self._together(sides, instant)
         self._load, self._shift = condensed.load[:, instant], condensed.shift[:, instant]
         slip, self._force = step.jump[:, 0] - before, step.force[:, 0]
@@ -161,7 +161,7 @@ class Newton:
         held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
         carries = np.where(held, force[rules.partner], -moved[rules.partner])
-        most = rules.bound + np.maximum(rules.friction * carries, 0.0) + slack * held
+        most = sides.bound[:, 0] + np.maximum(rules.friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
         found = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
         found = np.where(np.abs(states) == 1, states * (states * moved >= -blur), found)

@@ -53,7 +53,7 @@ class _PathFollower:
         # its way; multiples of the golden ratio spread it, alike in every run.
         size = len(rules.gap)
         spread = 1.0 + np.arange(1, size + 1) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
-        raised = ~rules.normal & (rules.bound > 0.0)
+        raised = ~rules.normal & rules.bounded
         pressed = response.on_base(np.where(rules.normal, -spread, 0.0))
         self._sides = Sides(
             np.column_stack([sides.load, pressed]),

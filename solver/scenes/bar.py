@@ -97,6 +97,7 @@ class BarSettings(SceneSettings):
     )
     friction = shared.friction("mu between bar and support")
     pressure = shared.pressure("the bar on its support", 10_000.0)
+    pressure_load = shared.pressure_load()
     friction_profile = curve(
         "uniform",
         PROFILES,
@@ -155,6 +156,7 @@ class BarSettings(SceneSettings):
             "load": self.peak,
             "support_load": self.support_displacement,
             "body_load": self.body_force,
+            "pressure_load": self.pressure,
         }
         return sizes[path]
 
@@ -167,6 +169,7 @@ class BarSettings(SceneSettings):
     def check_together(self) -> None:
         """Refuse negative factors too."""
         super().check_together()
+        shared.check_pressure(self)
         for name in ("friction_profile", "pressure_profile"):
             table = getattr(self, name)
             if not isinstance(table, str) and min(factor for _, factor in table) < 0.0:
@@ -206,18 +209,18 @@ def bar(settings: BarSettings) -> Rods:
     """
     nodes = np.linspace(0.0, settings.length, settings.elements + 1)
     mu = settings.friction * _profile(settings.friction_profile, nodes, settings.length)
-    pressure = settings.pressure * _profile(settings.pressure_profile, nodes, settings.length)
+    spread = _profile(settings.pressure_profile, nodes, settings.length)
     mean, section = _section(settings)
     return Rods(
         length=settings.length,
         stiffness=settings.young * settings.section * mean,
         elements=settings.elements,
         substructures=settings.substructures,
-        bound=mu * pressure,
+        bound=shared.bound_of(settings, mu * spread),
         load=settings.path("load"),
         instants=settings.times(),
         duration=settings.duration,
-        pressure=settings.pressure,
+        pressure=settings.path("pressure_load"),
         support=settings.path("support_load") if settings.support_displacement else None,
         body_force=settings.path("body_load") if settings.body_force else None,
         section=section,
@@ -235,6 +238,8 @@ def _words(settings: BarSettings) -> str:
     if settings.body_force:
         along = acting(settings.path("body_load"), "pulled", "pushed")
         ends = Phrase("{}; all along it is {}", ends, along)
+    if settings.pressure_load != "steady":
+        ends = Phrase("{}; what presses it changes", ends)
     held = "" if settings.support_displacement else ", held at its left end"
     body = "a steel bar" if is_steel(settings.young) else "an elastic bar"
     return Sentence("{} lies on a {} table{}; {}", body, table, held, ends)

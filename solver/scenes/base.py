@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, quantity
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
-from solver.loads import PRESETS, instants_of, load_path
+from solver.loads import PRESETS, PRESSURES, instants_of, load_path
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -126,7 +126,8 @@ class SceneSettings(Settings):
         own: Any = self
         curve: str | Pairs = getattr(self, name)
         size = self.size_of(name) if isinstance(curve, str) else 0.0
-        return load_path(curve, instants, own.duration, size, own.seed, self.SHAPES)
+        shapes = {**self.SHAPES, **PRESSURES}
+        return load_path(curve, instants, own.duration, size, own.seed, shapes)
 
     def with_change(self, name: str, value: object) -> Self:
         """Change one setting; numbers of parts that exceed it come down with it."""

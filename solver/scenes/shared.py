@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import param
 
-from solver.definitions import count, quantity
+from solver.arrays import Array
+from solver.definitions import CurveParameter, SettingError, count, curve, quantity
+from solver.loads import PRESSURES
 
 ROD_SIZES = {
     "elements": (50, 100, 200, 400, 800),
@@ -85,7 +88,54 @@ def pressure(which: str, slider: float) -> param.Number[float]:
         group="Contact",
         title="Pressure p",
         unit="N/m",
+        applies=lambda settings: isinstance(settings.pressure_load, str),
     )
+
+
+def pressure_load() -> CurveParameter:
+    """Define how that pressure goes on over time."""
+    return curve(
+        "steady",
+        PRESSURES,
+        "time",
+        "pressure",
+        ("s", "N/m"),
+        "Pressure over time. loosening: it stays for a quarter of the interval, and falls to a "
+        "fifth, as of a bolt. tightening: the other way. shaken: it falls to a fifth and comes "
+        "back, six times. Or points (s, N/m).",
+        group="Contact",
+        title="p over time",
+    )
+
+
+def check_pressure(settings: Any) -> None:
+    """Refuse a pressure that pulls.
+
+    Raises
+    ------
+    SettingError
+        For a path that goes below zero.
+    """
+    path = settings.pressure_load
+    if not isinstance(path, str) and min(value for _, value in path) < 0.0:
+        raise SettingError(
+            "pressure_load", path, "pressures of at least 0 N/m", "raise the negative pressure"
+        )
+
+
+def bound_of(settings: Any, density: Array) -> Array:
+    """Give the friction bound, shape (n_nodes,), or (n_nodes, n_instants) where it changes, N/m.
+
+    Parameters
+    ----------
+    settings
+        Of rods under a pressure.
+    density
+        Friction bound over that pressure at the nodes, shape (n_nodes,).
+    """
+    if settings.pressure_load == "steady":
+        return np.asarray(density * settings.pressure)
+    return np.outer(density, settings.path("pressure_load"))
 
 
 def size(

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
+from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
@@ -63,6 +64,7 @@ class StrandSettings(SceneSettings):
     instants = shared.instants(101)
     friction = shared.friction("mu between neighbouring wires")
     pressure = shared.pressure("neighbouring wires on each other", 20_000.0)
+    pressure_load = shared.pressure_load()
     wires = count(
         3,
         (2, 200),
@@ -134,7 +136,7 @@ class StrandSettings(SceneSettings):
 
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
-        return float(self.peak)
+        return float(self.pressure if path == "pressure_load" else self.peak)
 
     def coarser(self) -> StrandSettings | None:
         """Give the same strand uncut with half the elements.
@@ -152,6 +154,7 @@ class StrandSettings(SceneSettings):
     def check_together(self) -> None:
         """Refuse what is missing, pushed, too large, or without equilibrium."""
         super().check_together()
+        shared.check_pressure(self)
         tension = self.path("load")
         if tension.min() < 0.0:
             raise SettingError(
@@ -160,7 +163,7 @@ class StrandSettings(SceneSettings):
                 "tensions of at least 0 N",
                 "wires cannot be pushed: raise the negative values",
             )
-        _check_equilibrium(self, float(tension.max()))
+        _check_equilibrium(self, tension)
 
 
 def strand(settings: StrandSettings) -> Rods:
@@ -174,11 +177,11 @@ def strand(settings: StrandSettings) -> Rods:
         stiffness=settings.young * settings.section,
         elements=settings.elements,
         substructures=settings.substructures,
-        bound=np.full(settings.elements + 1, settings.friction * settings.pressure),
+        bound=shared.bound_of(settings, np.full(settings.elements + 1, settings.friction)),
         load=settings.path("load"),
         instants=settings.times(),
         duration=settings.duration,
-        pressure=settings.pressure,
+        pressure=settings.path("pressure_load"),
         wires=settings.wires,
         broken=(settings.broken, _break_node(settings)) if settings.broken else None,
         rigid_grip=settings.grip == "displacement",
@@ -191,13 +194,15 @@ def _break_node(settings: StrandSettings) -> int:
     return min(max(node, 1), settings.elements - 1)
 
 
-def _check_equilibrium(settings: StrandSettings, largest: float) -> None:
+def _check_equilibrium(settings: StrandSettings, tension: Array) -> None:
     """Refuse forces that pull the end of the broken wire out: friction alone holds it."""
     if settings.grip != "force" or not settings.broken:
         return
     share = 1.0 - _break_node(settings) / settings.elements
     sides = neighbours(settings.broken, settings.wires)
-    capacity = sides * settings.friction * settings.pressure * share * settings.length
+    most = sides * settings.friction * share * settings.length * settings.path("pressure_load")
+    worst = int(np.argmax(tension - most))
+    largest, capacity = float(tension[worst]), float(most[worst])
     if largest > capacity or largest == capacity > 0.0:
         name = "peak" if isinstance(settings.load, str) else "load"
         raise SettingError(
@@ -218,6 +223,8 @@ def _words(settings: StrandSettings) -> str:
     wires = Phrase("{}{} rub on each other", counted(settings.wires, what), broken)
     pulled = acting(settings.path("load"), "pulled", "pushed")
     grip = " by one grip" if settings.grip == "displacement" else ""
+    if settings.pressure_load != "steady":
+        grip = Phrase("{}; what presses them together changes", grip)
     return Sentence("{}; their right ends are {}{}", wires, pulled, grip)
 
 

@@ -128,8 +128,8 @@ def holding_friction(run: FinishedRun, at: float | None) -> float:
         if any((way.all(axis=0) & ~is_free.all(axis=0)).any() for way in ways):
             return math.nan
         if contact.normal_force is None:
-            bound = law.by_point(law.tangential.bound).sum() * run.problem.scales.force
-            pressing = np.full(run.problem.n_instants, bound / friction)
+            bound = law.tangential.bound.sum(axis=0) * run.problem.scales.force
+            pressing = np.broadcast_to(bound / friction, run.problem.n_instants)
         else:
             pressing = contact.normal_force.sum(axis=0)
         held = np.abs(contact.tangential_force.sum(axis=0))[pressing > 0.0]

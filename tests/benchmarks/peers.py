@@ -103,7 +103,7 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
     law = problem.friction
     rubbing = problem.row_dofs[law.tangent.above]
     bound = np.zeros(problem.n_dofs)
-    np.add.at(bound, rubbing, law.tangential.bound)
+    np.add.at(bound, rubbing, law.tangential.most)
     fixed, prescribed = problem.prescribed
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
     stiffness, force = assembled_stiffness(problem), external_force(problem)

@@ -153,16 +153,16 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
 
 
 def sliding_share(problem: Problem) -> float:
-    """Estimate the share of one frictional interface that slides at the largest load.
+    """Estimate the largest share of one frictional interface that ever slides.
 
-    It is that load over all that friction can carry, between two points and all of them: the load
+    It is that load over all that friction can carry then, between two points and all: the load
     of one body over one interface, where there are several alike. Where displacements are
     prescribed the load is not known beforehand: on a rigid support all may slide; bodies that rub
     on each other carry no more than what the displacement alone makes of a rod, whose scaled
     stiffness is 1.
     """
     first, *_ = problem.rubbing.values()
-    capacity = float(first.tangential.bound.sum())
+    capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)
     for pulled in problem.given_forces:
@@ -175,5 +175,6 @@ def sliding_share(problem: Problem) -> float:
     for part in problem.substructures:
         if part.body_force is not None:
             load += part.body_force.sum(axis=0)
-    largest = float(np.abs(load).max())
-    return float(np.clip(largest / capacity, smallest, 1.0)) if capacity > 0.0 else 1.0
+    if not capacity.all():
+        return 1.0
+    return float(np.clip((np.abs(load) / capacity).max(), smallest, 1.0))

@@ -77,7 +77,7 @@ class Slide:
         rubs = along.component.above
         self._across, self._along, self._end = held, rubs, pulls
         self._closed, self._k = -law.gap[:, None], k[held, None]
-        self._bound, self._friction = along.bound[:, None], along.friction[:, None]
+        self._bound, self._friction = along.bound, along.friction[:, None]
         soft = 1.0 / k[rubs] + (0.0 if along.softness is None else along.softness)
         self._soft = soft[:, None]
         stop = float(1.0 / (1.0 / k[pulls] + spring.softness)[0])
