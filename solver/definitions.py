@@ -16,10 +16,13 @@ from typing import Any
 
 import param
 
+from solver.phrases import Amount, Phrase, joined
 from solver.refusal import RefusedError
 
 Pairs = tuple[tuple[float, float], ...]
 Parameter = param.Parameter[Any]
+FAR = 1e6
+"""Numbers from here on are no limits to anybody's problem, but to the digits of a computer."""
 
 
 class SettingError(RefusedError):
@@ -187,17 +190,23 @@ def redefined(definition: Any, default: object, **record: Any) -> Any:
 
 def allowed(definition: Parameter) -> str:
     """Describe in words which values a setting takes."""
-    unit = f" {about(definition).unit}" if about(definition).unit else ""
     if isinstance(definition, CurveParameter):
         pairs = f"pairs [[{definition.abscissa}, {definition.ordinate}], ...]"
         return f"{', '.join(definition.presets)}, or {pairs}"
     if isinstance(definition, param.Boolean):
         return "true or false"
     if isinstance(definition, param.Selector):
-        return ", ".join(definition.objects)
-    low, high = definition.bounds
-    kind = "a whole number" if isinstance(definition, param.Integer) else "a number"
-    return f"{kind} from {low:g} to {high:g}{unit}"
+        return joined(", ", definition.objects)
+    low, high = (Amount(end, about(definition).unit) for end in definition.bounds)
+    if isinstance(definition, param.Integer):
+        return Phrase("a whole number from {} to {}", low, high)
+    if high.value < FAR:
+        return Phrase("a number from {} to {}", low, high)
+    if low.value < 0.0:
+        return Phrase("any number (at most {} in size)", high)
+    if low.value > 0.0:
+        return Phrase("any number above 0 (from {} to {})", low, high)
+    return Phrase("any number from 0 on (to {})", high)
 
 
 def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 
+from solver.phrases import plain
+
 
 class RefusedError(ValueError):
     """A refused value: the message names it, its value, the allowed range and the remedy."""
@@ -43,8 +45,8 @@ def check_range(part: object, name: str, low: float, high: float, *, above: bool
         and not (above and value == low)
     ):
         return
-    bounds = f"a number {'above' if above else 'from'} {low:g}"
-    allowed = bounds + (f" to {high:g}" if math.isfinite(high) else "")
+    bounds = f"a number {'above' if above else 'from'} {plain(low)}"
+    allowed = bounds + (f" to {plain(high)}" if math.isfinite(high) else "")
     raise RefusedError(
         f"{type(part).__name__}.{name}", value, allowed, "give a number in this range"
     )

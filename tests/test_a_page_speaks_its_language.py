@@ -18,8 +18,8 @@ from app.lessons.lesson import LESSONS, content
 from app.shell.address import query_of, sight_from_query
 from app.views.catalogue import VIEWS
 from solver.definitions import about
+from solver.phrases import Phrase, Sentence
 from solver.scenes import CATALOGUE
-from solver.scenes.words import Phrase, Sentence
 
 ROOT = Path(__file__).resolve().parents[1]
 TRANSLATIONS = [name for name in LANGUAGES if name != SOURCE]

@@ -10,9 +10,10 @@ import param
 import pytest
 from lone_link import lone_session
 
-from app.components.form import ENDS, POINTS, USUAL, item_of
-from app.controls.refusals import refused
+from app.components.form import ENDS, POINTS, UNITS, USUAL, item_of
+from app.controls.refusals import field_of, refused
 from app.controls.sidebar import Sidebar
+from app.picture.units import BY_SIZE, MM, SI
 from app.session.undo import Undo
 from app.shell import notes
 from app.shell.actions import Actions
@@ -61,8 +62,8 @@ def test_what_is_brought_back_has_the_value_of_its_method(sidebar: Sidebar) -> N
 
 def test_a_word_in_place_of_a_number_is_refused(sidebar: Sidebar) -> None:
     sidebar.hear("pressure", "many", False, 1)
-    said = "Pressure p cannot be “many”: write a number. Allowed: a number from 0 to 1e+15 N/m."
-    assert sidebar._session.refusal == said
+    said = "Pressure p cannot be “many”: write a number. Allowed: any number from 0 on "
+    assert sidebar._session.refusal == f"{said}(to 1·10¹² kN/m)."
     assert sidebar.view.shown["pressure"] == 5000.0
     sidebar.hear("pressure", 6000.0, False, 2)
     sidebar.obey()
@@ -79,8 +80,43 @@ def strand() -> Sidebar:
 def test_what_was_moved_is_refused_and_not_what_it_does_not_go_with(strand: Sidebar) -> None:
     strand._on_setting("friction", 0.01)
     told = strand._session.refusal
-    assert told.startswith("Friction coefficient μ cannot be 0.01 while Peak tension is 600. ")
+    assert told.startswith("Friction coefficient μ cannot be 0.01 while Peak tension is 600 N. ")
     assert "peak =" not in told
+
+
+@pytest.mark.parametrize(
+    ("units", "value", "allowed"),
+    [(BY_SIZE, "2000 mm²", "1·10⁸ mm²"), (MM, "2000 mm²", "1·10⁸ mm²"), (SI, "0.002 m²", "100 m²")],
+)
+def test_a_refusal_is_in_the_unit_that_the_field_shows(
+    sidebar: Sidebar, units: str, value: str, allowed: str
+) -> None:
+    sidebar.hear(UNITS, units, False, 1)
+    sidebar.hear("section", -2e-3, False, 2)
+    told = sidebar._session.refusal
+    assert told.startswith(f"Cross section S cannot be -{value}: ")
+    assert told.endswith(f" to {allowed}.")
+
+
+def test_a_refusal_follows_the_value_and_where_that_is_zero_the_slider(sidebar: Sidebar) -> None:
+    for held, unit in ((0.0, "kN"), (5.0, "N"), (5e3, "kN"), (-5e6, "MN")):
+        settings = BarSettings.checked({"peak": held})
+        assert field_of(settings, "peak", BY_SIZE)[1] == unit
+        with pytest.raises(SettingError) as refusal:
+            settings.with_change("peak", 1e20)
+        told = refused(refusal.value, settings, "peak", 1e20)
+        assert re.fullmatch(
+            rf"Peak load cannot be 1·10[⁰¹²⁴⁷⁹]+ {unit}: .* 1·10[¹²⁹⁵]+ {unit} in size\)\.", told
+        )
+
+
+def test_a_force_that_a_refusal_names_is_in_the_unit_of_its_field() -> None:
+    strong = CATALOGUE["strand"].settings.checked({"pressure": 5e6, "peak": 5e3})
+    for name, value in (("peak", 9e6), ("load", [[0.0, 0.0], [1.0, 9e6]])):
+        with pytest.raises(SettingError) as refusal:
+            strong.with_change(name, value)
+        told = refused(refusal.value, strong, name, value)
+        assert f"below {'1500 kN' if name == 'peak' else '1.5·10⁶ N'}, all that" in told
 
 
 def test_a_slider_that_is_dragged_ends_where_values_do(strand: Sidebar) -> None:

@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
     ["arrays"],
+    ["phrases"],
     ["refusal"],
     ["laws"],
     ["discrete"],

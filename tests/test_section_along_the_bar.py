@@ -97,8 +97,8 @@ def test_the_closed_form_is_for_one_section_alone():
     [
         ([[0.0, 1.0], [1.0, 0.0]], "above 0"),
         ([[0.0, 1.0], [1.0, -2.0]], "above 0"),
-        ([[0.0, 1e-9]], "from 1e-08 to 1e+08"),
-        ([[0.0, 1e-4], [1.0, 1.1e4]], "at most 1e+08 times"),
+        ([[0.0, 1e-9]], "from 1e-8 to 1e8"),
+        ([[0.0, 1e-4], [1.0, 1.1e4]], "at most 1e8 times"),
         ("gap", "uniform, rising, falling"),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 
 import param
 import pytest
@@ -33,7 +34,9 @@ def test_numbers_out_of_range_or_of_another_kind_are_refused(name):
     definition = DEFINITIONS[name]
     low, high = definition.bounds
     span = allowed(definition)
-    assert f"{low:g} to {high:g}" in span
+    numbers = [float(one) for one in re.findall(r"-?\d[\d.]*(?:e-?\d+)?", span)]
+    assert {high, max(low, 0.0)} <= {*numbers, 0.0}
+    assert low in (*numbers, 0.0, -high), "what is left out is zero, or the same the other way"
     beyond = [low - 1, high * 2 + 1, 10**400, -(10**400)]
     for value in [*beyond, math.nan, math.inf, -math.inf, True, "many", None, [1.0], {"a": 1}]:
         text = refusal(lambda value=value: BarSettings.checked({name: value}))
@@ -54,6 +57,22 @@ def test_whole_numbers_may_be_written_with_a_point_and_nothing_behind_it(name):
         str(low + 1.5),
         allowed(DEFINITIONS[name]),
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("peak", "any number (at most 1e15 N in size)"),
+        ("pressure", "any number from 0 on (to 1e15 N/m)"),
+        ("young", "any number above 0 (from 1 Pa to 1e18 Pa)"),
+        ("section", "a number from 1e-15 m^2 to 100 m^2"),
+        ("relaxation", "a number from 0.01 to 1"),
+        ("seed", "a whole number from 0 to 2147483647"),
+    ],
+)
+def test_a_range_reads_as_one_says_it_and_ends_that_limit_nobody_stand_behind(name, said):
+    assert allowed(DEFINITIONS[name]) == said
+    assert f"allowed: {said}; " in refusal(lambda: BarSettings.checked({name: "many"}))
 
 
 @pytest.mark.parametrize("value", [1, 0.0, "true", None, []])

@@ -12,9 +12,9 @@ from solver.cli import main
     ("arguments", "words"),
     [
         (["bar", "--set", "friktion=0.3"], ["friktion", "0.3", "did you mean friction?"]),
-        (["bar", "--set", "peak=much"], ["peak", "much", "a number from -1e+15 to 1e+15 N"]),
+        (["bar", "--set", "peak=much"], ["peak", "much", "any number (at most 1e15 N in size)"]),
         (["bar", "--set", "relaxation=2"], ["relaxation", "2", "a number from 0.01 to 1"]),
-        (["bar", "--set", "peak=nan"], ["peak", "NaN", "a number from"]),
+        (["bar", "--set", "peak=nan"], ["peak", "NaN", "any number"]),
         (["bar", "--set", "elements=true"], ["elements", "true", "a whole number from 1"]),
         (["bar", "--set", "elements=3"], ["substructures", "10", "1 to elements (3)"]),
         (["bar", "--set", "load=none.csv"], ["load", "none.csv", "ramp, triangle"]),

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from shown_pages import ALL, SMALL, Shown
 
 from app.components.form import LADDERS
+from app.controls.refusals import field_of
 from app.picture.labels import changes_of, label_of
 from app.picture.units import BY_SIZE, MM, SI, SYSTEMS, measured, scale_of, steps
 from app.shell.address import Sight, query_of, sight_from_query
@@ -40,6 +41,8 @@ IN_SI = {
         (0.2, "m", "200 mm"),
         (2.31e8, "Pa", "231 MPa"),
         (3e9, "Pa", "3000 MPa"),
+        (1e9, "N/m^3", "1000 MN/m³"),
+        (-77e3, "N/m^3", "-77 kN/m³"),
         (2.1e11, "Pa", "210 GPa"),
         (3.14e-4, "m^2", "314 mm²"),
         (5000.0, "N/m", "5 kN/m"),
@@ -98,6 +101,31 @@ def test_every_setting_has_a_unit_in_every_system(scene: str) -> None:
     for definition in CATALOGUE[scene].settings.definitions().values():
         unit = about(definition).unit
         assert unit in LADDERS or unit in ("", "s", "°")
+
+
+AT_HAND = {
+    "m": {"µm", "mm", "m"},
+    "m^2": {"mm²"},
+    "N": {"N", "kN"},
+    "Pa": {"MPa", "GPa"},
+    "N/m": {"kN/m", "MN/m"},
+    "N/m^3": {"kN/m³", "MN/m³"},
+    "N·m/m": {"kN·m/m"},
+}
+"""Units in which one thinks of what is set."""
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_every_field_is_at_first_in_a_unit_that_one_thinks_in(scene: str) -> None:
+    settings = CATALOGUE[scene].settings.checked({})
+    for name, definition in settings.definitions().items():
+        unit = about(definition).unit
+        if unit in AT_HAND:
+            size, shown = field_of(settings, name, BY_SIZE)
+            value, (_, end) = getattr(settings, name), definition.softbounds
+            assert shown in AT_HAND[unit], name
+            # Zero has the unit in which its slider ends.
+            assert value or 1.0 <= end / size <= 1000.0, name
 
 
 @pytest.mark.parametrize(

@@ -60,7 +60,7 @@ def test_every_quantity_that_is_offered_can_be_asked_and_every_ready_question(
 @pytest.mark.parametrize(
     ("span", "words"),
     [
-        (Span("friction", "0.1", "7e9", "5"), "a number from 0 to"),
+        (Span("friction", "0.1", "7e9", "5"), "any number from 0 on (to 1·10⁶)"),
         (Span("friction", "low", "1", "5"), "is no number"),
         (Span("friction", "0", "1", "5", "log"), "ends above zero"),
         (Span("friction", "0", "1", "1"), "whole number from 2"),

@@ -1,4 +1,7 @@
-"""Refusals in the words of the page: titles for names, and no forms that only files have."""
+"""Refusals in the words of the page: titles for names, values in the units of their fields.
+
+What a file or an address has is told in SI, as it stands there.
+"""
 
 from __future__ import annotations
 
@@ -9,16 +12,30 @@ import param
 
 from app.components.form import item_of
 from app.picture.labels import in_titles
+from app.picture.units import BY_SIZE, SI, rounded, scale_of
 from solver.definitions import CurveParameter, Parameter, SettingError, about, allowed
+from solver.phrases import Amount, Phrase, joined
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
+NO_FIELD = (1.0, "")
+"""Of what has no unit."""
+EXACT = 10
+"""Digits of what is refused: one beside the end of a range is told from it."""
+HUGE = 10**300
+"""What is larger is no number to Python's floating point."""
 CLOSE = 16
 """Halvings of a slider's way, by which the last value that holds is sought."""
 
 
-def refused(refusal: SettingError, settings: Settings, moved: str = "", value: Any = None) -> str:
+def refused(
+    refusal: RefusedError,
+    settings: Settings,
+    moved: str = "",
+    value: Any = None,
+    units: str = BY_SIZE,
+) -> str:
     """Say what was refused and why.
 
     Parameters
@@ -29,17 +46,21 @@ def refused(refusal: SettingError, settings: Settings, moved: str = "", value: A
         Those in force.
     moved, value
         The setting that was to change, and to what; another may be the one that it refuses.
+    units
+        One of `app.picture.units.SYSTEMS`.
     """
     definitions = settings.definitions()
     name, remedy = refusal.name, in_titles(settings, refusal.remedy)
     if name not in definitions:
-        return f"{written(refusal.value)}: {remedy}. Allowed: {refusal.allowed}."
-    definition, title = definitions[name], about(definitions[name]).title
-    limits = in_titles(settings, _limits(refusal, definition))
+        return Phrase("{}: {}. Allowed: {}.", written(refusal.value), remedy, refusal.allowed)
+    title, field = about(definitions[name]).title, field_of(settings, name, units)
+    limits = in_titles(settings, _in_field(_limits(refusal, definitions[name]), field))
+    found = written(refusal.value, field)
     if name == moved or moved not in definitions:
-        return f"{title} cannot be {written(refusal.value)}: {remedy}. Allowed: {limits}."
-    own = f"{about(definitions[moved]).title} cannot be {written(value)}"
-    return f"{own} while {title} is {written(refusal.value)}. Allowed for this: {limits}; {remedy}."
+        return Phrase("{} cannot be {}: {}. Allowed: {}.", title, found, remedy, limits)
+    own = about(definitions[moved]).title, written(value, field_of(settings, moved, units))
+    words = "{} cannot be {} while {} is {}. Allowed for this: {}; {}."
+    return Phrase(words, *own, title, found, limits, remedy)
 
 
 def refused_by_name(refusal: RefusedError, settings: Settings) -> str:
@@ -52,9 +73,39 @@ def refused_by_name(refusal: RefusedError, settings: Settings) -> str:
     if kind is None:
         return str(refusal)
     definition = kind.definitions()[refusal.name]
-    title, value = title_and_name(refusal.name, definition), written(refusal.value)
-    limits = _limits(refusal, definition)
-    return f"{title} cannot be {value}: {refusal.remedy}. Allowed: {limits}."
+    title = title_and_name(refusal.name, definition)
+    field = scale_of(1.0, _unit_of(definition), SI)
+    limits, found = _in_field(_limits(refusal, definition), field), written(refusal.value, field)
+    return f"{title} cannot be {found}: {refusal.remedy}. Allowed: {limits}."
+
+
+def field_of(settings: Settings, name: str, units: str) -> tuple[float, str]:
+    """Give the unit in which the field of a setting stands, its size in SI before its name.
+
+    It is that of the value, or of the slider's end if that is zero (`components/controls.js`); of
+    a table that of its largest value.
+    """
+    definition, value = settings.definitions()[name], getattr(settings, name)
+    size = 1.0
+    if isinstance(value, float):
+        size = abs(value) or definition.softbounds[1]
+    elif isinstance(value, tuple):
+        size = max(abs(one) for _, one in value)
+    return scale_of(size, _unit_of(definition), units)
+
+
+def _unit_of(definition: Parameter) -> str:
+    is_table = isinstance(definition, CurveParameter)
+    return definition.units[1] if is_table else about(definition).unit
+
+
+def _in_field(text: str, field: tuple[float, str]) -> str:
+    """Write the amounts of a text as a field has them."""
+    if isinstance(text, Amount):
+        return written(text.value, field if text.unit else NO_FIELD)
+    if isinstance(text, Phrase):
+        return Phrase(text.template, *(_in_field(part, field) for part in text.parts))
+    return text
 
 
 def _limits(refusal: RefusedError, definition: Parameter) -> str:
@@ -75,21 +126,22 @@ def sentence(remedy: str) -> str:
 def allowed_here(definition: Parameter) -> str:
     """Describe which values a setting takes, as its control offers them."""
     if isinstance(definition, CurveParameter):
-        table = f"a table of {definition.abscissa} and {definition.ordinate}"
-        return f"{', '.join(definition.presets)}, or {table}"
+        columns = definition.abscissa, definition.ordinate
+        return Phrase("{}, or a table of {} and {}", joined(", ", definition.presets), *columns)
     return "on or off" if isinstance(definition, param.Boolean) else allowed(definition)
 
 
-def written(value: object) -> str:
-    """Write a value as one would say it."""
+def written(value: object, field: tuple[float, str] = NO_FIELD) -> str:
+    """Write a value as one would say it, a number in the unit of a field."""
     if isinstance(value, bool):
         return "on" if value else "off"
-    if isinstance(value, float):
-        return f"{value:g}"
     if isinstance(value, list | tuple):
         return "this table"
+    if isinstance(value, float) or (isinstance(value, int) and abs(value) < HUGE):
+        factor, unit = field
+        return f"{rounded(value / factor, EXACT)} {unit}".strip()
     text = str(value)
-    return text if isinstance(value, int) else f"“{text if len(text) <= 40 else text[:37] + '...'}”"
+    return f"“{text if len(text) <= 40 else text[:37] + '...'}”"
 
 
 def last_that_holds(settings: Settings, name: str, value: float) -> float | None:

@@ -23,6 +23,7 @@ from app.reports.report import Report
 from app.session.session import Session
 from app.views.catalogue import drawn, fitting
 from solver.definitions import SettingError, about
+from solver.phrases import joined
 from solver.scenes import ends_of, points_of
 from solver.settings import Settings
 
@@ -152,7 +153,7 @@ class Sidebar:
         with self._session.together():
             said = [self._change(name, value) for name, value in asked.items()]
             if None not in said:
-                self._session.refusal = " ".join(filter(None, said))
+                self._session.refusal = joined(" ", list(filter(None, said)))
         self._answer()
 
     def _answer(self) -> None:
@@ -171,18 +172,16 @@ class Sidebar:
         try:
             session.change(name, value, by_hand=by_hand)
         except SettingError as refusal:
-            words = refused(refusal, session.wanted, name, value)
-        else:
-            self._ends.discard(name)
-            return ""
-        if name in self._ends:
-            return None
-        if by_hand:
-            self._ends.add(name)
-            end = last_that_holds(session.wanted, name, value)
-            if end is not None:
-                session.change(name, end, by_hand=True)
-        return words
+            if name in self._ends:
+                return None
+            if by_hand:
+                self._ends.add(name)
+                end = last_that_holds(session.wanted, name, value)
+                if end is not None:
+                    session.change(name, end, by_hand=True)
+            return refused(refusal, session.wanted, name, value, session.look.units)
+        self._ends.discard(name)
+        return ""
 
     def _on_scene(self, scene: str) -> None:
         self.obey()
@@ -197,7 +196,7 @@ class Sidebar:
                 session.twin, settings = pair(choice, session.wanted)
                 session.start(settings)
         except SettingError as refusal:
-            session.refusal = refused(refusal, session.wanted)
+            session.refusal = refused(refusal, session.wanted, units=session.look.units)
         self._answer()
 
     def _let_go(self, name: str) -> None:

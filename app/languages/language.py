@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from pathlib import Path
 
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 FOLDER = Path(__file__).parent
 SOURCE = "en"

@@ -14,7 +14,7 @@ from app.picture.glossary import ENGLISH
 from solver.definitions import about
 from solver.lessons.lesson import SUBJECTS, Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 FOLDER = Path(__file__).parent
 LESSONS = {

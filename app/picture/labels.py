@@ -7,6 +7,7 @@ from typing import Any
 
 from app.picture.units import BY_SIZE, measured
 from solver.definitions import about
+from solver.phrases import Phrase
 from solver.settings import Settings
 
 FEW = 2
@@ -49,6 +50,9 @@ def _written(value: Any, unit: str, units: str) -> str:
 
 def in_titles(settings: Settings, text: str, written: str = "{}") -> str:
     """Call settings in a text what the sidebar calls them; one word may be just that."""
+    if isinstance(text, Phrase):
+        parts = (text.template, *text.parts)
+        return Phrase(*(in_titles(settings, str(one), written) for one in parts))
     for name, definition in settings.definitions().items():
         if "_" in name:
             text = re.sub(rf"\b{name}\b", written.format(about(definition).title), text)

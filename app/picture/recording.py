@@ -15,8 +15,8 @@ from app.picture.shown import Counts, thinned
 from app.picture.usual import changed
 from solver.latin import Iterate, Record, Status
 from solver.latin.warm import StartChoice
+from solver.phrases import Phrase
 from solver.reference.distance import Distance
-from solver.scenes.words import Phrase
 from solver.settings import Settings
 
 COLUMNS = (

@@ -31,8 +31,9 @@ OF_MM = {
     "N·m": ("N·mm", 1e-3),
     "N·m/m": ("N·mm/mm", 1.0),
 }
-LATER = {"GPa": 10.0}
-"""Where a step begins that is not taken from 1 on: a stress of 3000 MPa is told as that."""
+LATER = {"GPa": 10.0, "GN/m³": 10.0}
+"""Where a step begins that is not taken from 1 on: a stress of 3000 MPa is told as that. Zero has
+the unit in which its slider ends: of a force per volume 1000 MN/m³, and weights are small."""
 EXPONENTS = str.maketrans({"^": "", "2": "²", "3": "³"})
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 POWERS = Path(__file__).with_name("powers.js").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from app.components.panes import select
 from app.components.scrubber import Scrubber, scrubber
 from app.picture.shown import STRESSES
 from app.session.session import Session
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6

@@ -13,7 +13,7 @@ from app.views.drawing import Box, Word
 from app.views.posed import Posed
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
-from solver.scenes.words import Phrase, joined
+from solver.phrases import Phrase, joined
 
 ARROW, BESIDE = 38.0, 8.0
 """Length of an arrow at the largest value, and its distance from the side that it points along."""

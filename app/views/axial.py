@@ -10,8 +10,8 @@ from app.views.drawing import POSITION, Curve, Drawing, Plot, View
 from app.views.legend import Key
 from app.views.scales import Limits, along, held, spanned
 from app.views.scene import Scene
+from solver.phrases import Phrase
 from solver.scenes import kind_of
-from solver.scenes.words import Phrase
 
 SHARED = 1.5
 """Times the tension: what neighbours take over from a wire between two others."""

@@ -11,7 +11,7 @@ from app.views.legend import Key
 from app.views.scales import around, round_up
 from app.views.scene import Scene
 from solver.arrays import Array
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 FARTHEST = 5.0
 """Times the displacement of the bodies: a ghost that moves farther is left out."""

@@ -11,7 +11,7 @@ from app.views.legend import Key
 from app.views.scales import ROOM, across, spanned, upright
 from app.views.scene import Scene
 from solver.arrays import Array
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 COLORS = (FORCE, BLUE, GREEN, PURPLE, GREY)
 

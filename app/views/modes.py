@@ -13,7 +13,7 @@ from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, has_in
 from app.views.legend import Key
 from app.views.scales import along, spanned, upright
 from app.views.scene import Scene
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 RANK_COLORS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
 UP = Axis(-1.12, 1.12)

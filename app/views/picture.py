@@ -33,8 +33,8 @@ from app.views.scales import round_up
 from app.views.scene import Scene
 from solver.arrays import Array
 from solver.discrete.structure import OUTWARD, Act
+from solver.phrases import Phrase, joined
 from solver.scenes import behind
-from solver.scenes.words import Phrase, joined
 from solver.settings import Settings
 
 MARGIN = 6.0

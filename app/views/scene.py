@@ -10,7 +10,7 @@ from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, instant_of
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 
 @dataclass(frozen=True)

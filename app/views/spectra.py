@@ -11,7 +11,7 @@ from app.views.drawing import Colors, Curve, Drawing, Marks, Plot, View, has_ins
 from app.views.legend import Key
 from app.views.scales import decades, in_decades, round_up, spanned
 from app.views.scene import Scene
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 
 FLOOR = 1e-8
 LEAST = 1e-30

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from app.controls.refusals import field_of
 from app.picture.labels import label_of
-from app.picture.units import BY_SIZE, SYSTEMS, scale_of, steps
+from app.picture.units import BY_SIZE, SYSTEMS, steps
 from app.picture.usual import changed
-from app.whatif.question import READY, Question, Span, askable, names_of, offered, shown_range
+from app.whatif.question import READY, Question, Span, askable, names_of, offered
 from solver.definitions import about
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES
@@ -39,9 +40,7 @@ def _shown(span: Span, settings: Settings, units: str) -> dict[str, Any]:
     definition = settings.definitions().get(span.name)
     if definition is None:
         return {**vars(span), "unit": ""}
-    value = getattr(settings, span.name)
-    size = abs(value or shown_range(definition)[1]) if isinstance(value, float) else 1.0
-    factor, unit = scale_of(size, about(definition).unit, units)
+    factor, unit = field_of(settings, span.name, units)
     texts = {name: _times(getattr(span, name), 1.0 / factor) for name in VALUES}
     return {**vars(span), **texts, "unit": unit}
 
@@ -82,7 +81,7 @@ def form_of(question: Question, settings: Settings, units: str = BY_SIZE) -> dic
         ],
         "quantity": quantity,
         "at": at,
-        "refusals": question.refusals(settings),
+        "refusals": question.refusals(settings, units),
         "ready": [[title, help] for title, (help, make) in READY.items() if make(settings)],
         "rest": title or "defaults",
     }

@@ -13,6 +13,7 @@ import param
 from app.components.form import item_of
 from app.controls.refusals import refused, sentence
 from app.picture.shown import has_reference
+from app.picture.units import BY_SIZE
 from app.picture.usual import WATCH, hurried
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import loads_of
@@ -64,7 +65,7 @@ class Span:
         end = ":log" if self.spacing == DECADES else ""
         return f"{self.name}={self.low}:{self.high}:{self.count}{end}".replace(" ", "")
 
-    def refusal(self, settings: Settings) -> str:
+    def refusal(self, settings: Settings, units: str) -> str:
         """Say what of its fields cannot be run, or nothing."""
         listed = self.spacing == LISTED
         boxes = {} if listed else {"from": self.low, "to": self.high, "values": self.count}
@@ -80,7 +81,7 @@ class Span:
         except SettingError as refusal:
             if refusal.value == self.text.partition("=")[2]:
                 return sentence(refusal.remedy)
-            return refused(refusal, settings, refusal.name, refusal.value)
+            return refused(refusal, settings, units=units)
         return ""
 
 
@@ -128,12 +129,12 @@ class Question:
             return settings.replace(finish=WATCH, accuracy=nearer)
         return settings
 
-    def refusals(self, settings: Settings) -> dict[str, str]:
+    def refusals(self, settings: Settings, units: str = BY_SIZE) -> dict[str, str]:
         """Say what of it cannot be run, by the place of a setting, "of", or else "all"."""
         found = {
             str(place): words
             for place, span in enumerate(self.spans)
-            if (words := span.refusal(settings))
+            if (words := span.refusal(settings, units))
         }
         try:
             reading(self.of)
@@ -145,7 +146,8 @@ class Question:
                 self.plan(settings)
             except SettingError as refusal:
                 known = refusal.name in settings.definitions()
-                found["all"] = refused(refusal, settings) if known else sentence(refusal.remedy)
+                words = refused(refusal, settings, units=units)
+                found["all"] = words if known else sentence(refusal.remedy)
         return found
 
     def pairs(self) -> list[tuple[str, str]]:

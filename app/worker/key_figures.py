@@ -22,7 +22,7 @@ from app.views.scene import Scene
 from app.worker.words import UNKNOWN, number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 from solver.study.finished import FinishedRun
 
 NONE_YET = "no iteration done by then"

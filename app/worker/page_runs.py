@@ -27,8 +27,8 @@ from app.worker.tables import table
 from app.worker.twin import Twin
 from app.worker.words import before_a_run, before_it_is_agreed, status_line
 from solver.latin import Iterate
+from solver.phrases import Phrase
 from solver.refusal import RefusedError
-from solver.scenes.words import Phrase
 
 PAST_RUNS = 6
 

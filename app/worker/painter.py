@@ -24,7 +24,7 @@ from app.wire.block import Attributes, Packer, Quads
 from app.wire.reports import Facts
 from app.worker.readings import values
 from app.worker.telling import told
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 from solver.settings import Settings
 
 TAKE_AWAY, PLOTS = "take-away", "plots"

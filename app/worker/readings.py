@@ -9,7 +9,7 @@ from app.views.scene import Scene
 from app.worker.words import number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED
-from solver.scenes.words import Phrase
+from solver.phrases import Phrase
 from solver.study.finished import FinishedRun
 from solver.study.quantities import reading
 from solver.study.quantity import Quantity

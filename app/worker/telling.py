@@ -8,7 +8,7 @@ from app.picture.units import rounded, titled
 from app.views.drawing import Axis, Curve, Drawing, View
 from app.views.legend import Key
 from solver.arrays import Array
-from solver.scenes.words import Phrase, joined
+from solver.phrases import Phrase, joined
 
 LINES = "line", "dashed", "dotted", "band"
 """Marks of keys that stand for curves."""

@@ -14,7 +14,7 @@ from app.picture.sampler import Frame
 from app.picture.units import power
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost
-from solver.scenes.words import Phrase, joined
+from solver.phrases import Phrase, joined
 
 ENDINGS = {
     Ending.CONVERGED: "✓ converged",

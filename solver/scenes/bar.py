@@ -13,10 +13,11 @@ from solver.definitions import Pairs, SettingError, choice, count, curve, quanti
 from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.loads import PRESETS, interpolate
+from solver.phrases import Amount, Phrase, Sentence
 from solver.reference.closed_form import closed_form
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.words import Phrase, Sentence, acting, is_steel
+from solver.scenes.words import acting, is_steel
 
 PROFILES = {
     "uniform": ((0.0, 1.0), (1.0, 1.0)),
@@ -189,14 +190,16 @@ class BarSettings(SceneSettings):
             raise SettingError(
                 "section_profile",
                 table,
-                f"factors above 0, from {low:g} to {high:g}",
+                Phrase("factors above 0, from {} to {}", Amount(low), Amount(high)),
                 "bring the factors into this range",
             )
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise SettingError(
                 "section_profile",
                 table,
-                f"a largest factor of at most {LARGEST_CONTRAST:g} times the smallest",
+                Phrase(
+                    "a largest factor of at most {} times the smallest", Amount(LARGEST_CONTRAST)
+                ),
                 "bring the factors nearer to each other",
             )
 

@@ -13,6 +13,7 @@ from solver.definitions import Pairs, SettingError, choice, quantity
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
 from solver.loads import PRESETS, PRESSURES, instants_of, load_path
+from solver.phrases import Phrase
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -151,14 +152,14 @@ class SceneSettings(Settings):
                 raise SettingError(
                     part,
                     value,
-                    f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
-                    f"lower {part} or raise {whole}",
+                    Phrase("{} to {} ({})", self.definitions()[part].bounds[0], whole, most),
+                    Phrase("lower {} or raise {}", part, whole),
                 )
         if self.n_nodes * own.instants > LARGEST_FIELD:
             raise SettingError(
                 "instants",
                 own.instants,
-                f"at most {LARGEST_FIELD // self.n_nodes} with {self.n_nodes} nodes",
+                Phrase("at most {} with {} nodes", LARGEST_FIELD // self.n_nodes, self.n_nodes),
                 "give fewer instants, or a coarser mesh",
             )
 

@@ -14,10 +14,11 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
+from solver.phrases import Phrase, Sentence
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.sides import AT_REST, LOADED_SIDES, SideSettings
-from solver.scenes.words import Phrase, Sentence, acting, is_steel, listed
+from solver.scenes.words import acting, is_steel, listed
 
 GAPS = ("flat", "parabola")
 AT = {"left": "{} at its left", "right": "{} at its right", "top": "{} at its top"}

@@ -17,9 +17,10 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
+from solver.phrases import Sentence
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import Sentence, acting
+from solver.scenes.words import acting
 
 
 class InclineSettings(PlaneSettings):

@@ -12,9 +12,10 @@ from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
+from solver.phrases import Phrase, Sentence
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
-from solver.scenes.words import Phrase, Sentence, acting, counted, is_steel
+from solver.scenes.words import acting, counted, is_steel
 
 
 class LayersSettings(PlaneSettings):

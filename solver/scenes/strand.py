@@ -14,10 +14,11 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.discrete.rods_data import COARSEST, neighbours
 from solver.loads import PULLS
+from solver.phrases import Amount, Phrase, Sentence
 from solver.reference.broken_wire import broken_wire
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.words import Phrase, Sentence, acting, counted, is_steel
+from solver.scenes.words import acting, counted, is_steel
 
 
 class StrandSettings(SceneSettings):
@@ -208,8 +209,10 @@ def _check_equilibrium(settings: StrandSettings, tension: Array) -> None:
         raise SettingError(
             name,
             getattr(settings, name),
-            f"tensions below {capacity:g} N, all that friction can hold of the broken wire beyond "
-            "its break"
+            Phrase(
+                "tensions below {}, all that friction can hold of the broken wire beyond its break",
+                Amount(capacity, "N"),
+            )
             if capacity > 0.0
             else "no tension where no friction can hold the broken wire beyond its break",
             "pull less, raise friction or pressure, move the break to the left, or take the grip "

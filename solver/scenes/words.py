@@ -1,16 +1,13 @@
-"""Words that sentences about scenes share: how something acts over time, how many there are.
-
-A sentence is English, and knows what it was made of (`Phrase`): a page may say it in other words.
-"""
+"""Words that sentences about scenes share: how something acts over time, how many there are."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.phrases import Phrase, joined
 
 NUMBERS = [
     "no",
@@ -32,51 +29,6 @@ AGAIN = 2
 
 
 TO_AND_FRO, LET_GO = "{} to and fro", "{} and let go"
-
-
-class Phrase(str):
-    """A text with what it was made of: a template, as of `str.format`, and what stands in it."""
-
-    __slots__ = ("parts", "template")
-    template: str
-    parts: tuple[Any, ...]
-
-    def __new__(cls, template: str, *parts: Any) -> Phrase:
-        """Put the parts in their places."""
-        made = super().__new__(cls, cls.written(template, parts))
-        made.template, made.parts = template, parts
-        return made
-
-    def __getnewargs__(self) -> tuple[Any, ...]:
-        """Give what a copy is made of."""
-        return self.template, *self.parts
-
-    @staticmethod
-    def written(template: str, parts: Iterable[Any]) -> str:
-        """Write a template with these parts."""
-        return template.format(*parts)
-
-    def anew(self, say: Callable[[str], str]) -> str:
-        """Say it with another template and other parts."""
-        parts = [say(part) if isinstance(part, str) else part for part in self.parts]
-        return self.written(say(self.template), parts)
-
-
-class Sentence(Phrase):
-    """What begins with a capital, and ends with a full stop."""
-
-    __slots__ = ()
-
-    @staticmethod
-    def written(template: str, parts: Iterable[Any]) -> str:
-        """Write a template with these parts."""
-        text = template.format(*parts)
-        return f"{text[0].upper()}{text[1:]}."
-
-
-def joined(between: str, parts: Sequence[str]) -> Phrase:
-    """Put texts behind each other."""
-    return Phrase(between.join(["{}"] * len(parts)), *parts)
 
 
 def counted(number: int, what: str) -> Phrase:
