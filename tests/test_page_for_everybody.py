@@ -19,6 +19,8 @@ EXCEPTIONS = {
 """Of Panel's components, which take no other attributes."""
 MOST_STOPS = 12
 """Of the Tab key, from the first control to the run, for somebody who comes for the first time."""
+MOST_FROM_THE_TOP = 20
+"""The same from the very top, for who does not take the way that leads there at once."""
 AT_REST = """() => {
   const roots = [document]
   for (const root of roots) {
@@ -88,9 +90,23 @@ def test_whoever_has_no_mouse_is_soon_at_the_run_and_is_told_what_plots_show(
     expect(instant).to_have_attribute("aria-valuetext", re.compile(r"^t = [0-9.]+ s$"))
     before = instant.get_attribute("aria-valuetext")
     assert before
+    page.get_by_role("link", name="Go to the run").focus()
+    stops = 0
+    while not run.evaluate("(one) => one.matches(':focus')"):
+        page.keyboard.press("Tab")
+        stops += 1
+        assert stops <= MOST_FROM_THE_TOP
     live = page.get_by_role("button", name="Live", exact=True)
     live.focus()
     live.press("ArrowRight")
+    expect(page.get_by_role("button", name="What if")).to_be_focused()
+    header = page.get_by_role("toolbar", name="Page")
+    header.get_by_role("button", name="Share").focus()
+    page.keyboard.press("ArrowRight")  # nothing is there to be undone or done again
+    expect(header.get_by_role("button", name="Runs")).to_be_focused()
+    page.keyboard.press("ArrowLeft")
+    expect(header.get_by_role("button", name="Share")).to_be_focused()
+    page.keyboard.press("Shift+Tab")
     expect(page.get_by_role("button", name="What if")).to_be_focused()
     expect(instant).to_have_attribute("aria-valuetext", before)
     said = page.get_by_role("figure", name="Stick and slip").get_attribute("aria-description")

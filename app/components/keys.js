@@ -2,7 +2,7 @@
 const LISTS = "[role=option], [role=menuitem], [role=listbox], [role=menu], select"
 const PRESSED = LISTS + ", button, summary, a, input:not([type=range]), [role=combobox]"
 const MOVED = LISTS + ", input, [role=combobox], [role=slider], [role=radiogroup], [role=group]"
-const TAB = "[role=group] > button"
+const ROW = "[role=group]:not([popover]), [role=toolbar]"
 const SKIP = `position: fixed; left: 8px; top: -99px; z-index: 2000; padding: 8px 16px;
   border-radius: 4px; color: #fff; background: #0b3d66; font: 500 16px sans-serif`
 
@@ -33,12 +33,23 @@ export function render({model}) {
     run?.focus()
   }
   document.body.prepend(skip)
-  // In a row of choices arrows go from one to the next.
+  // A row of buttons is one stop of Tab, the last that was there; arrows go from one to the next.
+  const row_of = (one) => {
+    const row = one.closest?.(ROW)
+    const all = row ? [...row.querySelectorAll(":scope > button, :scope > .menu > button")] : []
+    return all.includes(one) ? all : []
+  }
   const go_on = (chosen, key, event) => {
-    const all = [...chosen.parentNode.children], by = {ArrowRight: 1, ArrowLeft: -1}[key]
+    const by = {ArrowRight: 1, ArrowLeft: -1}[key]
+    const all = row_of(chosen).filter((one) => !one.disabled && one.checkVisibility())
     if (!by) { return }
     event.preventDefault()
     all[(all.indexOf(chosen) + by + all.length) % all.length].focus()
+  }
+  const step_out = (event) => {
+    if (event.key !== "Tab") { return }
+    const chosen = event.composedPath()[0]
+    row_of(chosen).forEach((one) => { one.tabIndex = one === chosen ? 0 : -1 })
   }
   const out = say("Leave the presenter's view (p).")
   const leave = make("button", {title: out, ariaLabel: out, onclick: () => model.send_msg("p")}, "✕")
@@ -56,7 +67,7 @@ export function render({model}) {
     const typed = event.composedPath()[0]
     const writes = typed.tagName === "INPUT" && !["range", "checkbox", "radio"].includes(typed.type)
     if (writes || typed.tagName === "TEXTAREA" || typed.isContentEditable) { return }
-    if (key.startsWith("Arrow") && typed.matches?.(TAB)) { return go_on(typed, key, event) }
+    if (key.startsWith("Arrow") && row_of(typed).length) { return go_on(typed, key, event) }
     const keeps = key.startsWith("Arrow") ? MOVED : key === " " ? PRESSED : LISTS
     if (!commands && typed.closest && typed.closest(keeps) || dialog.open) { return }
     event.preventDefault()
@@ -66,10 +77,12 @@ export function render({model}) {
     } else { model.send_msg(name) }
   }
   document.addEventListener("keydown", press)
+  document.addEventListener("keydown", step_out)
   model.on("remove", () => {
     close()
     skip.remove()
     document.removeEventListener("keydown", press)
+    document.removeEventListener("keydown", step_out)
   })
   return make("div", {className: "corner"}, button, leave, dialog)
 }

@@ -46,5 +46,8 @@ export function render({model}) {
   show()
   model.on("file", () =>
     save("slipfront.toml", new Blob([model.file[0]], {type: "application/toml"})))
-  return make("div", {className: "actions"}, ...steps, runs(model, tell), lesson, present, share)
+  const bar = make("div", {className: "actions", ariaLabel: say("Page")},
+    ...steps, runs(model, tell), lesson, present, share)
+  bar.setAttribute("role", "toolbar")
+  return bar
 }
