@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
+from dataclasses import replace
 
 import panel as pn
 import pytest
 from clock import Clock
 from lone_link import LoneLink, lone_session
+from shown_pages import ALL, SMALL, Shown
+from unpacking import unpack
 
 from app.lessons.lesson import LESSONS, NO_CHOICE
+from app.picture.units import BY_SIZE, SI
 from app.session.classroom import ROOMS, Room, Rooms, Seat
 from app.session.pages import Pages
 from app.session.report_executor import ReportExecutor
@@ -18,7 +23,7 @@ from app.shell import banner
 from app.shell.address import class_from_query, query_of
 from app.shell.dashboard import Dashboard
 from app.teaching.teaching import CHOICE
-from app.wire.orders import Ready, Run
+from app.wire.orders import Ready, Run, Watch
 from app.wire.reports import Facts, Picture, Report
 from solver.scenes.bar import BarSettings
 
@@ -134,6 +139,47 @@ def test_a_follower_hires_no_process_and_shows_what_the_leader_shows(pages: Two)
     assert follower.facts == picture(4).facts
     assert idle.hired == 0
     assert not follower.worker.has_process
+
+
+def test_a_follower_has_its_own_units_and_language(pages: Two) -> None:
+    leader, link, follower, _ = pages
+    own = (SI, "de")
+    follower.watch(units=SI, language="de")
+    leader.attendance.note()
+    assert link.orders[-1] == Watch(leader.look)
+    assert leader.look.others == (own,)
+    assert (leader.look.units, leader.look.language) == (BY_SIZE, "en")
+    follower.ask()
+    link.say(replace(picture(4), others={own: b"vier"}))
+    assert leader.collect() == [b"\4"]
+    assert follower.collect() == [b"vier"]
+    # Until the leader's page has painted again, there is the picture in its own words.
+    follower.watch(language="fr")
+    follower.ask()
+    assert follower.collect() == [b"\4"]
+    follower.start(STEEPER)
+    follower.attendance.note()
+    leader.attendance.note()
+    assert (leader.look.others, follower.look.language) == ((), "fr")
+
+
+def test_a_picture_is_told_once_more_in_what_each_of_a_class_has_chosen() -> None:
+    own = (SI, "de")
+    look = replace(ALL, others=(own, ALL.manner))
+    page, alone = Shown(look), Shown(ALL.told_in(own))
+    for one in (page, alone):
+        one.run(1, "bar", SMALL["bar"])
+    told, words = page.pictures[-1], unpack(alone.pictures[-1].block)
+    assert list(told.others) == [own], "who has what the leader has gets the leader's"
+    german = unpack(told.others[own])
+    for name, attributes in words.items():
+        if name.endswith((".title", "-axis", ".words", "color-bar")):
+            assert json.dumps(german[name], default=str) == json.dumps(attributes, default=str)
+    assert "Last" in german["load-path.title"]["text"]
+    assert "kN" not in german["figures"]["text"]
+    assert german["status"]["text"] != page.page["status"]["text"]
+    page.obey(Watch(replace(look, phase=0.5)))
+    assert german.keys() == unpack(page.pictures[-1].others[own]).keys(), "it is whole"
 
 
 def test_a_follower_that_changes_a_setting_goes_on_alone_and_can_come_back(pages: Two) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from pages import ENDLESS, Visit, iteration, press, slider, status
+import re
+
+from pages import ENDLESS, Visit, choose, iteration, open_sheets, press, slider, status
 from playwright.sync_api import Page, expect
 
 
@@ -56,6 +58,25 @@ def test_a_page_that_joins_sees_the_leaders_run_and_goes_on_alone_when_it_change
         expect(status(page)).to_contain_text("12 substructures")
     press(leader, "End the class")
     expect(follower.locator(".class").first).to_contain_text("has ended")
+
+
+def test_whoever_follows_reads_a_run_in_words_and_units_of_their_own(open_page: Visit) -> None:
+    leader = open_page(f"?{ENDLESS}&plots=Load+path")
+    press(leader, "Class")
+    press(leader, "Start a class")
+    follower = open_page(f"?class={code_of(leader)}&lang=de&units=si")
+    leader.get_by_role("button", name="Run or pause").click()
+    expect(status(follower)).to_contain_text("angehalten bei Iteration")
+    expect(status(leader)).to_contain_text("paused at iteration")
+    figures = follower.locator(".figures")
+    expect(figures).to_contain_text(re.compile(r"\d J"))
+    expect(figures).not_to_contain_text("mJ")
+    # The one who leads rests: who changes units is given the picture anew.
+    open_sheets(follower)
+    choose(follower.get_by_role("combobox", name="Einheiten"), "mm, N, MPa")
+    expect(figures).to_contain_text(" mJ")
+    assert "lang=de" in follower.url
+    press(leader, "End the class")
 
 
 def test_a_class_predicts_before_it_sees_and_its_counts_open_when_the_lecturer_asks(

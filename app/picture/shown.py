@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,8 @@ from solver.settings import Settings
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.int8]
 Counts = NDArray[np.int16]
+Manner = tuple[str, str]
+"""Units and language, in which a picture is told."""
 
 LARGEST_SIDE = 400
 """Points and instants of a field that are sent at most; a screen shows no more."""
@@ -177,6 +179,8 @@ class Look:
         One of `app.picture.units.SYSTEMS`, in which all values are told.
     language
         Of all words.
+    others
+        Units and languages of those who follow this page: each reads its pictures in their own.
     """
 
     interface: str = ""
@@ -191,6 +195,17 @@ class Look:
     readings: tuple[str, ...] = ()
     units: str = BY_SIZE
     language: str = SOURCE
+    others: tuple[Manner, ...] = ()
+
+    @property
+    def manner(self) -> Manner:
+        """In what values and words are told."""
+        return self.units, self.language
+
+    def told_in(self, manner: Manner) -> Look:
+        """Look at the same in other units and words."""
+        units, language = manner
+        return replace(self, units=units, language=language)
 
     @property
     def say(self) -> Language:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from app.session.classroom import KEPT, ROOMS, Poll, Room
 from app.session.page_worker import Hire, PageWorker
 from app.session.state import State
 from app.session.turns import Turns
+from app.wire.orders import Watch
 from app.wire.reports import Picture
 from solver.settings import Settings
 
@@ -134,6 +136,11 @@ class Attendance:
             state.is_left = room is not None and room.is_alone
         if room is not None and state.ticket and room.settings is not state.settings:
             self._start(room.settings)
+        # The pictures of a class are made once for each choice of units and language in it.
+        others = self.leads.manners if self.leads is not None else ()
+        if others != state.look.others:
+            state.look = replace(state.look, others=others)
+            self._worker.send(Watch(state.look))
         waits = room or self.left
         if waits is not None and waits.is_alone and not waits.is_over:
             self._end.set(KEPT)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Callable
-from dataclasses import replace
 
-from app.wire.orders import Order, Ready, Run
+from app.picture.shown import Look, Manner
+from app.wire.orders import Order, Ready, Run, Watch
 from app.wire.reports import Picture, Report
 from solver.settings import Settings
 
@@ -122,7 +122,7 @@ class Room:
     def lead(self, leader: object) -> None:
         """Have it led by this one, in place of whoever did."""
         self._leader, self._alone_since = leader, None
-        self._tell()
+        self.tell()
 
     def is_led_by(self, one: object) -> bool:
         """Tell whether this one leads it."""
@@ -132,7 +132,7 @@ class Room:
         """Wait for the leader, whose page is closed; another one may lead already."""
         if self._leader is leader:
             self._leader, self._alone_since = None, time.monotonic()
-            self._tell()
+            self.tell()
 
     def show(self, settings: Settings, views: tuple[str, ...], picture: Picture) -> None:
         """Give all followers a whole picture, each as soon as it has painted the one before."""
@@ -140,36 +140,46 @@ class Room:
         self.settings, self.views, self._newest = settings, views, picture
         self._number += 1
         if is_new:
-            self._tell()
+            self.tell()
         for seat in list(self._seats):
             seat.give()
+
+    @property
+    def manners(self) -> tuple[Manner, ...]:
+        """The units and languages that those who follow have chosen."""
+        return tuple(sorted({seat.manner for seat in self._seats}))
+
+    def tell(self) -> None:
+        """Tell all pages that something is new."""
+        for told in list(self.told):
+            told()
 
     def ask(self, lesson: str, *, is_answered: bool) -> None:
         """Ask what a lesson asks, or nothing without a name."""
         before = self._asked
         if lesson != before[0]:
-            self.poll = Poll(lesson, self._tell) if lesson else None
+            self.poll = Poll(lesson, self.tell) if lesson else None
         if self.poll is not None:
             self.poll.is_answered = is_answered
         if self._asked != before:
-            self._tell()
+            self.tell()
 
     def seat(self, listener: Callable[[Report], None]) -> Seat:
         """Let one more follow; reports go to the listener."""
         found = Seat(self, listener)
         self._seats.add(found)
-        self._tell()
+        self.tell()
         return found
 
     def leave(self, seat: Seat) -> None:
         """Let one go."""
         self._seats.discard(seat)
-        self._tell()
+        self.tell()
 
     def end(self) -> None:
         """End the class; who follows keeps the last picture."""
         self._is_ended = True
-        self._tell()
+        self.tell()
 
     def newer_than(self, number: int) -> tuple[int, Picture | None]:
         """Give the newest picture with its number, if there is one after a number."""
@@ -179,15 +189,18 @@ class Room:
     def _asked(self) -> tuple[str, bool]:
         return (self.poll.lesson, self.poll.is_answered) if self.poll is not None else ("", False)
 
-    def _tell(self) -> None:
-        for tell in list(self.told):
-            tell()
-
 
 class Seat:
-    """What a page that follows has in place of a worker process: the leader's pictures."""
+    """What a page that follows has in place of a worker process: the leader's pictures.
+
+    Attributes
+    ----------
+    manner
+        The units and the language of the page: pictures are given in these, once there are such.
+    """
 
     pid = None
+    manner = Look().manner
 
     def __init__(self, room: Room, listener: Callable[[Report], None]) -> None:
         self._room = room
@@ -204,6 +217,9 @@ class Seat:
             case Ready():
                 self._is_ready = True
                 self._shown = 0 if order.afresh else self._shown
+            case Watch() if order.look.manner != self.manner:
+                self.manner, self._shown = order.look.manner, 0
+                self._room.tell()
             case _:
                 return
         self.give()
@@ -213,7 +229,8 @@ class Seat:
         number, picture = self._room.newer_than(self._shown)
         if picture is not None and self._is_ready and self._ticket:
             self._is_ready, self._shown = False, number
-            self._listener(replace(picture, ticket=self._ticket))
+            block = picture.others.get(self.manner, picture.block)
+            self._listener(Picture(self._ticket, picture.facts, block))
 
     def close(self) -> None:
         """Follow no more."""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from app.picture.shown import Manner
 
 
 @dataclass(frozen=True)
@@ -52,11 +55,14 @@ class Picture:
     ----------
     block
         As `app.wire.block` packs it, for the browser alone.
+    others
+        The same for those of a class who have chosen other units, or another language.
     """
 
     ticket: int
     facts: Facts
     block: bytes
+    others: Mapping[Manner, bytes] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 from app.picture.bathtub import Bathtub, grown
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
-from app.picture.shown import Look, instant_of, thinned
+from app.picture.shown import Look, Manner, instant_of, thinned
 from app.views.scene import Scene
 from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
 from app.wire.reports import Facts, File, Picture
@@ -51,6 +51,7 @@ class PageRuns:
         self._urgent = urgent
         self._references = KeptReferences()
         self._painter = Painter()
+        self._others: dict[Manner, Painter] = {}
         self._look = Look()
         self._run: WorkerRun | None = None
         self._twin: Twin | None = None
@@ -118,8 +119,7 @@ class PageRuns:
         run = WorkerRun(order, self._look, self._urgent, self._references, previous)
         if run.cost.is_to_be_agreed and not order.is_agreed:
             words = before_it_is_agreed(run.cost, has_run=self._before is not None)
-            block = self._painter.say({"status": self._look.say(words)})
-            self._send(Picture(order.ticket, Facts(is_broken=True, asks=True), block))
+            self._send_words(order.ticket, Facts(is_broken=True, asks=True), words)
             return
         self._run = run
         if self._run.cost.is_large and not order.follows_hand:
@@ -195,8 +195,15 @@ class PageRuns:
             is_over=recording.status is not None and (twin is None or twin.status is not None),
             was_warm=recording.choice is not None and recording.choice.is_previous,
         )
-        block = self._painter.paint(scene, self._words(run, scene), facts)
-        self._send(Picture(run.ticket, facts, block))
+
+        def told(painter: Painter, look: Look) -> bytes:
+            there = scene
+            if look != scene.look:
+                there = replace(scene, look=look, frame=replace(frame, look=look))
+            return painter.paint(there, self._words(run, there), facts)
+
+        block = told(self._painter, look)
+        self._send(Picture(run.ticket, facts, block, self._in_others(told)))
         if (asked := self._table) is not None:
             self._table = None
             name = f"slipfront-{recording.settings.scene}"
@@ -257,9 +264,26 @@ class PageRuns:
             self._run = None
             if not isinstance(problem, RefusedError | FloatingPointError):
                 _log.exception("A run broke.")
-            said = self._look.say(Phrase("<b>{}</b>", escape(_sentence(problem))))
-            block = self._painter.say({"status": said})
-            self._send(Picture(ticket, Facts(is_broken=True), block))
+            words = Phrase("<b>{}</b>", escape(_sentence(problem)))
+            self._send_words(ticket, Facts(is_broken=True), words)
+
+    def _send_words(self, ticket: int, facts: Facts, words: str) -> None:
+        """Send a picture of words alone."""
+
+        def told(painter: Painter, look: Look) -> bytes:
+            return painter.say({"status": look.say(words)})
+
+        self._send(Picture(ticket, facts, told(self._painter, self._look), self._in_others(told)))
+
+    def _in_others(self, told: Callable[[Painter, Look], bytes]) -> dict[Manner, bytes]:
+        """Give a whole picture in the units and words of each that follows and has its own."""
+        wanted = set(self._look.others) - {self._look.manner}
+        self._others = {one: self._others.get(one) or Painter() for one in wanted}
+        for painter in self._others.values():
+            painter.packer.forget()
+        return {
+            one: told(painter, self._look.told_in(one)) for one, painter in self._others.items()
+        }
 
 
 def _sentence(problem: Exception) -> str:
