@@ -26,7 +26,7 @@ def as_slice(rows: Indices) -> slice | Indices:
     return slice(first, first + len(rows)) if np.all(np.diff(rows) == 1) else rows
 
 
-def stacked(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
+def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Put fields of space, or of space and time, one below the other.
 
     What does not change with time has a single column, unless another of them does.

@@ -266,17 +266,19 @@ def _checked_curve(
     pairs = []
     for row, pair in enumerate(value, start=1):
         if not isinstance(pair, list | tuple) or len(pair) != 2:
-            raise refuse(f"row {row} must be a pair of numbers")
+            raise refuse(Phrase("row {} must be a pair of numbers", row))
         if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in pair):
-            raise refuse(f"row {row} has an entry that is not a number")
+            raise refuse(Phrase("row {} has an entry that is not a number", row))
         if not all(math.isfinite(entry) for entry in pair if isinstance(entry, float)):
-            raise refuse(f"row {row} has an entry that is not finite")
+            raise refuse(Phrase("row {} has an entry that is not finite", row))
         if any(abs(entry) > 1e15 for entry in pair):
-            raise refuse(f"row {row} has an entry beyond 1e15 in size")
+            raise refuse(Phrase("row {} has an entry beyond {} in size", row, Amount(1e15)))
         pairs.append((float(pair[0]), float(pair[1])))
     for row, (before, after) in enumerate(pairwise(pairs), start=2):
         if after[0] <= before[0]:
-            raise refuse(f"row {row}: {definition.abscissa} must increase from row to row")
+            raise refuse(
+                Phrase("row {}: {} must increase from row to row", row, definition.abscissa)
+            )
     return tuple(pairs)
 
 

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 from functools import cache
+from itertools import product
 from pathlib import Path
 from string import Formatter
 from typing import Any
 
+import param
 import pytest
+from lone_link import lone_session
 from shown_pages import ALL, SMALL, Shown
 
 from app.controls.items import items
+from app.controls.refusals import refused
+from app.controls.sidebar import Sidebar
 from app.languages.language import CONTEXT, LANGUAGES, SOURCE, language, preferred
 from app.lessons.lesson import LESSONS, content
 from app.shell.address import query_of, sight_from_query
 from app.views.catalogue import VIEWS
-from solver.definitions import about
+from solver.definitions import SettingError, about
 from solver.phrases import Phrase, Sentence
 from solver.scenes import CATALOGUE
 
@@ -145,6 +151,46 @@ def words_in(models: dict[str, Any]) -> set[str]:
     """Give the texts of titles, words and axes."""
     texts = [str(one.get("text", one.get("axis_label", ""))) for one in models.values()]
     return {part.strip() for text in texts for part in re.split(r"<[^>]*>|\d", text)}
+
+
+WRONG = ("abc", -1e99, 0.0, 200.0, 1e6, 4.5, [], [[1]], [[0, "a"]], [[0, 1], [0, 1]], [[0, -1.0]])
+
+
+def said_of(scene: str) -> Iterator[str]:
+    """Give the templates, and the parts of several words, of what a page refuses of a scene."""
+    settings = CATALOGUE[scene].settings.checked({})
+    # A switch on the page is on or off.
+    kinds = settings.definitions().items()
+    names = [name for name, kind in kinds if not isinstance(kind, param.Boolean)]
+    for name, value in product(names, WRONG):
+        try:
+            settings.with_change(name, value)
+        except SettingError as refusal:
+            yield from leaves(refused(refusal, settings, name, value))
+
+
+def leaves(text: Any) -> Iterator[str]:
+    if isinstance(text, Phrase):
+        yield from (text.template, *(leaf for part in text.parts for leaf in leaves(part)))
+    elif isinstance(text, str):
+        yield text
+
+
+@pytest.mark.parametrize("name", TRANSLATIONS)
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_what_a_control_refuses_is_said_in_the_pages_language(name: str, scene: str) -> None:
+    titles = {about(one).title for one in CATALOGUE[scene].settings.definitions().values()}
+    told = {one for one in said_of(scene) if re.search("[a-z]{2}.* .*[a-z]{2}", one)}
+    assert told - titles - language(name).texts.keys() == set()
+
+
+def test_a_refused_control_speaks_german_on_a_german_page() -> None:
+    session = lone_session(CATALOGUE["bar"].settings.checked({}))
+    session.watch(language="de")
+    Sidebar(session, lambda name: None).hear("peak", 1e20, False, 1)
+    found = "jede Zahl (dem Betrag nach höchstens 1·10¹⁵ N)"
+    told = "Spitzenlast kann nicht 1·10²⁰ N sein: einen Wert in diesem Bereich wählen. Erlaubt: "
+    assert session.say(session.refusal) == f"{told}{found}."
 
 
 @pytest.mark.parametrize("name", TRANSLATIONS)

@@ -169,6 +169,9 @@ def test_a_bound_may_travel_along_the_bar():
 def test_foolish_pressures_are_refused_in_words():
     with pytest.raises(RefusedError, match="pressures of at least 0"):
         BarSettings.checked({"pressure_load": [[0.0, 5000.0], [1.0, -1.0]]})
+    for bound in (np.ones((101, 51)), np.ones(50), np.full(51, -1.0)):
+        with pytest.raises(RefusedError, match=r"Rods\.bound"):
+            replace(rod(), bound=bound)
     with pytest.raises(RefusedError, match="all that friction can hold"):
         CATALOGUE["strand"].settings.checked(
             {"load": "hold", "peak": 600.0, "pressure_load": "loosening"}

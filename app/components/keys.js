@@ -33,7 +33,7 @@ export function render({model}) {
     run?.focus()
   }
   document.body.prepend(skip)
-  // A row of buttons is one stop of Tab, the last that was there; arrows go from one to the next.
+  // A row of buttons is one stop of Tab, which leaves it from any; arrows go from one to the next.
   const row_of = (one) => {
     const row = one.closest?.(ROW)
     const all = row ? [...row.querySelectorAll(":scope > button, :scope > .menu > button")] : []
@@ -49,7 +49,11 @@ export function render({model}) {
   const step_out = (event) => {
     if (event.key !== "Tab") { return }
     const chosen = event.composedPath()[0]
-    row_of(chosen).forEach((one) => { one.tabIndex = one === chosen ? 0 : -1 })
+    const others = row_of(chosen).filter((one) => one !== chosen)
+    const were = others.map((one) => one.tabIndex)
+    others.forEach((one) => { one.tabIndex = -1 })
+    // By then the focus has gone on: whatever is disabled or hidden later, the row can be reached.
+    setTimeout(() => others.forEach((one, place) => { one.tabIndex = were[place] }))
   }
   const out = say("Leave the presenter's view (p).")
   const leave = make("button", {title: out, ariaLabel: out, onclick: () => model.send_msg("p")}, "✕")

@@ -55,10 +55,13 @@ def refused(
         return Phrase("{}: {}. Allowed: {}.", written(refusal.value), remedy, refusal.allowed)
     title, field = about(definitions[name]).title, field_of(settings, name, units)
     limits = in_titles(settings, _in_field(_limits(refusal, definitions[name]), field))
-    found = written(refusal.value, field)
+    found = written(refusal.value, _of_number(definitions[name], field))
     if name == moved or moved not in definitions:
         return Phrase("{} cannot be {}: {}. Allowed: {}.", title, found, remedy, limits)
-    own = about(definitions[moved]).title, written(value, field_of(settings, moved, units))
+    own = (
+        about(definitions[moved]).title,
+        written(value, _of_number(definitions[moved], field_of(settings, moved, units))),
+    )
     words = "{} cannot be {} while {} is {}. Allowed for this: {}; {}."
     return Phrase(words, *own, title, found, limits, remedy)
 
@@ -75,7 +78,8 @@ def refused_by_name(refusal: RefusedError, settings: Settings) -> str:
     definition = kind.definitions()[refusal.name]
     title = title_and_name(refusal.name, definition)
     field = scale_of(1.0, _unit_of(definition), SI)
-    limits, found = _in_field(_limits(refusal, definition), field), written(refusal.value, field)
+    limits = _in_field(_limits(refusal, definition), field)
+    found = written(refusal.value, _of_number(definition, field))
     return f"{title} cannot be {found}: {refusal.remedy}. Allowed: {limits}."
 
 
@@ -92,6 +96,11 @@ def field_of(settings: Settings, name: str, units: str) -> tuple[float, str]:
     elif isinstance(value, tuple):
         size = max(abs(one) for _, one in value)
     return scale_of(size, _unit_of(definition), units)
+
+
+def _of_number(definition: Parameter, field: tuple[float, str]) -> tuple[float, str]:
+    """Give the unit of a value: a number that stands for a table has none."""
+    return NO_FIELD if isinstance(definition, CurveParameter) else field
 
 
 def _unit_of(definition: Parameter) -> str:

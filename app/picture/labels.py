@@ -52,8 +52,16 @@ def in_titles(settings: Settings, text: str, written: str = "{}") -> str:
     """Call settings in a text what the sidebar calls them; one word may be just that."""
     if isinstance(text, Phrase):
         parts = (text.template, *text.parts)
-        return Phrase(*(in_titles(settings, str(one), written) for one in parts))
+        return Phrase(*(_in_titles(settings, one, written) for one in parts))
     for name, definition in settings.definitions().items():
         if "_" in name:
             text = re.sub(rf"\b{name}\b", written.format(about(definition).title), text)
     return text
+
+
+def _in_titles(settings: Settings, part: Any, written: str) -> str:
+    """Call a part of a text, where that is the name of a setting, what the sidebar calls it."""
+    definition = settings.definitions().get(str(part))
+    if definition is not None:
+        return about(definition).title
+    return in_titles(settings, part if isinstance(part, str) else str(part), written)

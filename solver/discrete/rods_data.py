@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.laws import Coulomb, FrictionLaw
+from solver.refusal import RefusedError
 
 COARSEST = 6
 """Elements below which a mesh is not coarsened: a front needs a few to be seen at all."""
@@ -53,6 +54,11 @@ class RodsData:
     pressure
         p behind the bound over time, shape (n_instants,), N/m, for whoever draws it, where one
         number says it at every instant.
+
+    Raises
+    ------
+    RefusedError
+        For a bound of another shape, or below zero.
     """
 
     length: float
@@ -72,6 +78,20 @@ class RodsData:
     pressure: Array | None = None
     friction_law: FrictionLaw = field(default_factory=Coulomb)
 
+    def __post_init__(self) -> None:
+        nodes, instants = self.elements + 1, len(self.instants)
+        if self.bound.shape not in ((nodes,), (nodes, instants)):
+            raise RefusedError(
+                "Rods.bound",
+                list(self.bound.shape),
+                f"shape [{nodes}], or [{nodes}, {instants}] where it changes with time",
+                "give a value for every node, at every instant where it changes",
+            )
+        if self.bound.min() < 0.0:
+            raise RefusedError(
+                "Rods.bound", float(self.bound.min()), "0 or more", "give no bound below zero"
+            )
+
     @property
     def nodes(self) -> Array:
         """Positions of the nodes of a rod, shape (n_nodes,), m."""
@@ -80,7 +100,7 @@ class RodsData:
     @property
     def bounds(self) -> Array:
         """The bound, shape (n_nodes, n_instants), or (n_nodes, 1) where it stays the same, N/m."""
-        return self.bound.reshape(self.elements + 1, -1)
+        return self.bound if self.bound.ndim == 2 else self.bound[:, None]
 
     @property
     def rubbing_sides(self) -> int:

@@ -8,8 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array, Indices
-from solver.arrays import stacked as in_rows
+from solver.arrays import Array, Indices, in_rows
 
 
 @dataclass(frozen=True, eq=False)

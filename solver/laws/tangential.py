@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 
-from solver.arrays import Array, stacked
+from solver.arrays import Array, in_rows
 from solver.laws.interface import Component
 from solver.refusal import RefusedError
 
@@ -134,7 +134,7 @@ class Tangential(ABC):
     def joined(cls, laws: Sequence[Self]) -> Self:
         """Put the pairs of laws between two bodies one after the other."""
         values: dict[str, Any] = {
-            name: stacked([getattr(law, name) for law in laws])
+            name: in_rows([getattr(law, name) for law in laws])
             for name in cls.of_pairs
             if getattr(laws[0], name) is not None
         }

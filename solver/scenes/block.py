@@ -14,7 +14,7 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
-from solver.phrases import Phrase, Sentence
+from solver.phrases import Phrase, Sentence, plain
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.sides import AT_REST, LOADED_SIDES, SideSettings
@@ -116,8 +116,12 @@ class BlockSettings(SideSettings):
                 "top",
                 self.top,
                 "sides and loads that leave the body in equilibrium",
-                f"nothing but contact holds it, and from {loss.instant:g} s on {loss.reason}: "
-                "lower that load, press more, raise friction, or hold a side",
+                Phrase(
+                    "nothing but contact holds it, and from {} s on {}: "
+                    "lower that load, press more, raise friction, or hold a side",
+                    plain(loss.instant),
+                    loss.reason,
+                ),
             )
 
 

@@ -17,7 +17,7 @@ from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
-from solver.phrases import Sentence
+from solver.phrases import Phrase, Sentence, plain
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
@@ -116,8 +116,12 @@ class InclineSettings(PlaneSettings):
             name,
             getattr(self, name),
             "slopes on which the block stays in equilibrium",
-            f"from {loss.instant:g} s on, at {angle:.4g}°, {loss.reason}: lower the slope, or take "
-            "a longer base or a lower block",
+            Phrase(
+                "from {} s on, at {}°, {}: lower the slope, or take a longer base or a lower block",
+                plain(loss.instant),
+                f"{angle:.4g}",
+                loss.reason,
+            ),
         )
 
 

@@ -10,6 +10,7 @@ import param
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, quantity, redefined
 from solver.discrete.stack import Stack
+from solver.phrases import Amount, Phrase
 from solver.scenes.base import SceneSettings
 from solver.settings import Settings
 
@@ -197,8 +198,13 @@ class PlaneSettings(SceneSettings):
             raise SettingError(
                 self.across,
                 height,
-                f"elements of which no side is more than {FLATTEST:g} times the other",
-                f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
+                Phrase(
+                    "elements of which no side is more than {} times the other", Amount(FLATTEST)
+                ),
+                Phrase(
+                    "they are {} times as long as high: change sizes or numbers of elements",
+                    f"{ratio:.3g}",
+                ),
             )
 
     def check_together(self) -> None:
@@ -211,6 +217,6 @@ class PlaneSettings(SceneSettings):
             raise SettingError(
                 "substructures",
                 self.substructures,
-                f"parts smaller than {columns} by {rows} elements",
+                Phrase("parts smaller than {} by {} elements", columns, rows),
                 "give more substructures along or up, or fewer elements",
             )
