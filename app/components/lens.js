@@ -65,7 +65,8 @@ export function render({model}) {
     heed(path)
     see_soon(() => path)
   }
-  // What lies under a pointer that rests changes as the page moves; nothing else tells of that.
+  // What lies under a pointer that rests changes as the page moves, and as plots are made and laid
+  // out; nothing else tells of that.
   const roots = new WeakSet()
   const heed = (path) => {
     for (const one of path.filter((one) => one instanceof ShadowRoot && !roots.has(one))) {
@@ -146,6 +147,7 @@ export function render({model}) {
   button.onclick = () => keys.f()
   // Bokeh lays a plot out too large that shrinks, as words above it grow, while it is painted.
   const timer = setInterval(() => {
+    moved()
     for (const one of figures()) {
       const seen = Bokeh.index.find_one_by_id(one.id), laid = seen?.layout?.bbox
       if (laid && laid.height !== seen.bbox.height) { seen.invalidate_layout() }
