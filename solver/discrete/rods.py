@@ -12,6 +12,8 @@ from solver.discrete.rods_data import RodsData
 from solver.discrete.rods_problem import discretise_rods
 from solver.discrete.structure import OUTWARD, Act, Description, Hold
 
+ACTED = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+"""Where a body force that changes along the rods is shown."""
 PRESSED = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Where the pressure is shown, as far as anything rubs there."""
 SEVERAL = 8
@@ -55,8 +57,11 @@ class Rods(RodsData):
         if self.support is not None:
             yield Act("left x", "u", start, right, OUTWARD["left"], self.support, "m")
         if self.body_force is not None:
-            middle = np.array([[0.5, 0.5]])
-            yield Act("body", "b", middle, right, right, self.body_force, "N/m")
+            x = np.array([0.5]) if self.body_force.ndim == 1 else ACTED
+            middle = np.stack([x, np.full(len(x), 0.5)], axis=1)
+            nearest = np.rint(x * self.elements).astype(np.intp)
+            values = self.body_force if self.body_force.ndim == 1 else self.body_force[nearest]
+            yield Act("body", "b", middle, right, right, values, "N/m")
         most = self.bounds.max(axis=1)
         x = PRESSED[np.interp(PRESSED, self.nodes / self.length, most) > 0.0]
         if self.pressure is not None and len(x):

@@ -45,7 +45,8 @@ class RodsData:
     support
         Displacement of the held ends, shape (n_instants,), m.
     body_force
-        Axial force per length, uniform along the rods, shape (n_instants,), N/m.
+        Axial force per length, N/m: uniform along the rods, shape (n_instants,), or at the nodes of
+        each, (n_nodes, n_instants).
     friction_law
         Along the interfaces.
     section
@@ -58,7 +59,7 @@ class RodsData:
     Raises
     ------
     RefusedError
-        For a bound of another shape, or below zero.
+        For a bound or a body force of another shape, or a bound below zero.
     """
 
     length: float
@@ -91,6 +92,16 @@ class RodsData:
             raise RefusedError(
                 "Rods.bound", float(self.bound.min()), "0 or more", "give no bound below zero"
             )
+        if self.body_force is not None and self.body_force.shape not in (
+            (instants,),
+            (nodes, instants),
+        ):
+            raise RefusedError(
+                "Rods.body_force",
+                list(self.body_force.shape),
+                f"shape [{instants}], or [{nodes}, {instants}] where it changes along the rods",
+                "give a value for every instant, at every node where it changes along them",
+            )
 
     @property
     def nodes(self) -> Array:
@@ -116,9 +127,21 @@ class RodsData:
         if elements < COARSEST:
             return None
         nodes = np.linspace(0.0, self.length, elements + 1)
-        bound = np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, self.bound)
-        section = self._section_between(nodes)
-        return replace(self, elements=elements, substructures=1, bound=bound, section=section)
+        body_force = self.body_force
+        if body_force is not None and body_force.ndim == 2:
+            body_force = self._at(nodes, body_force)
+        return replace(
+            self,
+            elements=elements,
+            substructures=1,
+            bound=self._at(nodes, self.bound),
+            body_force=body_force,
+            section=self._section_between(nodes),
+        )
+
+    def _at(self, nodes: Array, field: Array) -> Array:
+        """Give a field at other nodes, linear between its own."""
+        return np.apply_along_axis(lambda own: np.interp(nodes, self.nodes, own), 0, field)
 
     def _section_between(self, nodes: Array) -> Array | None:
         """Give the stiffness between other nodes, in series what the elements have there."""

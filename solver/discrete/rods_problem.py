@@ -70,7 +70,8 @@ def _substructure(
         shared[key] = _elasticity(size, scene.elements, np.concatenate(traces), len(held), section)
     inside = None
     if scene.body_force is not None:
-        scaled = scene.body_force[None] * scene.length / scene.stiffness
+        own = np.s_[None] if scene.body_force.ndim == 1 else np.s_[start : start + size + 1]
+        scaled = scene.body_force[own] * scene.length / scene.stiffness
         inside = tributary(size, 1.0 / scene.elements)[:, None] * scaled
     return Substructure(shared[key], pieces.dofs(wire, column), np.concatenate(rows), inside)
 
