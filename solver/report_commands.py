@@ -29,6 +29,7 @@ from solver.study.error_against_time import error_against_time
 from solver.study.figure_page import write_figures
 from solver.study.growth import growth
 from solver.study.paper_figures import paper_figures
+from solver.study.proof import report as proof
 from solver.study.study_page import write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, winners
 
@@ -75,6 +76,9 @@ def add_reports(commands: Any) -> None:
     stable.add_argument("--out", type=Path, default=Path("stability"), metavar="DIR")
     stable.add_argument("--quick", action="store_true", help="a quarter of the cases")
     stable.set_defaults(command=_stability)
+    known = commands.add_parser("proof", help="closed forms beside what is found, row by row")
+    known.add_argument("--out", type=Path, default=Path("proof"), metavar="DIR")
+    known.set_defaults(command=_proof)
     random = commands.add_parser("survey", help="random runs of all scenes, each judged")
     random.add_argument("scenes", nargs="*", metavar="SCENE", help="names of the catalogue; all")
     random.add_argument("--runs", type=int, default=100, help="number of runs")
@@ -200,6 +204,18 @@ def _stability(chosen: argparse.Namespace) -> int:
         files = report.write(chosen.out)
     print("\n".join([*report.lines(), f"{len(files)} files in {chosen.out}"]))
     return 0 if report.passes and is_same(apart) else 1
+
+
+def _proof(chosen: argparse.Namespace) -> int:
+    rows = []
+    with writing(chosen.out):
+        print(proof.HEAD)
+        for row in proof.proven(chosen.out, list(proof.cases())):
+            print(proof.line(row), flush=True)
+            rows.append(row)
+        files = proof.write_proof(rows, chosen.out)
+    print(f"{proof.summary(rows)}\n{len(files)} files in {chosen.out}")
+    return 0 if all(row.holds for row in rows) else 1
 
 
 def _survey(chosen: argparse.Namespace) -> int:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq
 from shown_pages import SMALL
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import Compliant, Component, Contact, Sliders, Unilateral
 from solver.reference.choice import reference_of
+from solver.reference.compliant_bar import pulled_compliant_bar
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
@@ -31,15 +31,7 @@ def run(scene="bar", **values):
 def pulled(force, stiffness):
     """Give the end displacement of a clamped bar under a monotone pull, and its slip zone."""
     density = stiffness * AXIAL / LENGTH**2
-    beta = np.sqrt(density / AXIAL)
-
-    def carried(zone):
-        return BOUND * zone + BOUND / (beta * np.tanh(beta * (LENGTH - zone)))
-
-    if force <= carried(0.0):
-        return force * np.tanh(beta * LENGTH) / (AXIAL * beta), 0.0
-    zone = brentq(lambda s: carried(s) - force, 0.0, LENGTH * (1.0 - 1e-12))
-    return BOUND / density + (force * zone - 0.5 * BOUND * zone**2) / AXIAL, zone
+    return pulled_compliant_bar(force, LENGTH, AXIAL, BOUND, density)
 
 
 @pytest.mark.parametrize("stiffness", [3.0, 1e3])

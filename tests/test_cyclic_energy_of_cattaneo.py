@@ -9,6 +9,7 @@ import pytest
 
 from solver.reference.choice import reference_of
 from solver.reference.glued import jumps
+from solver.reference.half_plane import HalfPlane
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 
@@ -62,14 +63,8 @@ def cycle(half_width, pressing):
     total = pressed.sum(axis=0)
     middle = problem.rubbing["support"].positions @ pressed[:, 1:] / total[1:]
     moved = 0.5 * abs(middle[2 * STEPS - 1] - middle[4 * STEPS - 1]) / half_width
-    return taken / _closed_form(total[-1], -rubbed[:, -1].sum()), moved
-
-
-def _closed_form(normal, shear):
-    """Give (mu P)^2 / (pi E*) [4 (1 - s) ln(1 - s) + 4 s - 2 s^2] with s = Q / (mu P)."""
-    share = abs(shear) / (FRICTION * normal)
-    bracket = 4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
-    return (FRICTION * normal) ** 2 / (np.pi * STIFFNESS) * bracket
+    share = abs(rubbed[:, -1].sum()) / (FRICTION * total[-1])
+    return taken / HalfPlane(total[-1], RADIUS, STIFFNESS).energy(FRICTION, share), moved
 
 
 WIDE, NARROW = (0.02, -1.06e-4), (0.01, -3.31e-5)

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from plane import lengths, solved
 
+from solver.reference.half_plane import HalfPlane
+
 RADIUS, FRICTION, MESHES = 10.0, 0.3, [40, 80, 160]
 
 
@@ -39,8 +41,8 @@ class Contact:
         x = iterate.problem.rubbing["support"].positions
         self.x = x - x @ self.fields.normal_force[:, -1] / self.total
         stiffness = 210e9 / (1.0 - poisson**2)
-        self.half_width = 2.0 * np.sqrt(self.total * RADIUS / (np.pi * stiffness))
-        self.peak = 2.0 * self.total / (np.pi * self.half_width)
+        self.exact = HalfPlane(self.total, RADIUS, stiffness)
+        self.half_width, self.peak = self.exact.half_width, self.exact.peak
 
     def root(self, half_width):
         return np.sqrt(np.maximum(1.0 - (self.x / half_width) ** 2, 0.0))
@@ -130,7 +132,7 @@ def test_the_stuck_part_has_the_width_of_cattaneo_and_mindlin(elements):
 def stick_half_width(contact):
     """Give c after a reversal from sliding everywhere: twice the friction is at hand."""
     shear = -contact.fields.tangential_force[:, -1].sum() / (FRICTION * contact.total)
-    return contact.half_width * np.sqrt(1.0 - 0.5 * (1.0 + shear))
+    return contact.exact.stuck(0.5 * (1.0 + shear))
 
 
 def test_friction_summed_along_the_contact_approaches_two_square_roots():

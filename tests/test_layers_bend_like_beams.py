@@ -8,18 +8,12 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved
 
+from solver.reference.cantilever import cantilever
+
 YOUNG, POISSON, LENGTH, THICKNESS, DEFLECTION = 210e9, 0.3, 0.5, 0.01, 1e-4
-SHEAR_FACTOR = 5.0 / 6.0
 
 
-def cantilever(height):
-    """Give the end force for a unit of deflection (Timoshenko's beam), N/m.
-
-    Gere and Timoshenko, Mechanics of Materials, 1997, section 12.
-    """
-    bending = LENGTH**3 / (3.0 * YOUNG * height**3 / 12.0)
-    shear = LENGTH / (SHEAR_FACTOR * height * YOUNG / (2.0 * (1.0 + POISSON)))
-    return 1.0 / (bending + shear)
+alone = functools.partial(cantilever, LENGTH, young=YOUNG, poisson=POISSON)
 
 
 @functools.cache
@@ -50,13 +44,13 @@ def stiffness(iterate):
 
 @pytest.mark.parametrize("layers", [2, 3, 6])
 def test_without_friction_every_layer_bends_alone(layers):
-    exact = layers * cantilever(THICKNESS)
+    exact = layers * alone(THICKNESS)
     assert stiffness(bent(layers, 0.0, pressure=1e5)) == pytest.approx(exact, rel=3e-3)
 
 
 @pytest.mark.parametrize("layers", [2, 3, 6])
 def test_with_much_friction_the_stack_bends_as_one_beam(layers):
-    exact = cantilever(layers * THICKNESS)
+    exact = alone(layers * THICKNESS)
     assert stiffness(bent(layers, 10.0)) == pytest.approx(exact, rel=4e-3)
 
 

@@ -18,6 +18,7 @@ EXPERIMENTS = (
     "solver/study/benchmarks/",
     "solver/study/memory.py",
     "solver/study/paper_runs.py",
+    "solver/study/proof/",
 )
 """They measure scenes of their choice."""
 STRUCTURES = "solver/discrete/"

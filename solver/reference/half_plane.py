@@ -1,0 +1,45 @@
+"""Closed forms of a cylinder on a half-plane, per length (Johnson, Contact Mechanics, 1985)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class HalfPlane:
+    """Hertz's contact, and Cattaneo's and Mindlin's partial slip on it (sections 4.2 and 7.2).
+
+    Attributes
+    ----------
+    force
+        Pressing the two together, P, N/m.
+    radius
+        Of the cylinder, R, m.
+    modulus
+        E*: E / (1 - nu^2) where the other body is rigid, Pa.
+    """
+
+    force: float
+    radius: float
+    modulus: float
+
+    @property
+    def half_width(self) -> float:
+        """Half of the width in contact, a, m."""
+        return float(2.0 * np.sqrt(self.force * self.radius / (np.pi * self.modulus)))
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure, Pa."""
+        return float(2.0 * self.force / (np.pi * self.half_width))
+
+    def stuck(self, share: float) -> float:
+        """Give the half-width that sticks under a shear force of a share of mu P, m."""
+        return float(self.half_width * np.sqrt(1.0 - share))
+
+    def energy(self, friction: float, share: float) -> float:
+        """Give what friction takes in a cycle between plus and minus a share of mu P, J/m."""
+        bracket = 4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
+        return float((friction * self.force) ** 2 / (np.pi * self.modulus) * bracket)

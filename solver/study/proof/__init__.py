@@ -1,0 +1,1 @@
+"""What the solver is held to: closed forms, each with its source, beside what it finds."""

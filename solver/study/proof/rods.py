@@ -1,0 +1,176 @@
+"""Cases of rods: the bar of the paper, a broken wire, a helical wire that is bent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.rods import Rods
+from solver.latin import Accuracy, Auto, Iterations, Latin
+from solver.reference.bent_wire import BentWire
+from solver.reference.changing_friction_bar import pulled_changing_bar
+from solver.reference.compliant_bar import pulled_compliant_bar
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, of_scene
+
+OWN = "solver/README.md, 6: equilibrium of the part that slips"
+PLAY = f"{OWN}; M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, Springer 1989"
+JENKINS = "Jenkins' element on a bar: equilibrium of what slips and what stands on springs"
+CHANGING = "Equilibrium of what slips, with a bound that is linear in the slip"
+PAPAILIOU = (
+    "K.-O. Papailiou, On the bending stiffness of transmission line conductors, IEEE Trans. Power "
+    "Delivery 12, 1997, without growth of tension along the wire"
+)
+PEAK = 910.0
+"""N; fronts then stop within elements, not at nodes, where they are exact."""
+CYCLE = [[0.0, 0.0], [0.2, PEAK], [0.6, -PEAK], [1.0, PEAK]]
+WIRE = BentWire(HelicalWire(stiffness=1.5e6, radius=4e-3, lay=float(np.radians(12.0))), 3000.0)
+ELEMENTS, STEPS = 40, 60
+"""Of half a pitch; instants of a quarter of a cycle."""
+
+
+def _bar(settings: Any) -> tuple[float, float]:
+    """Give ES and mu p of a uniform bar."""
+    return settings.young * settings.section, settings.friction * settings.pressure
+
+
+def _end(exact: float, answer: Answer) -> KnownNumber:
+    return KnownNumber("end displacement", "m", exact, float(answer.fields.displacement[-1, -1]))
+
+
+def _pulled(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, bound = _bar(settings)
+    yield _end(settings.path("load")[-1] ** 2 / (2.0 * stiffness * bound), answer)
+
+
+def _slid(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, bound = _bar(settings)
+    length, force = settings.length, settings.path("load")[-1]
+    yield _end((force * length - 0.5 * bound * length**2) / stiffness, answer)
+
+
+def _cycled(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, bound = _bar(settings)
+    load, end = settings.path("load"), answer.fields.displacement[-1]
+    most = PEAK**2 / (2.0 * stiffness * bound)
+    loaded = int(np.argmax(load))
+    unloaded = loaded + int(np.argmin(np.abs(load[loaded : loaded + len(load) // 2])))
+    back = most - (PEAK - load[unloaded]) ** 2 / (4.0 * stiffness * bound)
+    yield KnownNumber("end displacement, unloaded", "m", back, float(end[unloaded]))
+    taken = float(np.trapezoid(load[loaded:], end[loaded:]))
+    yield KnownNumber("energy of a cycle", "J", 2.0 * PEAK**3 / (3.0 * stiffness * bound), taken)
+
+
+def _loosened(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, _ = _bar(settings)
+    bound = settings.friction * settings.path("pressure_load")[-1]
+    yield _end(settings.path("load")[-1] ** 2 / (2.0 * stiffness * bound), answer)
+
+
+def _gave_way(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, bound = _bar(settings)
+    length, force = settings.length, float(settings.path("load")[-1])
+    density = settings.contact_stiffness * stiffness / length**2
+    yield _end(pulled_compliant_bar(force, length, stiffness, bound, density)[0], answer)
+
+
+def _changed(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, bound = _bar(settings)
+    law = settings.friction_ratio, settings.slip_length
+    yield _end(
+        pulled_changing_bar(float(settings.path("load")[-1]), stiffness, bound, *law), answer
+    )
+
+
+def _broke(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    stiffness, bound = _bar(settings)
+    sides, tension = 2, float(settings.path("load")[-1])
+    slip = tension**2 * (sides + 1) / (2.0 * stiffness * sides**2 * bound)
+    first = (settings.broken - 1) * (settings.elements + 1)
+    before = first + round(settings.break_position * settings.elements)
+    opening = np.diff(answer.fields.displacement[[before, before + 1], -1])[0]
+    yield KnownNumber("opening of the break", "m", 2.0 * slip, float(opening))
+
+
+def _path(peak: float) -> Array:
+    legs = (0.0, peak), (peak, -peak), (-peak, peak)
+    parts = [np.linspace(*leg, n * STEPS + 1)[1:] for leg, n in zip(legs, (1, 2, 2), strict=True)]
+    return np.concatenate([[0.0], *parts])
+
+
+def _bent(share: float) -> KnownCase:
+    """Bend a helical wire to and fro; neither end of half a pitch slips, by symmetry."""
+    peak = share * WIRE.first_slip
+    curvature = _path(peak)
+    arc = np.linspace(0.0, WIRE.wire.half_pitch, ELEMENTS + 1)
+    wire = Rods(
+        length=WIRE.wire.half_pitch,
+        stiffness=WIRE.wire.stiffness,
+        elements=ELEMENTS,
+        substructures=4,
+        bound=np.full(ELEMENTS + 1, WIRE.bound),
+        load=np.zeros_like(curvature),
+        instants=np.linspace(0.0, 1.0, len(curvature)),
+        duration=1.0,
+        rigid_grip=True,
+        body_force=WIRE.wire.body_force(arc, curvature),
+    )
+
+    def numbers(answer: Answer) -> Iterator[KnownNumber]:
+        moment = WIRE.wire.moment(arc, answer.fields.displacement, curvature)
+        exact = float(WIRE.moment(np.array(peak)))
+        yield KnownNumber("moment of a wire", "N m", exact, float(moment[STEPS]))
+        taken = float(np.trapezoid(moment[STEPS:], curvature[STEPS:]))
+        yield KnownNumber("energy of a cycle, a metre", "J/m", WIRE.energy(peak), taken)
+
+    return KnownCase(
+        f"helical wire bent to {share:g} kappa_0",
+        PAPAILIOU,
+        f"{ELEMENTS} elements a half pitch, {len(curvature)} instants",
+        0.01,
+        wire.discretise,
+        lambda: Latin(direction=Auto(), stop=Accuracy(0.001) | Iterations(400)),
+        numbers,
+    )
+
+
+def _pull(peak: float) -> dict[str, Any]:
+    return {"load": [[0.0, 0.0], [1.0, peak]], "elements": 200, "instants": 41}
+
+
+def rod_cases() -> Iterator[KnownCase]:
+    """Give the cases, none of them solved yet."""
+    yield of_scene("bar pulled", PLAY, 1e-4, "bar", _pull(PEAK), _pulled)
+    yield of_scene("bar pulled until all slides", PLAY, 1e-9, "bar", _pull(1800.0), _slid)
+    cycle = {"load": CYCLE, "elements": 200, "instants": 101}
+    yield of_scene("bar pulled to and fro", PLAY, 2e-3, "bar", cycle, _cycled)
+    loosened = {
+        "load": [[0.0, 0.0], [0.5, 610.0], [1.0, 610.0]],
+        "pressure_load": [[0.0, 5000.0], [0.5, 5000.0], [1.0, 2500.0]],
+        "elements": 200,
+        "instants": 41,
+    }
+    yield of_scene(
+        "bar whose pressure halves while the load stands", PLAY, 1e-4, "bar", loosened, _loosened
+    )
+    soft = {**_pull(1200.0), "friction_law": "compliant", "contact_stiffness": 100.0}
+    yield of_scene(
+        "bar on contact that gives way before it slips", JENKINS, 1e-4, "bar", soft, _gave_way
+    )
+    for word, ratio in (("hardens", 1.5), ("softens", 0.5)):
+        law = {"friction_law": "slip-dependent", "friction_ratio": ratio, "slip_length": 1e-3}
+        yield of_scene(
+            f"bar on friction that {word} with slip",
+            CHANGING,
+            1e-4,
+            "bar",
+            {**_pull(PEAK), **law},
+            _changed,
+        )
+    broken = {"load": [[0.0, 0.0], [1.0, 610.0]], "elements": 200, "instants": 21}
+    yield of_scene("broken wire between two others", OWN, 2e-3, "strand", broken, _broke)
+    yield _bent(1.2)
+    yield _bent(1.5)

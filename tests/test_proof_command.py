@@ -1,0 +1,121 @@
+"""`python -m solver proof` sets what is known beside what is found, and fails where a row does."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from urllib.parse import parse_qsl
+
+import pytest
+
+import solver.reference
+from app.shell.address import settings_from_query
+from solver.cli import main
+from solver.scenes import CATALOGUE
+from solver.study.proof import report
+from solver.study.proof.case import KnownCase, KnownNumber
+
+CASES = list(report.cases())
+CLOSED_FORMS = {"bent_wire", "cantilever", "changing_friction_bar", "compliant_bar", "half_plane"}
+
+
+def read(folder: Path) -> list[dict[str, str]]:
+    with (folder / "proof.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def wrong(case: KnownCase) -> KnownCase:
+    """Give a case that claims one more in a hundred than is true."""
+
+    def numbers(answer: object) -> Iterator[KnownNumber]:
+        for number in case.numbers(answer):  # type: ignore[arg-type]
+            yield replace(number, exact=1.01 * number.exact)
+
+    return replace(case, numbers=numbers)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("proof")
+    assert main(["proof", "--out", str(made)]) == 0
+    return made
+
+
+def test_every_number_holds_by_both_solvers(folder: Path) -> None:
+    rows = read(folder)
+    assert {row["case"] for row in rows} == {case.title for case in CASES}
+    assert {row["solver"] for row in rows} == {"LATIN", "incremental"}
+    for row in rows:
+        known, ours = float(row["known"]), float(row["ours"])
+        assert row["holds"] == "holds"
+        assert abs(ours / known - 1.0) <= float(row["allowed"])
+        assert float(row["allowed"]) <= 0.07
+        assert all(row[name] for name in ("mesh", "source", "unit"))
+
+
+def test_the_page_has_every_row_and_loads_nothing(folder: Path) -> None:
+    page = (folder / "proof.html").read_text(encoding="utf-8")
+    assert page.count("<tr>") == len(read(folder)) + 1
+    assert not re.search(r"<(script|link|img|iframe)", page)
+
+
+@pytest.mark.parametrize("case", [one for one in CASES if one.address], ids=lambda one: one.title)
+def test_an_address_opens_the_run_of_its_row(case: KnownCase) -> None:
+    settings, complaint = settings_from_query(case.address)
+    assert not complaint
+    given = dict(parse_qsl(case.address.removeprefix("?")))
+    assert settings.scene == given.pop("scene")
+    for name, text in given.items():
+        value = getattr(settings, name)
+        if isinstance(value, str):
+            assert value == text
+        else:
+            assert json.loads(json.dumps(value)) == json.loads(text)
+
+
+def test_each_scene_is_proven() -> None:
+    found = {dict(parse_qsl(case.address.removeprefix("?"))).get("scene") for case in CASES}
+    assert found >= set(CATALOGUE)
+
+
+@pytest.mark.parametrize("number", [0, 2, 7])
+def test_a_wrong_number_fails_and_says_so(
+    number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(report, "cases", lambda: iter([CASES[number], wrong(CASES[number])]))
+    assert main(["proof", "--out", str(tmp_path)]) == 1
+    assert "FAILS" in capsys.readouterr().out
+    verdicts = [row["holds"] for row in read(tmp_path)]
+    half = len(verdicts) // 2
+    assert verdicts[:half] == ["holds"] * half
+    assert verdicts[half:] == ["FAILS"] * half
+
+
+def test_a_run_that_does_not_end_proves_nothing() -> None:
+    case = CASES[0]
+    (row, *_) = report.rows_of(case)
+    assert row.holds
+    assert not replace(row, ended=False).holds
+    assert not replace(row, number=replace(row.number, found=float("nan"))).holds
+
+
+def test_every_closed_form_that_has_a_file_of_its_own_is_used() -> None:
+    sources = [
+        file.read_text(encoding="utf-8") for file in Path(report.__file__).parent.glob("*.py")
+    ]
+    there = {file.stem for file in Path(solver.reference.__file__).parent.glob("*.py")}
+    assert there >= CLOSED_FORMS
+    for name in CLOSED_FORMS:
+        assert any(f"solver.reference.{name}" in source for source in sources), name
+
+
+def test_a_folder_that_cannot_be_made_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["proof", "--out", str(tmp_path / "file")]) == 2
+    assert "--out" in capsys.readouterr().err
