@@ -24,6 +24,7 @@ from solver.reference.solution import States
 from solver.scenes import discretise, loop_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
+from solver.study.slips import slips_of
 
 REFUSED, BROKEN = "refused", "broken"
 """How a run ends that never was one: by refused settings, by a fault of the engine."""
@@ -88,25 +89,11 @@ class FinishedRun:
         force = self._loop.force
         return force if isinstance(force, np.ndarray) else force(self.iterate)
 
-    @property
-    def drive(self) -> Array:
-        """What goes to and fro: the given force, or else the displacement; (n_instants,)."""
-        return self.force if isinstance(self._loop.force, np.ndarray) else self.displacement
-
     @cached_property
     def dissipated(self) -> Array:
-        """Energy that friction takes between each instant and the one before, (n_instants,), J.
-
-        The friction force times the slip, both of the local stage, whose laws hold at every
-        iterate. A point slips at the bound of the instant that it slips to.
-        """
-        iterate, scales = self.iterate, self.problem.scales
-        moved, force = iterate.local_displacement, iterate.boundary_local_force
-        found = np.zeros(self.problem.n_instants)
-        for law in self.problem.rubbing.values():
-            slip = np.diff(law.tangential.slider(moved, force), axis=1, prepend=0.0)
-            found -= (force[law.tangent.above] * slip).sum(axis=0)
-        return found * scales.force * scales.displacement
+        """Energy that friction takes between each instant and the one before, (n_instants,), J."""
+        works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
+        return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
 
 
 def finished_run(

@@ -15,11 +15,10 @@ from solver.laws import OPEN
 from solver.reduction.svd import InterfaceField, decompositions
 from solver.reference.distance import determinate_forces
 from solver.scenes import structure_of
+from solver.study.cycles import ends_of
 from solver.study.finished import FinishedRun
 from solver.study.memory import memory_of
 
-SMALLEST_SWING = 0.05
-"""Share of the whole range that a path must turn back by to begin another half cycle."""
 EQUAL = 1e-6
 """Relative difference up to which two loads count as equally large."""
 UNLOADED = 1e-3
@@ -170,44 +169,14 @@ def residual_displacement(run: FinishedRun, at: float | None) -> float:
 def dissipation(run: FinishedRun, at: float | None) -> float:
     """Give the energy that friction takes, J: of the whole run, or of one cycle.
 
-    Cycles go from one turning point of the drive to the next but one; NaN if there are fewer.
+    Cycles are those of the load (`solver.study.cycles`); NaN if there are fewer.
     """
     if at is None:
         return float(run.dissipated.sum())
-    turns, number = turning_points(run.drive), int(at)
-    if len(turns) <= 2 * number:
+    ends, number = ends_of(run.settings), int(at)
+    if len(ends) <= number:
         return math.nan
-    first, last = turns[2 * number - 2], turns[2 * number]
-    return float(run.dissipated[first + 1 : last + 1].sum())
-
-
-def turning_points(path: Array) -> list[int]:
-    """Find where a path turns back by more than a small swing, and its end if it is as far out.
-
-    Parameters
-    ----------
-    path
-        Shape (n_instants,).
-
-    Returns
-    -------
-    Indices, the first of each extreme that is held.
-    """
-    least = SMALLEST_SWING * float(np.ptp(path))
-    found: list[int] = []
-    outmost, way = 0, 0.0
-    for place, value in enumerate(path):
-        if way == 0.0:
-            outmost = place
-            if abs(value - path[0]) > least:
-                way = math.copysign(1.0, value - path[0])
-        elif way * (value - path[outmost]) > 0.0:
-            outmost = place
-        elif way * (path[outmost] - value) > least:
-            found.append(outmost)
-            outmost, way = place, -way
-    is_closed = len(found) > 1 and way * (path[found[-2]] - path[outmost]) <= least
-    return [*found, outmost] if is_closed else found
+    return float(run.dissipated[ends[number - 1] + 1 : ends[number] + 1].sum())
 
 
 def slipped_share(run: FinishedRun, at: float | None) -> float:

@@ -14,6 +14,7 @@ from solver.reduction.svd import InterfaceField
 from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study import contact_measures, measures
+from solver.study.cycle_measures import OF_CYCLES
 from solver.study.finished import FinishedRun
 from solver.study.quantity import Parameter, Quantity
 
@@ -219,6 +220,7 @@ _ALL = (
         applies=_over_a_displacement,
     ),
     Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
+    *OF_CYCLES,
     Quantity(
         "slipped_share", "Share of the points that slip", "", measures.slipped_share, is_share=True
     ),

@@ -1,0 +1,144 @@
+"""The limit by Melan's theorem is where the simulation's slip ceases, and what closed forms say."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.reference.condensation import NoReferenceError
+from solver.reference.melan import ShakedownLimit, shakedown_limit
+from solver.scenes import CATALOGUE, discretise
+from solver.study.cycles import cycles_of, ends_of
+from solver.study.finished import finished_run
+from solver.study.quantities import reading
+
+BOUND, LENGTH = 1500.0, 1.0
+SMALL = {"elements": 20, "instants": 161, "substructures": 2, "load": "cycles"}
+GIVES_WAY = {"friction_law": "compliant", "contact_stiffness": 100.0}
+
+
+def limit(scene: str, **changes: Any) -> ShakedownLimit:
+    settings = CATALOGUE[scene].settings.checked(changes)
+    ends = ends_of(settings)
+    return shakedown_limit(discretise(settings), slice(ends[0], ends[-1] + 1))
+
+
+def slips(scene: str, **changes: Any) -> bool:
+    """Tell whether anything slips in the last cycle."""
+    settings = CATALOGUE[scene].settings.checked(changes)
+    return bool(cycles_of(finished_run(settings, errors=False, indicators=False)).slip[:, -1].any())
+
+
+CASES = [
+    ("bar", {"peak": 900.0}),
+    ("bar", {"peak": 300.0, **GIVES_WAY}),
+    ("bar", {"peak": 300.0, "pressure_load": "shaken", **GIVES_WAY}),
+    ("bar", {"peak": 300.0, "body_force": 800.0, "body_load": "cycles", **GIVES_WAY}),
+    ("strand", {"peak": 300.0, "broken": 1}),
+    ("strand", {"peak": 300.0}),
+    ("strand", {"peak": 300.0, **GIVES_WAY}),
+    ("strand", {"peak": 200.0, "pressure_load": "shaken", **GIVES_WAY}),
+    ("strand", {"peak": 300.0, "grip": "displacement", **GIVES_WAY}),
+]
+
+
+@pytest.mark.parametrize(("scene", "changes"), CASES)
+def test_just_below_the_limit_slip_ceases_and_just_above_it_goes_on(
+    scene: str, changes: dict[str, Any]
+) -> None:
+    factor = limit(scene, **SMALL, **changes).factor
+    loads = [name for name in ("peak", "body_force") if name in changes]
+    for share, goes_on in ((0.995, False), (1.005, True)):
+        scaled = {name: share * factor * changes[name] for name in loads}
+        assert slips(scene, **SMALL, **{**changes, **scaled}) is goes_on, share
+
+
+@pytest.mark.parametrize(("scene", "changes"), CASES)
+def test_what_slip_leaves_behind_keeps_all_forces_within_their_bounds(
+    scene: str, changes: dict[str, Any]
+) -> None:
+    found = limit(scene, **SMALL, **changes)
+    forces = np.abs(found.factor * found.elastic + found.left[:, None])
+    if scene == "strand" and changes.get("broken") is None and "friction_law" not in changes:
+        # Forces that can balance each other around the break are not among those.
+        forces = forces[forces.max(axis=1) <= found.bound.max() * (1.0 + 1e-9)]
+        assert len(forces) >= 36
+    assert forces.max() == pytest.approx(found.bound.max(), rel=1e-9) or "pressure_load" in changes
+    assert np.all(forces <= found.bound[: len(forces)] * (1.0 + 1e-9))
+
+
+@pytest.mark.parametrize(("scene", "changes"), CASES)
+def test_no_larger_factor_is_left_by_the_point_that_decides(
+    scene: str, changes: dict[str, Any]
+) -> None:
+    """The dual: two instants that pull one point both ways by more than both its bounds."""
+    found = limit(scene, **SMALL, **changes)
+    swing = np.abs(found.elastic[:, :, None] - found.elastic[:, None, :])
+    room = found.bound[:, :, None] + found.bound[:, None, :]
+    most = np.min(room[swing > 0.0] / swing[swing > 0.0])
+    assert found.factor == pytest.approx(most, rel=1e-6)
+
+
+def test_a_pushed_body_shakes_down_up_to_twice_its_friction() -> None:
+    """Uniform body force b over uniform friction mu p, which is on any mesh b = 2 mu p in swing."""
+    for elements in (10, 40):
+        changes = {**SMALL, "elements": elements, "load": "hold", "peak": 0.0}
+        swings = {"body_force": 100.0, "body_load": "cycles"}
+        assert limit("bar", **changes, **swings).factor == pytest.approx(BOUND / 100.0, rel=1e-9)
+
+
+def test_the_limit_of_a_contact_that_gives_way_converges_to_that_of_shear_lag() -> None:
+    """Friction at the pulled end is F / l coth(L / l), with l^2 = ES / k_t."""
+    lag = LENGTH / np.sqrt(GIVES_WAY["contact_stiffness"])
+    exact = BOUND * lag * np.tanh(LENGTH / lag) / 300.0
+    errors = [
+        limit("bar", **{**SMALL, "elements": n}, peak=300.0, **GIVES_WAY).factor / exact - 1.0
+        for n in (20, 40, 80)
+    ]
+    ratios = np.array(errors[:-1]) / errors[1:]
+    np.testing.assert_allclose(ratios, 4.0, atol=0.2)
+
+
+def test_rigid_friction_under_a_pulled_end_has_the_limit_of_its_last_node() -> None:
+    """So it vanishes with the mesh: on a bar any load slips at its end, for ever."""
+    factors = [limit("bar", **{**SMALL, "elements": n}, peak=300.0).factor for n in (10, 20, 40)]
+    assert factors == pytest.approx([0.5 * BOUND / n / 300.0 for n in (10, 20, 40)])
+
+
+def test_a_mean_load_does_not_matter() -> None:
+    """Slip moves the mean into what is left behind: the swing alone decides."""
+    pulled = limit("bar", **SMALL, peak=300.0, **GIVES_WAY)
+    held = {"body_force": 700.0, "body_load": "hold"}
+    assert limit("bar", **SMALL, **held, peak=300.0, **GIVES_WAY).factor == pytest.approx(
+        pulled.factor
+    )
+
+
+def test_where_a_bar_does_not_rub_it_only_stretches() -> None:
+    """Half of the bar without friction carries its load on to the half that has it."""
+    fine = {**SMALL, "elements": 160, "peak": 300.0, **GIVES_WAY}
+    half = ((0.0, 1.0), (0.5, 1.0), (0.5001, 0.0), (1.0, 0.0))
+    found = limit("bar", **fine, friction_profile=half)
+    assert len(found.slip) == 80
+    assert found.factor == pytest.approx(limit("bar", **fine).factor, rel=0.05)
+
+
+def test_a_load_that_nothing_feels_has_no_limit() -> None:
+    assert limit("strand", **SMALL, peak=300.0, broken=0).factor == np.inf
+
+
+def test_what_the_theorem_does_not_cover_is_refused() -> None:
+    block = {"elements": 6, "elements_up": 4, "instants": 61, "top_tangential_load": "cycles"}
+    with pytest.raises(NoReferenceError):
+        limit("block", **block, substructures=1)
+    with pytest.raises(NoReferenceError):
+        limit("bar", **SMALL, peak=300.0, friction_law="slip-dependent")
+
+
+def test_a_run_is_asked_for_its_factor() -> None:
+    settings = CATALOGUE["bar"].settings.checked({**SMALL, **GIVES_WAY, "peak": 300.0})
+    run = finished_run(settings, errors=False, indicators=False)
+    expected = limit("bar", **SMALL, **GIVES_WAY, peak=300.0).factor
+    assert reading("shakedown_factor")(run) == expected
