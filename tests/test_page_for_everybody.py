@@ -19,7 +19,7 @@ EXCEPTIONS = {
 """Of Panel's components, which take no other attributes."""
 MOST_STOPS = 12
 """Of the Tab key, from the first control to the run, for somebody who comes for the first time."""
-MOST_FROM_THE_TOP = 20
+MOST_FROM_THE_TOP = 19
 """The same from the very top, for who does not take the way that leads there at once."""
 AT_REST = """() => {
   const roots = [document]
@@ -96,6 +96,8 @@ def test_whoever_has_no_mouse_is_soon_at_the_run_and_is_told_what_plots_show(
         page.keyboard.press("Tab")
         stops += 1
         assert stops <= MOST_FROM_THE_TOP
+    expect(page.get_by_role("link", name="Slipfront")).to_have_count(1)
+    expect(page.locator("a:has(img.logo)")).to_have_attribute("aria-hidden", "true")
     live = page.get_by_role("button", name="Live", exact=True)
     live.focus()
     live.press("ArrowRight")

@@ -39,8 +39,11 @@ TEMPLATE = """
       const built = page?.shadowRoot?.querySelector(`.mui-${root.dataset.theme} .main`)
       if (built) {
         root.dataset.built = ""
-        // Its link leads to a page of its own.
-        page.shadowRoot.querySelector("img.logo")?.setAttribute("alt", "A fresh page of Slipfront")
+        // The name beside it is the same link: once is enough for keys, and for who hears the page.
+        const logo = page.shadowRoot.querySelector("img.logo")
+        logo?.setAttribute("alt", "")
+        const link = logo?.closest("a")
+        if (link) { link.tabIndex = -1; link.ariaHidden = "true" }
       } else { requestAnimationFrame(uncover) }
     }
     uncover()
