@@ -8,7 +8,7 @@ import numpy as np
 from shown_pages import SMALL, Shown
 
 from app.views import convergence
-from app.whatif.question import over_k
+from app.whatif.ready import over_k
 
 SEARCH = {**SMALL["bar"], "finish": "accuracy"}
 

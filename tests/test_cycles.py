@@ -46,6 +46,10 @@ def ran(scene: str, **changes: Any) -> FinishedRun:
     return made(scene, tuple(changes.items()))
 
 
+def cut(run: FinishedRun) -> LoadCycles:
+    return cycles_of(run.settings, run.iterate)
+
+
 def of(slip: list[list[float]], net: list[list[float]] | None = None, **more: Any) -> LoadCycles:
     """Make cycles of points whose slip, and what is left of it, is given."""
     slips = np.array(slip, dtype=float)
@@ -120,7 +124,7 @@ def test_the_first_cycle_without_slip_is_told() -> None:
 @pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])
 def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> None:
     run = ran("bar", peak=peak, **TIMES)
-    cycles = cycles_of(run)
+    cycles = cut(run)
     exact = 2.0 * peak**3 / (3.0 * STIFFNESS * BOUND)
     np.testing.assert_allclose(cycles.energy, exact, rtol=3e-3)
     assert [reading(f"dissipation@{n}")(run) for n in range(1, 6)] == pytest.approx(cycles.energy)
@@ -131,7 +135,7 @@ def test_every_cycle_of_the_bar_takes_what_the_closed_form_says(peak: float) -> 
 
 def test_work_along_the_bar_is_friction_times_slip() -> None:
     """Within the front, at mu p: w(x) = mu p s(x), and s falls with the square of the distance."""
-    cycles = cycles_of(ran("bar", peak=900.0, **TIMES))
+    cycles = cut(ran("bar", peak=900.0, **TIMES))
     x = np.linspace(0.0, 1.0, 51)
     slip = 4.0 * BOUND / (2.0 * STIFFNESS) * np.maximum(x - 1.0 + 900.0 / BOUND, 0.0) ** 2
     weights = np.full(51, 0.02)
@@ -152,17 +156,17 @@ def _frozen(value: Any) -> Any:
 
 
 def test_the_lesson_on_shakedown_shows_slip_that_dies_and_slip_that_does_not() -> None:
-    dying, steady = fate_of(cycles_of(lesson())), fate_of(cycles_of(lesson(friction=0.15)))
+    dying, steady = fate_of(cut(lesson())), fate_of(cut(lesson(friction=0.15)))
     assert dying is not None
     assert steady is not None
     assert (dying.word, steady.word) == ("shakedown with slip that dies", "steady slip")
     assert dying.ratio < 0.9 < 0.99 < steady.ratio < 1.01
-    assert fate_of(cycles_of(lesson(friction=0.6))) is None
+    assert fate_of(cut(lesson(friction=0.6))) is None
 
 
 def test_a_block_sheared_within_its_friction_shakes_down_after_one_cycle() -> None:
     changes = {"gap": "flat", "top_tangential_load": "cycles", "instants": 121}
-    fate = fate_of(cycles_of(ran("block", **changes, elements=16, elements_up=8, substructures=1)))
+    fate = fate_of(cut(ran("block", **changes, elements=16, elements_up=8, substructures=1)))
     assert fate is not None
     assert (fate.word, fate.since, fate.slip) == ("elastic shakedown", 2, 0.0)
 
@@ -177,7 +181,7 @@ def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
             top_normal_slope=math.copysign(10.0, shear),
             top_tangential_traction=shear,
         )
-        cycles = cycles_of(run)
+        cycles = cut(run)
         assert word(cycles) == "ratcheting"
         assert np.ptp(cycles.net[:, -1]) < 0.3 * np.abs(cycles.net[:, -1]).max()
         moved.append(cycles.net[:, -1])
@@ -187,7 +191,7 @@ def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
 
 
 def test_rocked_less_it_comes_to_rest() -> None:
-    cycles = cycles_of(ran("block", **ROCKED, top_normal_slope=5.0))
+    cycles = cut(ran("block", **ROCKED, top_normal_slope=5.0))
     assert word(cycles) == "shakedown with slip that dies"
     np.testing.assert_allclose(
         cycles.slip.max(axis=0)[1:] / cycles.slip.max(axis=0)[:-1], 0.29, atol=0.01
@@ -197,7 +201,7 @@ def test_rocked_less_it_comes_to_rest() -> None:
 def test_friction_that_still_hardens_gets_no_word_until_it_has_hardened() -> None:
     law = {"friction_law": "slip-dependent", "friction_ratio": 3.0}
     words = [
-        word(cycles_of(ran("bar", peak=900.0, slip_length=length, **law, **TIMES, **SMALL)))
+        word(cut(ran("bar", peak=900.0, slip_length=length, **law, **TIMES, **SMALL)))
         for length in (1e-3, 1e-5)
     ]
     assert words == [None, "steady slip"]
@@ -213,8 +217,8 @@ def test_of_several_loads_the_one_that_turns_most_makes_the_cycles() -> None:
 
 def test_a_load_that_grows_or_wanders_is_not_repeated() -> None:
     growing = tuple((0.1 * n, n * (-1.0) ** n * 50.0) for n in range(11))
-    assert not cycles_of(ran("bar", load=growing, **SMALL)).is_repeated
-    assert cycles_of(ran("bar", peak=900.0, **TIMES)).is_repeated
+    assert not cut(ran("bar", load=growing, **SMALL)).is_repeated
+    assert cut(ran("bar", peak=900.0, **TIMES)).is_repeated
 
 
 @pytest.mark.parametrize(("peak", "share"), [(750.0, 0.5), (1600.0, 1.0)])

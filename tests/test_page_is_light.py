@@ -103,11 +103,11 @@ def test_an_address_that_waits_at_an_iteration_costs_one_order_however_far_that_
         ("?linear_stage=pgd", 11, True),
         ("?linear_stage=pgd&substructures=1", 11, False),
         ("?linear_stage=pgd&instants=1", 7, True),
-        ("?scene=strand&wires=20&broken=0&elements=2&substructures=1", 9, False),
-        ("?scene=strand", 9, False),
+        ("?scene=strand&wires=20&broken=0&elements=2&substructures=1", 12, False),
+        ("?scene=strand", 12, False),
         ("?scene=block", 9, False),
         ("?scene=layers", 9, False),
-        ("?scene=incline", 9, False),
+        ("?scene=incline", 12, False),
     ],
 )
 def test_views_and_sliders_are_those_that_apply(

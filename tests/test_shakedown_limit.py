@@ -28,7 +28,8 @@ def limit(scene: str, **changes: Any) -> ShakedownLimit:
 def slips(scene: str, **changes: Any) -> bool:
     """Tell whether anything slips in the last cycle."""
     settings = CATALOGUE[scene].settings.checked(changes)
-    return bool(cycles_of(finished_run(settings, errors=False, indicators=False)).slip[:, -1].any())
+    run = finished_run(settings, errors=False, indicators=False)
+    return bool(cycles_of(settings, run.iterate).slip[:, -1].any())
 
 
 CASES = [

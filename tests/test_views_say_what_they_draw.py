@@ -12,10 +12,10 @@ from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.recording import COLUMNS
 from app.picture.units import MM
-from app.views import convergence, deformed, error_time, friction, load_path, loop
+from app.views import convergence, cycles, deformed, error_time, friction, load_path, loop
 from app.views.catalogue import VIEWS, fitting
 from app.views.colors import ORANGE
-from app.views.drawing import POSITION
+from app.views.drawing import POSITION, Curve
 from app.views.in_units import in_units
 from app.views.scales import decades
 from app.views.scene import Scene
@@ -183,3 +183,48 @@ def test_a_picture_has_one_scale_of_stress_wherever_one_came_from() -> None:
             assert coming is not None
             assert drawing is not None
             assert coming.colors == drawing.colors
+
+
+TO_AND_FRO = {"load": "cycles", "instants": 161}
+
+
+def test_cycles_are_drawn_from_first_to_last_with_the_word_that_they_earn() -> None:
+    scene = looked_at("bar", {**TO_AND_FRO, "max_iterations": 100})
+    loops, energy = cycles.draw_loops(scene, None), cycles.draw_energy(scene, None)
+    assert keys(loops) == keys(energy) == ["cycle 1", "cycle 5"]
+    assert energy.sentence == loops.sentence
+    assert loops.sentence.startswith("Steady slip: every cycle takes 4")
+    bars = [np.asarray(curve.y)[-1] for curve in energy.curves]
+    areas = [abs(area(curve)) for curve in loops.curves[1:]]
+    assert bars == pytest.approx(areas, rel=2e-2)
+    assert len({curve.color for curve in loops.curves}) == 6
+
+
+def area(curve: Curve) -> float:
+    """Integrate force over displacement around a loop, J."""
+    x, y = np.asarray(curve.x, dtype=float), np.asarray(curve.y, dtype=float)
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
+
+
+def test_the_last_cycle_frets_where_it_slips_most() -> None:
+    drawing = cycles.draw_fretting(looked_at("bar", TO_AND_FRO), None)
+    assert [name.split(",")[0] for name in keys(drawing)] == ["friction work", "slip"]
+    for curve in drawing.curves:
+        shares = np.asarray(curve.y)
+        assert shares.max() == shares[-1] == 1.0
+        assert shares[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "said"),
+    [
+        ("bar", {**TO_AND_FRO, "peak": 1.0}, "Nothing slips."),
+        ("strand", {"load": "cycle", "instants": 41}, "No three cycles"),
+        ("block", {"top_tangential_load": "cycles", "gap": "flat", "instants": 121}, "Elastic"),
+    ],
+)
+def test_what_becomes_of_slip_is_said_only_where_it_is_settled(
+    scene: str, changes: dict[str, Any], said: str
+) -> None:
+    drawing = cycles.draw_loops(looked_at(scene, {**changes, "max_iterations": 100}), None)
+    assert drawing.sentence.startswith(said)

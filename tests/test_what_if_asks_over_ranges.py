@@ -10,17 +10,16 @@ from sweeps import tiny
 from app.shell.address import query_of, settings_from_query, sight_from_query
 from app.whatif.charted import is_of, stands
 from app.whatif.question import (
-    READY,
     Question,
     Span,
     askable,
-    bathtub,
     changed_quantity,
     changed_span,
     offered,
     question_from_query,
     usual_span,
 )
+from app.whatif.ready import READY, bathtub, fretting_map
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
@@ -51,10 +50,21 @@ def test_every_quantity_that_is_offered_can_be_asked_and_every_ready_question(
     spans = bathtub(settings).spans
     for name in askable(settings):
         assert Question(spans, changed_quantity(name, "")).refusals(settings) == {}, name
-    made = [question for _, make in READY.values() if (question := make(settings))]
-    assert len(made) == len(READY)
-    for question in made:
+    made = {title: question for title, (_, make) in READY.items() if (question := make(settings))}
+    assert READY.keys() - made.keys() <= {"The fretting map"}
+    for question in made.values():
         assert question.refusals(settings) == {}, question.vary
+
+
+def test_the_fretting_map_is_offered_where_a_load_goes_to_and_fro() -> None:
+    loads = {"bar": "load", "block": "top_tangential_load", "layers": "bend_load"}
+    for scene, load in loads.items():
+        settings = CATALOGUE[scene].settings.checked({load: "cycles"})
+        question = fretting_map(settings)
+        assert question is not None
+        assert question.of == "sliding_share"
+        assert question.refusals(settings) == {}, question.vary
+    assert fretting_map(DEFAULTS) is None
 
 
 @pytest.mark.parametrize(

@@ -21,8 +21,8 @@ from app.whatif.question import (
     Question,
     Span,
     askable,
-    bathtub,
 )
+from app.whatif.ready import bathtub
 from app.whatif.whatif import WhatIf
 from solver.running.executors import VARIABLE, Processes
 from solver.running.pool import Pool

@@ -62,6 +62,9 @@ TERMS: dict[tuple[str, ...], str] = {
     ("±μp",): "The bound of the friction force: coefficient of friction times pressure.",
     ("hysteresis loop",): "Force over displacement; the area inside is the energy that friction "
     "takes.",
+    ("cycle",): "From one turning point of the load to the next but one; the way there from rest "
+    "is none.",
+    ("friction work",): "Energy that friction takes, where it does so: there surfaces wear.",
     ("run before",): "The last run that came to an end; it stays as a ghost to compare with.",
     ("this run",): "The one that goes on now, or was the last to.",
     ("first settings",): "The run that this page began with.",

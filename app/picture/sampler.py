@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.picture.bases import Bases, bases_of
+from app.picture.cycled import Cycled, cycled
 from app.picture.frames import DrawnFields, Stand
 from app.picture.meshes import Thinned
 from app.picture.portrait import DrawnGeometry, Pose
@@ -158,6 +159,10 @@ class Sampler:
         largest = max(float(whole.max()), -float(whole.min()))
         return MeshField(floats(displacement), floats(stress), largest)
 
+    def cycles(self, iterate: Iterate) -> Cycled:
+        """Show an iterate cycle by cycle, and where it slips along the interface."""
+        return cycled(self._settings, iterate, self._points, self._rows, self._lengths)
+
     def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
         """Show what has moved at the chosen instant."""
         return self._geometry.pose(iterate, self._column(look), bodies)
@@ -216,6 +221,11 @@ class Frame:
     def iteration(self) -> int:
         """Number of the iterate."""
         return self.iterate.number
+
+    @cached_property
+    def cycles(self) -> Cycled:
+        """The cycles of its load."""
+        return self.sampler.cycles(self.iterate)
 
     @cached_property
     def spectra(self) -> Floats:

@@ -35,7 +35,7 @@ from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
 from app.teaching.teaching import Teaching, name_of
 from app.views.catalogue import drawn
-from app.whatif.question import over_k
+from app.whatif.ready import over_k
 from app.whatif.whatif import WhatIf
 from solver.settings import Settings
 

@@ -120,17 +120,18 @@ def gallery(choices: dict[str, Callable[[Any], None]], say: Language = ENGLISH) 
 @cache
 def figures(say: Language = ENGLISH) -> str:
     """Give the figures of all views as JSON, made once."""
-    return json.dumps({view.slug: _described(view, say) for view in VIEWS})
+    described = {view.slug: _described(view, say) for view in VIEWS}
+    return json.dumps(described, separators=(",", ":"))
 
 
 def _described(view: View, say: Language) -> dict[str, Any]:
     document = Document()
     document.add_root(make_figure(view, say))
     made = document.to_json(deferred=False)
-    # Bokeh adds what every component of Panel's is made of, ten times as much as all figures.
-    del made["defs"]
+    # Bokeh adds what every component of Panel's is made of, ten times as much as all figures, and
+    # a title and options that a figure has no use for.
     return {
-        "json": made,
+        "json": {"version": made["version"], "roots": made["roots"]},
         "name": view.name,
         "chooses": view.plot.chooses,
     }

@@ -8,6 +8,7 @@ from app.views import (
     axial,
     basis_size,
     convergence,
+    cycles,
     deformed,
     error_time,
     friction,
@@ -26,7 +27,7 @@ CARDS: tuple[tuple[View, ...], ...] = (
     (picture.VIEW, deformed.VIEW),
     (tractions.VIEW, friction.VIEW, axial.VIEW),
     (status_map.VIEW,),
-    (load_path.VIEW, loop.VIEW),
+    (load_path.VIEW, loop.VIEW, cycles.LOOPS, cycles.ENERGY, cycles.FRETTING),
     (convergence.VIEW, error_time.VIEW),
     (spectra.VIEW, SPACE_MODES, TIME_FUNCTIONS, basis_size.VIEW),
 )

@@ -9,7 +9,8 @@ from app.controls.refusals import field_of
 from app.picture.labels import label_of
 from app.picture.units import BY_SIZE, SYSTEMS, steps
 from app.picture.usual import changed
-from app.whatif.question import READY, Question, Span, askable, names_of, offered
+from app.whatif.question import Question, Span, askable, names_of, offered
+from app.whatif.ready import READY
 from solver.definitions import about
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES

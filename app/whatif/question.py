@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from urllib.parse import parse_qsl
 
@@ -16,7 +16,6 @@ from app.picture.shown import has_reference
 from app.picture.units import BY_SIZE
 from app.picture.usual import WATCH, hurried
 from solver.definitions import CurveParameter, Parameter, SettingError, about
-from solver.scenes import loads_of
 from solver.settings import Settings
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.quantity import Quantity
@@ -27,13 +26,11 @@ EVEN, DECADES, LISTED = "even", "log", "list"
 """How values are given: in even steps, in even ratios, or one by one."""
 VARY, OF = "vary", "of"
 """Names in an address: settings with their values, and the quantity."""
-VALUES, COARSE = 13, 10
-"""Values of a range: along a curve, and along each side of a map."""
+VALUES = 13
+"""Values of a range."""
 TENTH = 0.1
 BESIDE = ("peak_friction", "end_displacement", "stiffness", "dissipation", "stuck_share")
 """Taken of every run for the table and its plots: together 1 to 6 % of its time (measured)."""
-CUTS = (1, 2, 5, 10, 20)
-"""Numbers of substructures that are compared."""
 
 
 @dataclass(frozen=True)
@@ -241,59 +238,3 @@ def changed_quantity(name: str, at: str) -> str:
         return name
     at = at.strip() or (str(TENTH) if parameter.needed else "")
     return f"{name}@{at}" if at else name
-
-
-def bathtub(settings: Settings) -> Question:
-    """Ask for the iterations over the search direction, with and without acceleration."""
-    return _over_k(settings, "acceleration")
-
-
-def over_k(settings: Settings) -> Question:
-    """Ask for the iterations until the force is as near as a page asks, over k alone."""
-    span = usual_span(settings.definitions()["k_scale"], "k_scale")
-    return Question((span,), f"iterations_to_force@{settings.accuracy:g}")
-
-
-def design_chart(settings: Settings) -> Question | None:
-    """Ask for the energy dissipated over friction and load, where a number says the load."""
-    definitions = offered(settings)
-    load = next((name for name in loads_of(settings) if name in definitions), None)
-    if load is None or "friction" not in definitions:
-        return None
-    spans = []
-    for name in ("friction", load):
-        _, high = shown_range(definitions[name])
-        spans.append(Span(name, f"{TENTH * high:g}", f"{high:g}", str(COARSE)))
-    return Question(tuple(spans), "dissipation")
-
-
-READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
-    "The bathtub": (
-        "Iterations over the factor on k, with and without acceleration. It is steepest with the "
-        "paper's method.",
-        bathtub,
-    ),
-    "The bathtub over substructures": (
-        "Iterations over the factor on k, for several numbers of substructures.",
-        lambda settings: _over_k(settings, "substructures"),
-    ),
-    "The design chart": ("Energy dissipated over friction and load.", design_chart),
-}
-"""Questions that are ready, by what their buttons say, with a word on each."""
-
-
-def _over_k(settings: Settings, name: str) -> Question:
-    spans = [usual_span(settings.definitions()["k_scale"], "k_scale")]
-    if name == "substructures":
-        cuts = ",".join(_possible(settings, name))
-        spans.append(Span(name, spacing=LISTED, listed=cuts))
-    elif name in offered(settings):
-        spans.append(usual_span(settings.definitions()[name], name))
-    of = changed_quantity("iterations_to_force", "") if has_reference(settings) else "iterations"
-    return Question(tuple(spans), of)
-
-
-def _possible(settings: Settings, name: str) -> Iterator[str]:
-    for value in CUTS:
-        with contextlib.suppress(SettingError):
-            yield str(getattr(settings.replace(**{name: value}), name))

@@ -19,13 +19,8 @@ from app.session.session import Session
 from app.session.studies import mesh_of_run
 from app.whatif.charted import columns_of, drawn, is_comparable, is_of, is_usual, stands
 from app.whatif.fields import NO_SECOND, form_of, in_si, watched
-from app.whatif.question import (
-    READY,
-    Question,
-    bathtub,
-    changed_quantity,
-    changed_span,
-)
+from app.whatif.question import Question, changed_quantity, changed_span
+from app.whatif.ready import READY, bathtub
 from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.chart import Chart, Map

@@ -40,7 +40,7 @@ def has_a_limit(settings: Settings) -> bool:
 
 def energy_ratio(run: FinishedRun, at: float | None) -> float:
     """Give the energy of the last cycle over that of the second; NaN where that took none."""
-    energy = cycles_of(run).energy
+    energy = cycles_of(run.settings, run.iterate).energy
     if len(energy) < 2 or energy[1] <= NO_ENERGY * np.abs(run.dissipated).sum():
         return math.nan
     return float(energy[-1] / energy[1])
@@ -48,7 +48,7 @@ def energy_ratio(run: FinishedRun, at: float | None) -> float:
 
 def ratchet(run: FinishedRun, at: float | None) -> float:
     """Give the slip that the last cycle leaves, at the point where it leaves most, m."""
-    net = cycles_of(run).net
+    net = cycles_of(run.settings, run.iterate).net
     return float(np.abs(net[:, -1]).max()) if net.size else math.nan
 
 

@@ -14,9 +14,9 @@ from itertools import pairwise
 import numpy as np
 
 from solver.arrays import Array
+from solver.latin import Iterate
 from solver.scenes import structure_of
 from solver.settings import Settings
-from solver.study.finished import FinishedRun
 from solver.study.slips import slips_of
 
 SMALLEST_SWING = 0.05
@@ -60,16 +60,16 @@ class LoadCycles:
         return len(self.energy)
 
 
-def cycles_of(run: FinishedRun) -> LoadCycles:
-    """Cut a run into the cycles of its load; points stand interface by interface."""
-    ends = ends_of(run.settings)
+def cycles_of(settings: Settings, iterate: Iterate) -> LoadCycles:
+    """Cut an iterate into the cycles of its load; points stand interface by interface."""
+    ends = ends_of(settings)
     slips, works = [], []
-    for law, slip, work in slips_of(run.iterate):
+    for law, slip, work in slips_of(iterate):
         slips.append(law.mean_by_point(slip))
         works.append(law.by_point(work))
     slip, work = np.concatenate(slips), np.concatenate(works)
-    rubbed = np.where(np.abs(run.iterate.status) == 1, np.abs(slip), 0.0)
-    first = ends[0] if ends else run.problem.n_instants - 1
+    rubbed = np.where(np.abs(iterate.status) == 1, np.abs(slip), 0.0)
+    first = ends[0] if ends else iterate.problem.n_instants - 1
     works_of_cycles = _summed(work, ends)
     return LoadCycles(
         ends=ends,
@@ -78,7 +78,7 @@ def cycles_of(run: FinishedRun) -> LoadCycles:
         net=_summed(slip, ends),
         work=works_of_cycles,
         before=rubbed[:, : first + 1].sum(axis=1),
-        is_repeated=_is_repeated(run.settings, ends),
+        is_repeated=_is_repeated(settings, ends),
     )
 
 
