@@ -219,3 +219,28 @@ def test_bodies_are_drawn_in_the_browser_and_looked_at_otherwise(page: Page) -> 
     expect(interface).to_contain_text("contact 2-3")
     slider(page, "Instant").fill("20")
     expect(status(page)).to_contain_text(re.compile("iteration|after"))
+
+
+def test_keys_may_leave_a_plot_at_once_when_what_is_under_the_pointer_moves(page: Page) -> None:
+    stumbles: list[str] = []
+    page.on("pageerror", lambda error: stumbles.append(str(error)))
+    box = page.locator(".bk-Plot canvas").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.evaluate(
+        """async ([x, y]) => {
+          const frame = () => new Promise(requestAnimationFrame)
+          await frame()
+          await frame()
+          let found = document.elementFromPoint(x, y), inner = found
+          while ((inner = found.shadowRoot?.elementFromPoint(x, y)) && inner !== found) {
+            found = inner
+          }
+          found.dispatchEvent(new Event("scroll", {bubbles: true, composed: true}))
+          found.dispatchEvent(new FocusEvent("focusin", {bubbles: true, composed: true}))
+          await frame()
+          await frame()
+        }""",
+        [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2],
+    )
+    assert stumbles == []

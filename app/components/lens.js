@@ -79,6 +79,9 @@ export function render({model}) {
   const focus = (event) => {
     const path = event.composedPath()
     if (path.includes(root)) { return }
+    // What was to be looked at under the pointer in the next frame is no longer asked for.
+    cancelAnimationFrame(due)
+    due = 0
     pointer = null
     see(path)
   }
