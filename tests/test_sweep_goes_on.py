@@ -6,6 +6,8 @@ import math
 import os
 import signal
 import time
+from functools import partial
+from multiprocessing import Pipe
 from pathlib import Path
 
 import numpy as np
@@ -18,8 +20,10 @@ from solver.latin.finish.cost import Costs
 from solver.latin.finish.status_step import states_of
 from solver.laws import OPEN
 from solver.reference.choice import incremental_solver, reference_of
+from solver.running import calls
 from solver.running.executors import Processes, opened
 from solver.running.pool import EndedError, OverdueError
+from solver.running.processes import start_process
 from solver.scenes import CATALOGUE, discretise
 from solver.study.finished import finished_run
 from solver.study.sweep import VersionsDifferError, sweep
@@ -241,6 +245,19 @@ def test_an_error_of_a_call_is_told() -> None:
         with pytest.raises(ZeroDivisionError):
             pool.submit(divmod, 1, 0).result()
         assert pool.submit(divmod, 7, 2).result() == (3, 1)
+
+
+def test_a_call_whose_process_has_gone_keeps_nothing_of_what_was_sent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    process, _ = start_process(calls.obey, preloaded=["solver.running.calls"])
+    ours, theirs = Pipe()
+    theirs.close()
+    monkeypatch.setattr(calls, "start_process", lambda *_, **__: (process, ours))
+    call = calls.Call(partial(int))
+    with pytest.raises(EndedError) as ended:
+        calls.ProcessSlot(None).do(call)
+    assert ended.value.__context__ is None
 
 
 def test_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -75,27 +75,35 @@ class ProcessSlot:
             self._process, self._pipe = start_process(obey, preloaded=[call.work.func.__module__])
         call.runs_in(self._process)
         try:
-            is_sound, found = self._ask(self._pipe, call.work)
-        except (EOFError, OSError):
-            self.clear()
-            raise EndedError("its process was ended") from None
+            answer = self._asked(self._pipe, call.work)
         except BaseException:
             self.clear()
             raise
         finally:
             call.runs_in(None)
+        if answer is None:
+            self.clear()
+            raise EndedError("its process was ended")
+        is_sound, found = answer
         if call.is_unwanted:
             self.clear()
         if not is_sound:
             raise found
         return found
 
-    def _ask(self, pipe: Connection, work: partial[Any]) -> tuple[bool, Any]:
-        pipe.send(work)
-        if not pipe.poll(self._limit):
-            raise OverdueError(f"it took longer than {self._limit:g} s")
-        found: tuple[bool, Any] = pipe.recv()
-        return found
+    def _asked(self, pipe: Connection, work: partial[Any]) -> tuple[bool, Any] | None:
+        """Give what the process says to a call, or nothing if it has ended.
+
+        What the pipe raises ends here: a call keeps its error, and with what was raised before it
+        the frame and the buffer of the sender, which Python 3.13 complains of when it is cleared.
+        """
+        with contextlib.suppress(EOFError, OSError):
+            pipe.send(work)
+            if not pipe.poll(self._limit):
+                raise OverdueError(f"it took longer than {self._limit:g} s")
+            found: tuple[bool, Any] = pipe.recv()
+            return found
+        return None
 
     def clear(self) -> None:
         """End the process at once, if there is one."""
