@@ -18,6 +18,8 @@ PAGES = """Bokeh.documents.filter((one) => one.roots().some(({type}) => type !==
 """Documents that are no figure's."""
 SMALL = "scene=strand&wires=5&elements=12&instants=11&plots=Scene&pace=1"
 """Its search goes on while the network is cut."""
+KEPT = ("--unused-session-lifetime", "600000")
+"""However long a busy machine takes to mend the network, the server still knows the page."""
 
 
 class Network:
@@ -26,7 +28,7 @@ class Network:
     def __init__(self, folder: Path, proxy: Proxy, chrome: Chrome, ends: ExitStack) -> None:
         self.proxy = proxy
         origin = ("--allow-websocket-origin", f"localhost:{self.proxy.port}")
-        self.server = Server(folder / "log", 0, *origin)
+        self.server = Server(folder / "log", 0, *origin, *KEPT)
         ends.callback(self.server.stop)
         self.server.wait()
         self.proxy.target = self.server.port
