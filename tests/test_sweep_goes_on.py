@@ -6,13 +6,14 @@ import math
 import os
 import signal
 import time
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from multiprocessing import Pipe
 from pathlib import Path
 
 import numpy as np
 import pytest
-from processes import is_alive, wait_for
+from processes import PATIENCE, is_alive, wait_for
 from sweeps import Here, rows_of, tiny
 
 from solver.definitions import SettingError
@@ -258,6 +259,32 @@ def test_a_call_whose_process_has_gone_keeps_nothing_of_what_was_sent(
     with pytest.raises(EndedError) as ended:
         calls.ProcessSlot(None).do(call)
     assert ended.value.__context__ is None
+
+
+def test_a_call_that_runs_nowhere_any_more_has_left_no_process(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ended: list[int | None] = []
+    clear = calls.ProcessSlot.clear
+
+    def watched(slot: calls.ProcessSlot) -> None:
+        if slot._process is not None:
+            ended.append(call.pid)
+        clear(slot)
+
+    monkeypatch.setattr(calls.ProcessSlot, "clear", watched)
+    call = calls.Call(partial(time.sleep, 600.0))
+    slot = calls.ProcessSlot(None)
+    with ThreadPoolExecutor(1) as thread:
+        done = thread.submit(slot.do, call)
+        wait_for(lambda: call.pid is not None)
+        pid = call.pid
+        assert call.set_running_or_notify_cancel()
+        assert not call.cancel()
+        with pytest.raises(EndedError):
+            done.result(timeout=PATIENCE)
+    assert ended == [pid]
+    assert call.pid is None
 
 
 def test_other_versions_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -76,17 +76,17 @@ class ProcessSlot:
         call.runs_in(self._process)
         try:
             answer = self._asked(self._pipe, call.work)
+            if answer is None or call.is_unwanted:
+                self.clear()
         except BaseException:
             self.clear()
             raise
         finally:
+            # Last, so that whoever sees that it runs nowhere knows that its process is gone.
             call.runs_in(None)
         if answer is None:
-            self.clear()
             raise EndedError("its process was ended")
         is_sound, found = answer
-        if call.is_unwanted:
-            self.clear()
         if not is_sound:
             raise found
         return found
