@@ -20,6 +20,7 @@ from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.disk import check_place, why
+from solver.fclib_command import add_fclib
 from solver.files import (
     remarks,
     save_result,
@@ -107,6 +108,7 @@ def _parser() -> argparse.ArgumentParser:
     add_reports(commands)
     add_sweep(commands)
     add_mesh(commands)
+    add_fclib(commands)
     add_lesson(commands)
     for further in entry_points(group="slipfront.commands"):
         with contextlib.suppress(ImportError):  # the engine may be there alone

@@ -129,7 +129,7 @@ class Condensation:
         self._jumped, self._glued = from_jumps(own)
         strained = sparse.csr_array(stiffness @ self._jumped)
         self._pulled = sparse.csr_array(self._glued.T @ strained)
-        self._factor = _factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
+        self._factor = factored(sparse.csc_array(self._glued.T @ stiffness @ self._glued))
         patterns, course = _separated(load)
         self._alone = self._solved(self._glued.T @ patterns) @ course
         load = self._jumped.T @ load - self._pulled.T @ self._alone
@@ -276,7 +276,8 @@ def _separated(load: Array) -> tuple[Array, Array]:
     return load, np.eye(load.shape[1])
 
 
-def _factored(matrix: sparse.csc_array) -> SuperLU:
+def factored(matrix: sparse.csc_array) -> SuperLU:
+    """Factor a stiffness, shape (n, n); NotHeldError where something moves that costs no force."""
     try:
         factor = splu(
             matrix,
