@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from solver.compare_command import add_compare
 from solver.definitions import SettingError, about, allowed
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
@@ -108,6 +109,7 @@ def _parser() -> argparse.ArgumentParser:
     add_reports(commands)
     add_sweep(commands)
     add_mesh(commands)
+    add_compare(commands)
     add_fclib(commands)
     add_lesson(commands)
     for further in entry_points(group="slipfront.commands"):

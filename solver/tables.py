@@ -1,10 +1,10 @@
-"""Tables of two columns for settings that are curves, read from text and files."""
+"""Tables as spreadsheets write them, and those of two columns for settings that are curves."""
 
 from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from solver.definitions import CurveParameter, Parameter, SettingError, allowed
@@ -41,13 +41,11 @@ def read_table(text: str, definition: CurveParameter, name: str, source: str) ->
     def refuse(remedy: str) -> SettingError:
         return SettingError(name, source, allowed(definition), remedy)
 
-    if len(text) > LARGEST:
-        raise refuse(TOO_LARGE)
-    try:
-        heads, rows = _split(text)
-    except csv.Error as problem:
-        raise refuse(str(problem)) from None
-    first, second = _factors(heads, definition, refuse)
+    heads, rows = split_table(text, refuse)
+    for line, cells in heads:
+        if [name_of(cell) for cell in cells[1:]] == [definition.abscissa]:
+            raise refuse(f"line {line} has {definition.abscissa} second: it comes first")
+    first, second = factors(heads, definition.units, refuse)
     found = []
     for line, cells in rows:
         try:
@@ -67,7 +65,23 @@ def heads_of(text: str) -> set[str]:
         heads, _ = _split(text)
     except csv.Error:
         return set()
-    return {_name(cell).replace(" ", "_") for _, cells in heads for cell in cells}
+    return {name_of(cell).replace(" ", "_") for _, cells in heads for cell in cells}
+
+
+def split_table(text: str, refuse: Refuse) -> tuple[list[Row], list[Row]]:
+    """Give the rows of words in front of the first number, and those from there on.
+
+    Raises
+    ------
+    SettingError
+        As `refuse` makes it, for a table that is too large, or none.
+    """
+    if len(text) > LARGEST:
+        raise refuse(TOO_LARGE)
+    try:
+        return _split(text)
+    except csv.Error as problem:
+        raise refuse(str(problem)) from None
 
 
 def _split(text: str) -> tuple[list[Row], list[Row]]:
@@ -93,21 +107,26 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _name(cell: str) -> str:
+def name_of(cell: str) -> str:
+    """Give what a cell calls its column, without its unit, in small letters."""
     return UNIT.sub("", cell).strip().lower()
 
 
-def _factors(heads: list[Row], definition: CurveParameter, refuse: Refuse) -> list[float]:
-    """Give what turns the numbers of both columns into SI, by the units in front of them."""
-    found = [1.0, 1.0]
+def factors(heads: list[Row], units: Sequence[str], refuse: Refuse) -> list[float]:
+    """Give what turns the numbers of columns into SI, by the units in front of them.
+
+    Raises
+    ------
+    SettingError
+        As `refuse` makes it, for another unit than those of the columns.
+    """
+    found = [1.0] * len(units)
     for place, (line, cells) in enumerate(heads):
-        if [_name(cell) for cell in cells[1:]] == [definition.abscissa]:
-            raise refuse(f"line {line} has {definition.abscissa} second: it comes first")
-        bare = [_factor(cell, unit) for cell, unit in zip(cells, definition.units, strict=False)]
+        bare = [_factor(cell, unit) for cell, unit in zip(cells, units, strict=False)]
         is_row_of_units = place > 0 and any(
             cell and factor for cell, factor in zip(cells, bare, strict=False)
         )
-        for column, (cell, unit) in enumerate(zip(cells, definition.units, strict=False)):
+        for column, (cell, unit) in enumerate(zip(cells, units, strict=False)):
             written = UNIT.search(cell)
             said = cell if is_row_of_units else (written[1] or written[2] or "") if written else ""
             factor = _factor(said, unit)

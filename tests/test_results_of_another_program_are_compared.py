@@ -1,0 +1,265 @@
+"""What another program has found is read or refused, and its distance to a run is what it says."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.cli import main
+from solver.definitions import SettingError
+from solver.discrete.problem import Problem
+from solver.reference.choice import reference_of
+from solver.reference.distance import determinate_forces
+from solver.reference.solution import Reference
+from solver.scenes import CATALOGUE, closed_form_of, discretise
+from solver.settings import Settings
+from solver.study.beside import Beside, weights_of
+from solver.study.brought import Brought, read_brought
+
+HEAD = "x,t,friction force\n"
+ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"
+SMALL: dict[str, dict[str, Any]] = {
+    "bar": {"elements": 30, "instants": 21},
+    "strand": {"wires": 3, "elements": 12, "instants": 11},
+    "block": {"elements": 12, "elements_up": 4, "instants": 11},
+}
+
+
+def settings_of(scene: str = "bar", **changes: Any) -> Settings:
+    return CATALOGUE[scene].settings.checked(SMALL[scene] | changes)
+
+
+@cache
+def solved(scene: str) -> tuple[Settings, Problem, Reference]:
+    settings = settings_of(scene)
+    problem = discretise(settings)
+    return settings, problem, reference_of(problem)
+
+
+def table(quantity: str, x: Any, t: Any, values: Any) -> str:
+    """Write a field, (n_points, n_instants), as another program would."""
+    rows = [
+        f"{place!r},{time!r},{value!r}"
+        for place, line in zip(np.asarray(x).tolist(), np.asarray(values).tolist(), strict=True)
+        for time, value in zip(np.asarray(t).tolist(), line, strict=True)
+    ]
+    return "\n".join([f"x,t,{quantity}", *rows])
+
+
+def own_friction(scene: str) -> tuple[Any, Any, Any]:
+    """Give our force per length or area where it is determinate, with its points and instants."""
+    _, problem, reference = solved(scene)
+    (name, *_), law = problem.rubbing, next(iter(problem.rubbing.values()))
+    places = problem.contact_places[name][-1]
+    sizes = law.by_point(law.weights)[:, None]
+    known = determinate_forces(problem)[places].all(axis=1)
+    force = reference.contact_force[places] / sizes
+    return law.positions[known], problem.instants, force[known]
+
+
+@pytest.mark.parametrize("scene", SMALL)
+def test_our_own_friction_is_at_no_distance(scene: str) -> None:
+    settings, problem, reference = solved(scene)
+    brought = read_brought(table("friction force", *own_friction(scene)), "own.csv", settings)
+    beside = Beside(brought, problem)
+    assert beside.counted == len(brought.times) > 50
+    assert beside.of(reference) < 1e-12
+
+
+def test_our_own_displacement_is_at_no_distance() -> None:
+    settings, problem, reference = solved("bar")
+    text = table("displacement", problem.positions, problem.instants, reference.displacement)
+    brought = read_brought(text, "own.csv", settings)
+    assert Beside(brought, problem).of(reference) < 1e-12
+
+
+@pytest.mark.parametrize("scene", SMALL)
+@pytest.mark.parametrize("factor", [0.5, 1.25, -1.0])
+def test_a_field_times_a_factor_is_as_far_as_the_factor_says(scene: str, factor: float) -> None:
+    settings, problem, reference = solved(scene)
+    x, t, values = own_friction(scene)
+    brought = read_brought(table("friction force", x, t, factor * values), "a.csv", settings)
+    assert Beside(brought, problem).of(reference) == pytest.approx(abs((factor - 1.0) / factor))
+
+
+def test_what_vanishes_everywhere_is_measured_by_the_run() -> None:
+    settings, problem, reference = solved("bar")
+    x, t, values = own_friction("bar")
+    brought = read_brought(table("friction force", x, t, 0.0 * values), "a.csv", settings)
+    assert Beside(brought, problem).of(reference) == pytest.approx(1.0)
+
+
+def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
+    """It is given at places that are no nodes, and at instants that are not those of the run."""
+    rng = np.random.default_rng(1)
+    distances = []
+    for elements in (20, 40, 80):
+        settings = settings_of(load="ramp", elements=elements, instants=2 * elements + 1)
+        fine = settings_of(load="ramp", elements=400, instants=401)
+        exact = closed_form_of(fine)
+        assert exact is not None
+        where = np.sort(rng.choice(np.arange(1, 400), 150, replace=False))
+        when = np.sort(rng.choice(np.arange(1, 401), 60, replace=False))
+        grid = discretise(fine)
+        x, t = grid.friction.positions[where], grid.instants[when]
+        text = table(
+            "friction force",
+            x,
+            t,
+            exact.friction_force[np.ix_(where, when)] / (0.0025 * fine.length),
+        )
+        brought = read_brought(text, "exact.csv", settings)
+        problem = discretise(settings)
+        distances.append(Beside(brought, problem).of(reference_of(problem)))
+    assert distances[0] > distances[1] > distances[2]
+
+
+def test_rows_may_have_any_order_and_count_once_however_often_they_stand_there() -> None:
+    settings, problem, reference = solved("bar")
+    head, *rows = table("friction force", *own_friction("bar")).splitlines()
+    rng = np.random.default_rng(0)
+    off = [
+        f"{row.rsplit(',', 1)[0]},{value}"
+        for row, value in zip(rows, rng.normal(size=len(rows)), strict=True)
+    ]
+    shuffled = [off[place] for place in rng.permutation(len(off))]
+    wanted = Beside(read_brought("\n".join([head, *off]), "a", settings), problem).of(reference)
+    for other in (shuffled, off + shuffled):
+        found = Beside(read_brought("\n".join([head, *other]), "b", settings), problem)
+        assert found.of(reference) == pytest.approx(wanted)
+
+
+def test_a_place_that_is_sampled_densely_counts_no_more_for_that() -> None:
+    coarse, fine = np.array([0.0, 0.5, 1.0]), np.array([0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0])
+    shares = [weights_of(x, np.zeros(len(x)))[x >= 0.75].sum() for x in (coarse, fine)]
+    assert shares[0] == pytest.approx(shares[1])
+    assert weights_of(fine, np.zeros(len(fine))).sum() == pytest.approx(1.0)
+
+
+def test_a_series_at_one_place_is_weighted_by_its_steps_in_time() -> None:
+    weights = weights_of(np.full(4, 0.5), np.array([0.0, 1.0, 3.0, 4.0]))
+    np.testing.assert_allclose(weights, [0.5, 1.5, 1.5, 0.5])
+
+
+def test_rows_that_one_of_both_does_not_cover_are_left_out() -> None:
+    settings, problem, reference = solved("bar")
+    x, t, values = own_friction("bar")
+    text = table("friction force", x, t, values)
+    # The clamped node shares its friction with the clamp, and the run is over after a second.
+    text += "\n0.0,0.5,1e9\n0.1,1.5,1e9\n0.1,-0.5,1e9"
+    brought = read_brought(text, "a.csv", settings)
+    beside = Beside(brought, problem)
+    assert beside.counted == len(brought.times) - 3
+    assert beside.of(reference) < 1e-12
+
+
+def test_a_run_that_has_become_shorter_than_all_of_it_is_at_no_known_distance() -> None:
+    brought = read_brought(HEAD + "0.1,0.9,1\n0.2,0.9,1\n0.3,1,1\n0.4,1,1\n", "a", settings_of())
+    problem = discretise(settings_of(duration=0.5))
+    beside = Beside(brought, problem)
+    assert beside.counted == 0
+    assert np.isnan(beside.of(reference_of(problem)))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        HEAD + ROWS,
+        "friction force,t,x\n1,0,0.1\n2,0.5,0.2\n3,0.5,0.3\n4,1,0.4\n",
+        "Mesh 7\nx [mm];t [s];Friction [kN/m]\n"
+        "100;0;0,001\n200;0,5;0,002\n300;0,5;0,003\n400;1;0,004\n",
+        "position\ttime\tstatus\tfriction_force\nm\ts\t\tN/m\n0.1\t0\tstick\t1\n"
+        "0.2\t0.5\t-\t2\n0.3\t0.5\t-\t3\n0.4\t1\t-\t4\n",
+    ],
+    ids=["plain", "other order", "spreadsheet", "further columns"],
+)
+def test_a_table_is_read_as_it_is_written(text: str) -> None:
+    brought = read_brought(text, "a.csv", settings_of())
+    np.testing.assert_allclose(brought.positions, [0.1, 0.2, 0.3, 0.4])
+    np.testing.assert_allclose(brought.times, [0.0, 0.5, 0.5, 1.0])
+    np.testing.assert_allclose(brought.values, [1.0, 2.0, 3.0, 4.0])
+    assert (brought.quantity, brought.scene) == ("friction force", "bar")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "name its columns in the first line"),
+        (ROWS, "name its columns in the first line"),
+        (HEAD, "none of its 0 rows lie in the run"),
+        ("x,friction force\n0.1,1\n", "no column t"),
+        ("t,displacement\n0.1,1\n", "no column x"),
+        ("x,t\n0.1,1\n", "neither friction force nor displacement"),
+        ("x,t,u,friction\n0.1,1,1,1\n", "both friction force and displacement"),
+        ("x,t,friction force [N]\n" + ROWS, r"says N: give it in N/m; divide nodal forces"),
+        ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
+        (HEAD + ROWS + "0.5,1,nan\n", "line 6 has 'nan' as friction force: leave such rows out"),
+        (HEAD + ROWS + "0.5,inf,1\n", "line 6 has 'inf' as t"),
+        (HEAD + ROWS + "0.5,much,1\n", "line 6 has 'much' as t: give a number"),
+        (HEAD + ROWS + "0.5,1\n", "line 6 has '' as friction force"),
+        (HEAD + ROWS + "7,1,1\n", r"line 6 has x = 7 m, outside of the body.*to 1 m"),
+        (HEAD + "0.1,0,1\n0.1,1,1\n0.1,2,1\n", r"2 of its 3 rows lie in the run.*at least 4"),
+        (HEAD + "0.1,0,1\n" * 20_001, "has 20001 rows, and may have 20000"),
+        (HEAD + "0.1,0,1\n" * 600_000, "more than 4 MB"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused_with_what_to_do(text: str, why: str) -> None:
+    with pytest.raises(SettingError, match=why) as caught:
+        read_brought(text, "theirs.csv", settings_of())
+    assert "theirs.csv" in str(caught.value)
+
+
+@pytest.mark.parametrize("scene", ["strand", "block"])
+def test_displacements_are_of_a_single_rod(scene: str) -> None:
+    with pytest.raises(SettingError, match="give the friction force here"):
+        read_brought("x,t,u\n" + ROWS, "theirs.csv", settings_of(scene))
+
+
+def test_friction_of_bodies_in_the_plane_is_a_traction() -> None:
+    with pytest.raises(SettingError, match="give it in Pa"):
+        read_brought("x,t,friction [N/m]\n0.01,0,1\n", "theirs.csv", settings_of("block"))
+    text = "x,t,friction [MPa]\n" + "0.01,0,1\n" * 4
+    assert read_brought(text, "theirs.csv", settings_of("block")).values[0] == 1e6
+
+
+def test_what_is_drawn_at_an_instant_is_the_nearest_of_theirs() -> None:
+    rows = np.array([[0.3, 0.5, 3.0], [0.1, 0.0, 1.0], [0.2, 0.5, 2.0], [0.5, 0.0, 4.0]])
+    brought = Brought("displacement", *rows.T, "a.csv", "bar")
+    time, x, values = brought.nearest(0.4)
+    assert (time, list(x), list(values)) == (0.5, [0.2, 0.3], [2.0, 3.0])
+    times, at_end = brought.at_end(0.5)
+    assert (list(times), list(at_end)) == ([0.0], [4.0])
+
+
+def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) -> None:
+    x, t, values = own_friction("bar")
+    path = tmp_path / "theirs.csv"
+    path.write_text(table("friction force", x, t, 1.25 * values))
+    sizes = [f"--set={name}={value}" for name, value in SMALL["bar"].items()]
+    assert main(["compare", "bar", *sizes, "--with", str(path)]) == 0
+    rows = values.size
+    assert capsys.readouterr().out == (
+        f"friction force: 20 % from theirs.csv, at {rows} of {rows} rows\n"
+    )
+    assert main(["compare", "bar", *sizes, "--with", str(path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["distance"] == pytest.approx(0.2)
+    assert (found["interface"], found["rows_compared"]) == ("friction", rows)
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (["--with", "/no/such.csv"], "No such file"),
+        (["--with", "{}", "--interface", "ceiling"], "allowed: friction"),
+    ],
+)
+def test_the_command_refuses_in_words(options: Any, why: str, tmp_path: Any, capsys: Any) -> None:
+    path = tmp_path / "theirs.csv"
+    path.write_text(HEAD + ROWS)
+    assert main(["compare", "bar", *(one.format(path) for one in options)]) == 2
+    assert why in capsys.readouterr().err
