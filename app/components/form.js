@@ -33,7 +33,32 @@ export function render({model}) {
     row.show = (text) => { words.textContent = say(text) }
     return [words]
   }
-  Object.assign(kinds, {checks, scenes, note})
+  const table = (row, item) => {
+    const send = async (file) => {
+      if (file) { tell(row, [file.name, decoded(await file.arrayBuffer())]) }
+    }
+    const input = called(item, make("input", {type: "file", accept: ".csv,.txt"}))
+    input.onchange = async () => {
+      await send(input.files[0])
+      input.value = ""
+    }
+    const name = make("b"), remove = make("button", {type: "button", className: "wide",
+      title: say("Take them away."), onclick: () => tell(row, null)}, say("Remove"))
+    const kept = make("div", {className: "typed"}, name, remove)
+    const place = make("div", {}, make("label", {}, say(item.label), input), kept)
+    // Dropped anywhere here, and not on the field alone.
+    place.ondragover = (event) => event.preventDefault()
+    place.ondrop = (event) => {
+      event.preventDefault()
+      send(event.dataTransfer.files[0])
+    }
+    row.show = (value) => {
+      name.textContent = value
+      kept.hidden = !value
+    }
+    return [place]
+  }
+  Object.assign(kinds, {checks, scenes, note, table})
   // Nouns of other languages may keep their capitals.
   const small = (text) => globalThis.slipfrontWords ? text : text.toLowerCase()
   const TYPED = "Enter types a value; Delete, or a double click, brings back the usual one."

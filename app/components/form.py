@@ -76,6 +76,8 @@ td input { width: 100%; padding: 3px 4px; }
 td input:invalid { border-color: #D55E00; }
 button { width: 26px; cursor: pointer; }
 button.wide { width: auto; padding: 4px 12px; margin: 4px 6px 8px 0; }
+.typed[hidden] { display: none; }
+.typed b { overflow: hidden; text-overflow: ellipsis; }
 input[type=file] { display: block; width: 100%; margin-top: 4px; font: inherit; }
 svg.path { display: block; width: 100%; touch-action: none; cursor: crosshair; }
 svg.path circle { cursor: grab; }

@@ -34,7 +34,7 @@ SEEN = "What is seen"
 
 # None of these is the name of a setting.
 SCENE, LESSON, WARM = "the-scene", "the-lesson", "start-from-before"
-VIEWS, COMPARE, NOTE = "the-views", "compare", "note"
+VIEWS, COMPARE, BROUGHT, NOTE = "the-views", "compare", "brought", "note"
 SCENE_ITEM: dict[str, Any] = {
     "name": SCENE,
     "kind": "scenes",
@@ -59,6 +59,17 @@ COMPARE_ITEM: dict[str, Any] = {
     "help": "Two runs in step, on the same axes. Keep the present settings as run A and change "
     "those of run B, or choose a pair.",
     "options": [[title, name] for title, name in CHOICES.items()],
+    "sheet": SEEN,
+    "group": "Second run",
+}
+BROUGHT_ITEM: dict[str, Any] = {
+    "name": BROUGHT,
+    "kind": "table",
+    "label": "Results of another program",
+    "help": "Drop or choose a table (.csv) whose first line names x, t, and friction force or "
+    "displacement (m, s, N/m, or Pa of bodies in the plane), at any points and instants. They are "
+    "drawn beside the run, and their distance to it is told. They stay with this scene until they "
+    "are removed, or the page is closed.",
     "sheet": SEEN,
     "group": "Second run",
 }
@@ -106,7 +117,7 @@ def items(settings: type[Settings]) -> list[dict[str, Any]]:
     after = max(place for place, item in enumerate(how) if item["group"] == METHOD) + 1
     how.insert(after, WARM_ITEM)
     first = [item for name in chief if (item := item_of(name, definitions[name]))]
-    others = [COMPARE_ITEM, UNITS_ITEM, VIEWS_ITEM, LESSON_ITEM]
+    others = [COMPARE_ITEM, BROUGHT_ITEM, UNITS_ITEM, VIEWS_ITEM, LESSON_ITEM]
     return [NOTE_ITEM, SCENE_ITEM, *first, *what, *how, *others]
 
 

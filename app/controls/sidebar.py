@@ -9,6 +9,7 @@ from typing import Any
 from app.components.form import ENDS, NAMED, POINTS, UNITS, USUAL, Form, shown_value
 from app.controls.comparing import choice_of, pair
 from app.controls.items import (
+    BROUGHT,
     COMPARE,
     LESSON,
     NOTE,
@@ -21,7 +22,9 @@ from app.controls.refusals import last_that_holds, refused
 from app.picture.usual import usual_value
 from app.reports.report import Report
 from app.session.session import Session
+from app.session.uploads import brought_in
 from app.views.catalogue import drawn, fitting
+from app.wire.orders import Bring
 from solver.definitions import SettingError, about
 from solver.phrases import joined
 from solver.scenes import ends_of, points_of
@@ -63,7 +66,7 @@ class Sidebar:
         self._heard = self._answered = 0.0
         self.view = Form(sizing_mode="stretch_width", margin=(4, 10))
         self.view.on_msg(lambda message: self.hear(**message.data))
-        shown = ["wanted", "twin", "warm_start", "chosen", "lesson", "refusal"]
+        shown = ["wanted", "twin", "brought", "warm_start", "chosen", "lesson", "refusal"]
         session.param.watch(lambda *events: self._show(), shown)
         session.param.watch(self._on_look, "look")
         self._show()
@@ -81,7 +84,7 @@ class Sidebar:
         """Show the settings that hold."""
         session = self._session
         settings: Settings = session.wanted
-        definitions, lesson = settings.definitions(), session.lesson
+        definitions, lesson, brought = settings.definitions(), session.lesson, session.brought
         acting = (
             [name for name, one in definitions.items() if about(one).applies(settings)]
             if self._report is None
@@ -94,6 +97,7 @@ class Sidebar:
             SCENE: settings.scene,
             LESSON: lesson.name if lesson else "",
             COMPARE: choice_of(session.twin, settings),
+            BROUGHT: brought.source if brought and brought.scene == settings.scene else "",
             WARM: session.warm_start,
             VIEWS: [views, seen],
             UNITS: session.look.units,
@@ -127,6 +131,8 @@ class Sidebar:
             self._teach(value)
         elif name == COMPARE:
             self._on_compare(value)
+        elif name == BROUGHT:
+            self._on_brought(value)
         elif name == WARM:
             self._session.warm_start = value
         elif name == VIEWS:
@@ -197,6 +203,19 @@ class Sidebar:
                 session.start(settings)
         except SettingError as refusal:
             session.refusal = refused(refusal, session.wanted, units=session.look.units)
+        self._answer()
+
+    def _on_brought(self, file: tuple[str, str | None] | None) -> None:
+        """Lay results of another program beside the runs of this scene, or take them away."""
+        self.obey()
+        session = self._session
+        try:
+            found = brought_in(*file, session.wanted) if file else None
+        except SettingError as refusal:
+            session.refusal = refused(refusal, session.wanted, units=session.look.units)
+        else:
+            session.brought, session.refusal = found, ""
+            session.worker.send(Bring(found))
         self._answer()
 
     def _let_go(self, name: str) -> None:

@@ -20,7 +20,7 @@ from app.session.state import State
 from app.session.turns import Turns
 from app.session.uploads import cut_off
 from app.wire.block import said
-from app.wire.orders import Pace, Rate, Ready, Run, Seek, Step, Watch
+from app.wire.orders import Bring, Pace, Rate, Ready, Run, Seek, Step, Watch
 from app.wire.reports import Died, Facts, Picture
 from app.worker.link import Link
 from app.worker.words import REPLAYED
@@ -275,7 +275,7 @@ class Session(State):
     def _work(self, *, notice: str = "", **how: bool) -> None:
         """Have a process do the run from its beginning."""
         notices = AGAIN if self.worker.deaths else notice, cut_off(self.settings)
-        self.worker.begin(Watch(self.look), Ready())
+        self.worker.begin(Watch(self.look), Bring(self.brought), Ready())
         self.worker.send(
             Run(
                 self.ticket,

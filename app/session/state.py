@@ -18,6 +18,7 @@ from app.wire.orders import WHOLE, Rate
 from app.wire.reports import Facts
 from solver.lessons.lesson import Lesson
 from solver.settings import Settings
+from solver.study.brought import Brought
 
 WHAT_IF = "What if"
 TABS = ("Live", WHAT_IF, "Figures", "Study", "Stability")
@@ -40,6 +41,9 @@ class State(param.Parameterized):
     wanted = param.Parameter[Settings](doc="Those that the user sees: of this run, or of the next.")
     twin = param.Parameter[Settings | None](
         doc="Of run A, which goes in step with this one as run B, from the next start on."
+    )
+    brought = param.Parameter[Brought | None](
+        doc="Results of another program, which are laid beside the runs of their scene."
     )
     ticket = param.Integer(default=0, doc="Number of the run; 0 before the first.")
     facts = param.Parameter[Facts | None](doc="What its newest picture says, once there is one.")

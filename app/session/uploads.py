@@ -1,4 +1,4 @@
-"""Files of a user: a table of points for a load path is brought, settings are saved."""
+"""Files of a user: load paths and results of other programs are brought, settings are saved."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from solver.checked import dump
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables
 from solver.settings import Settings
+from solver.study.brought import CAN, Brought, read_brought
 from solver.tables import heads_of, read_table
 
 WARM_NOTE = """\
@@ -20,6 +21,19 @@ WARM_NOTE = """\
 def saved(settings: Settings, *, was_warm: bool) -> str:
     """Write a settings file, of a run that may have started from the run before it."""
     return (WARM_NOTE if was_warm else "") + dump(settings)
+
+
+def brought_in(source: str, text: str | None, settings: Settings) -> Brought:
+    """Read results of another program; nothing stands for what is no text.
+
+    Raises
+    ------
+    SettingError
+        As `read_brought`.
+    """
+    if text is None:
+        raise SettingError("the results", source, CAN, "it is no text: save the table as CSV")
+    return read_brought(text, source, settings)
 
 
 def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:

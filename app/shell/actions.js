@@ -2,16 +2,10 @@ export function render({model}) {
   const tell = (kind, value = "") => model.send_msg({kind, value})
   const wide = (text, title, onclick) =>
     make("button", {type: "button", className: "wide", title: say(title), onclick}, say(text))
-  const text = (bytes) => {
-    try { return new TextDecoder("utf-8", {fatal: true}).decode(bytes) } catch {}
-    // Spreadsheets write letters as old Windows did; no text has zeros.
-    const isText = !new Uint8Array(bytes).includes(0)
-    return isText ? new TextDecoder("windows-1252").decode(bytes) : null
-  }
   const upload = make("input", {type: "file", accept: ".toml,.csv"})
   upload.onchange = async () => {
     const [file] = upload.files
-    if (file) { tell("open", [file.name, text(await file.arrayBuffer())]) }
+    if (file) { tell("open", [file.name, decoded(await file.arrayBuffer())]) }
     upload.value = ""
   }
   const share = menu("Share", "The link to what stands here; settings to and from a file.",

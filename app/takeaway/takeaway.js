@@ -38,7 +38,10 @@ export function render({model}) {
   })
   model.on("file", () => {
     const [name, text] = model.file
-    save(name, new Blob([text], {type: "text/plain"}))
+    // What is no text comes in base 64.
+    const isText = !name.endsWith(".hdf5")
+    const content = isText ? text : Uint8Array.from(atob(text), (one) => one.charCodeAt(0))
+    save(name, new Blob([content], {type: isText ? "text/plain" : "application/x-hdf5"}))
   })
   const show = () => {
     const {value} = plots
@@ -64,5 +67,8 @@ export function render({model}) {
     button("HTML", "Save this run as one file for a browser, which needs no network: the plots that " +
       "are seen, at all instants, and the numbers.", () => tell("table", "page")),
     button("Python", "Save a program that gives the numbers of this run again.",
-      () => tell("program")))
+      () => tell("program")),
+    ...(model.fclib ? [button("FCLIB", "Save the contact problem of the chosen instant as a local " +
+      "problem in FCLIB's format (HDF5), for other solvers such as Siconos.",
+      () => tell("table", "fclib"))] : []))
 }

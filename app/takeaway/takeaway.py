@@ -20,6 +20,7 @@ from app.wire.orders import Tabulate
 from app.wire.reports import Facts
 from app.worker.painter import TAKE_AWAY
 from app.worker.tables import TABLES
+from solver.study.fclib import can_write
 
 MOST_PICTURES = 60
 """Of an animation."""
@@ -41,6 +42,8 @@ class TakeAway(Plain):
         Name and text to be saved, and a number that tells it from those before.
     caption
         Which run and moment is seen; pictures bring it.
+    fclib
+        Whether an instant can be saved for other solvers.
     shot
         Number of the picture to be taken for an animation; 0 when all of them are.
     """
@@ -49,6 +52,7 @@ class TakeAway(Plain):
     tables = param.List(default=list(TABLES))
     file = param.List(default=[])
     caption = param.String(default="")
+    fclib = param.Boolean(default=False)
     shot = param.Integer(default=0)
 
     _esm = script(
@@ -101,7 +105,7 @@ class Saver:
         self._session = session
         self._count = 0
         self._film: Film | None = None
-        self.view = TakeAway(name=TAKE_AWAY, margin=0)
+        self.view = TakeAway(name=TAKE_AWAY, fclib=can_write(), margin=0)
         self.view.on_msg(lambda message: self.hear(**message.data))
         session.param.watch(lambda *events: self._follow(), ["facts", "ticket"])
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.views import brought
 from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
@@ -42,7 +43,9 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     if run.reference is not None:
         curves.append(Curve(places, run.reference.friction[:, instant], ORANGE, 4.5))
     curves.append(Curve(places, scene.frame.fields.friction[:, instant], BLUE))
-    return Drawing(x, y, curves, keys=(*keys, Key(GREY, "dashed", "±μp")), kept=limits)
+    theirs, more = brought.along(scene)
+    keys += [*more, Key(GREY, "dashed", "±μp")]
+    return Drawing(x, y, [*curves, *theirs], keys=keys, kept=limits)
 
 
 def _limits(scene: Scene, bound: float, kept: Limits | None) -> Limits:
@@ -50,7 +53,7 @@ def _limits(scene: Scene, bound: float, kept: Limits | None) -> Limits:
     shown = [scene.frame.fields.friction]
     if scene.ghost is not None:
         shown.append(scene.ghost[1].friction)
-    largest = max(float(np.abs(one).max()) for one in shown)
+    largest = max(float(np.abs(one).max()) for one in [*shown, *brought.friction_of(scene)])
     if largest <= ROOM * bound:
         return -ROOM * bound, ROOM * bound
     return held(kept, -largest, largest)

@@ -10,6 +10,7 @@ import numpy as np
 from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.shown import Axes
+from app.views import brought
 from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
 from app.views.drawing import Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
@@ -27,7 +28,13 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     run, begun, axes = scene.run, scene.run.stand, scene.run.stand.loop
     now = _pair(run, scene.frame.fields)
     ghost = _newest(scene.before, axes) if scene.before is not None else None
-    limits = _limits(run, [now, ghost] if ghost else [now], kept)
+    theirs, more = brought.at_end(scene)
+    pairs = [
+        now,
+        *([ghost] if ghost else []),
+        *((np.asarray(o.x), np.asarray(o.y)) for o in theirs),
+    ]
+    limits = _limits(run, pairs, kept)
     x, y = (
         spanned(*one, label=title, unit=unit)
         for (title, unit), one in zip((axes.across, axes.up), limits, strict=True)
@@ -40,11 +47,11 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
         keys.append(Key(GHOST, "line", scene.ghost_name))
     if run.reference is not None:
         curves.append(Curve(*_pair(run, run.reference), ORANGE, 4.5))
-    curves.append(Curve(*now, BLUE))
+    curves += [Curve(*now, BLUE), *theirs]
     time = begun.instants[scene.instant]
     at = [float(np.interp(time, begun.all_instants, one)) for one in now]
     point = replace(POINT, x=at[:1], y=at[1:])
-    return Drawing(x, y, curves, (point,), keys=keys, kept=limits)
+    return Drawing(x, y, curves, (point,), keys=[*keys, *more], kept=limits)
 
 
 def _limits(

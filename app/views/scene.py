@@ -11,6 +11,7 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, instant_of
 from solver.phrases import Phrase
+from solver.study.beside import Beside
 
 
 @dataclass(frozen=True)
@@ -33,6 +34,8 @@ class Scene:
         Whether `before` is a run A, which goes in step with the run at work, B.
     shadow
         The iterate of `before` that is drawn beside that of the run at work.
+    beside
+        Results of another program, laid beside the run; None where there are none of its scene.
     bathtub
         Iterations over k of the runs that are like the one at work; None beside a run A.
     """
@@ -45,6 +48,7 @@ class Scene:
     look: Look
     is_paired: bool = False
     shadow: Frame | None = None
+    beside: Beside | None = None
     bathtub: Bathtub | None = None
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.frames import DrawnFields
+from app.views import brought
 from app.views.colors import BLUE, GREY, ORANGE, PURPLE
 from app.views.drawing import POSITION, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
@@ -30,6 +31,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     top = float(bound.max())
     drawn = [now, scene.ghost[1]] if scene.ghost is not None else [now]
     shown = [one for each in drawn for one in (each.pressure, each.friction) if one is not None]
+    shown += brought.friction_of(scene)
     low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
     limits = held(kept, min(low, -top), max(high, top))
     y = spanned(*limits, label="Traction", unit="Pa")
@@ -45,8 +47,9 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         curves += _pair(places, run.reference, instant, ORANGE, width=4.5)
     for sign in (1.0, -1.0):
         curves.append(Curve(places, sign * bound[:, instant], GREY, 1.5, "dashed"))
-    curves += _pair(places, now, instant)
-    return Drawing(along(0.0, scene.length), y, curves, keys=(*keys, *past), kept=limits)
+    theirs, more = brought.along(scene)
+    curves += [*_pair(places, now, instant), *theirs]
+    return Drawing(along(0.0, scene.length), y, curves, keys=(*keys, *past, *more), kept=limits)
 
 
 def _pair(

@@ -7,6 +7,7 @@ from typing import Literal
 
 from app.picture.shown import Look
 from solver.settings import Settings
+from solver.study.brought import Brought
 
 WHOLE: Literal["whole"] = "whole"
 """The pace at which a search lasts three seconds, however many iterations it takes."""
@@ -108,13 +109,26 @@ class Tabulate:
     Attributes
     ----------
     what
-        One of `app.worker.tables.TABLES`, or `app.worker.offline.OFFLINE`.
+        One of `app.worker.saving.KINDS`.
     number
         Tells it from those before.
     """
 
     what: str
     number: int
+
+
+@dataclass(frozen=True)
+class Bring:
+    """Lay results of another program beside the runs of their scene, or take them away.
+
+    Attributes
+    ----------
+    brought
+        They travel this once; None takes those away that there were.
+    """
+
+    brought: Brought | None
 
 
 @dataclass(frozen=True)
@@ -136,4 +150,4 @@ class Ready:
     whole: bool = False
 
 
-Order = Run | Pace | Step | Seek | Watch | Tabulate | Ready
+Order = Run | Pace | Step | Seek | Watch | Tabulate | Bring | Ready

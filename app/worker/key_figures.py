@@ -70,7 +70,21 @@ def _of_the_thing(scene: Scene) -> str:
         how = f'<span class="how">{say(_in_short(run, iteration))}</span>'
         words = "".join(f"<span>{explained(one, say=say)}</span>" for one in said)
         found.append(f'<div class="thing">{words}{how}</div>')
-    return "".join(found)
+    return "".join(found) + _from_theirs(scene)
+
+
+def _from_theirs(scene: Scene) -> str:
+    """Say how far it is from results of another program that lie beside it (HTML)."""
+    beside, say = scene.beside, scene.look.say
+    if beside is None:
+        return ""
+    brought, distance = beside.brought, beside.of(scene.frame.iterate)
+    name = f"<i>{escape(brought.source)}</i>"
+    far = f"<b>{percent(distance)}</b>" if math.isfinite(distance) else say("nothing to compare")
+    of = say(brought.quantity.capitalize())
+    words = f"<span>{say('Distance to')} {name}: {of} {far}</span>"
+    rows = say(Phrase("{} of {} rows", beside.counted, len(brought.times)))
+    return f'<div class="thing">{words}<span class="how">{rows}</span></div>'
 
 
 def thing(run: Recording, frame: Frame) -> dict[str, str]:

@@ -16,16 +16,17 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, Manner, instant_of, thinned
 from app.views.scene import Scene
-from app.wire.orders import Order, Ready, Run, Seek, Tabulate, Watch
+from app.wire.orders import Bring, Order, Ready, Run, Seek, Tabulate, Watch
 from app.wire.reports import Facts, File, Picture
 from app.worker.key_figures import key_figures
-from app.worker.offline import MOST_INSTANTS, OFFLINE, offline_page
+from app.worker.laid import Laid
+from app.worker.offline import MOST_INSTANTS, offline_page
 from app.worker.painter import TAKE_AWAY, Painter
 from app.worker.rivals import KeptReferences
 from app.worker.run import WorkerRun
-from app.worker.tables import table
+from app.worker.saving import file_of
 from app.worker.twin import Twin
-from app.worker.words import before_a_run, before_it_is_agreed, status_line
+from app.worker.words import before_a_run, before_it_is_agreed, status_line, why_it_broke
 from solver.latin import Iterate
 from solver.phrases import Phrase
 from solver.refusal import RefusedError
@@ -60,6 +61,7 @@ class PageRuns:
         self._shadow: Frame | None = None
         self._past: deque[Recording] = deque(maxlen=PAST_RUNS)
         self._bathtub: Bathtub | None = None
+        self._laid = Laid()
         self._table: Tabulate | None = None
         self._paint_at: float | None = None
 
@@ -105,8 +107,11 @@ class PageRuns:
                 self._paint_at = time.monotonic() + order.rest
             case Watch():
                 self._watch(order.look)
-            case Tabulate():
-                self._table = order
+            case Tabulate() | Bring():
+                if isinstance(order, Tabulate):
+                    self._table = order
+                else:
+                    self._laid.brought = order.brought
                 if run is not None:
                     run.has_news = True
             case _ if run is not None and run.ticket == order.ticket:
@@ -206,14 +211,15 @@ class PageRuns:
         self._send(Picture(run.ticket, facts, block, self._in_others(told)))
         if (asked := self._table) is not None:
             self._table = None
-            name = f"slipfront-{recording.settings.scene}"
-            file = (
-                [f"{name}.html", self._offline(run, scene)]
-                if asked.what == OFFLINE
-                else [f"{name}-{asked.what}.csv", table(asked.what, scene)]
-            )
-            block = self._painter.say({}, {TAKE_AWAY: {"file": [*file, asked.number]}})
-            self._send(File(block))
+            self._send(File(self._saved(asked, run, scene)))
+
+    def _saved(self, asked: Tabulate, run: WorkerRun, scene: Scene) -> bytes:
+        """Give a file to be saved, or say why there is none."""
+        try:
+            file = file_of(asked.what, scene, lambda: self._offline(run, scene))
+        except RefusedError as refusal:
+            return self._painter.say({"status": Phrase("<b>{}</b>", escape(str(refusal)))})
+        return self._painter.say({}, {TAKE_AWAY: {"file": [*file, asked.number]}})
 
     def _offline(self, run: WorkerRun, scene: Scene) -> str:
         """Write a page of what is looked at, at all instants."""
@@ -246,6 +252,7 @@ class PageRuns:
             look,
             is_paired=twin is not None,
             shadow=shadow,
+            beside=self._laid.beside(frame, run.recording.settings),
             bathtub=None if twin else grown(self._bathtub, run.recording),
         )
 
@@ -264,7 +271,7 @@ class PageRuns:
             self._run = None
             if not isinstance(problem, RefusedError | FloatingPointError):
                 _log.exception("A run broke.")
-            words = Phrase("<b>{}</b>", escape(_sentence(problem)))
+            words = Phrase("<b>{}</b>", escape(why_it_broke(problem)))
             self._send_words(ticket, Facts(is_broken=True), words)
 
     def _send_words(self, ticket: int, facts: Facts, words: str) -> None:
@@ -284,12 +291,3 @@ class PageRuns:
         return {
             one: told(painter, self._look.told_in(one)) for one, painter in self._others.items()
         }
-
-
-def _sentence(problem: Exception) -> str:
-    if isinstance(problem, RefusedError | FloatingPointError):
-        return str(problem)
-    return (
-        f"The run broke ({type(problem).__name__}: {problem}). Change a setting, or lower the "
-        "numbers of elements and instants."
-    )

@@ -15,6 +15,7 @@ from app.picture.units import power
 from solver.latin import Ending
 from solver.latin.run_cost import RunCost
 from solver.phrases import Phrase, joined
+from solver.refusal import RefusedError
 
 ENDINGS = {
     Ending.CONVERGED: "✓ converged",
@@ -182,3 +183,13 @@ def percent(value: float) -> str:
     if value >= 1.0:
         return f"{100.0 * value:.0f} %" if value < 100.0 else f"{number(100.0 * value)} %"
     return f"{100.0 * value:.2g} %" if value >= 1e-4 else f"{number(100.0 * value)} %"
+
+
+def why_it_broke(problem: Exception) -> str:
+    """Say why a run is over before it has ended."""
+    if isinstance(problem, RefusedError | FloatingPointError):
+        return str(problem)
+    return (
+        f"The run broke ({type(problem).__name__}: {problem}). Change a setting, or lower the "
+        "numbers of elements and instants."
+    )
