@@ -101,3 +101,16 @@ def test_it_stays_with_its_scene_and_follows_what_is_set(
     expect(far(page)).to_have_count(0)
     choose_scene(page, CATALOGUE["bar"].title)
     expect(far(page)).to_contain_text("20 %")
+
+
+def test_an_instant_is_saved_for_other_solvers(open_page: Visit) -> None:
+    h5py = pytest.importorskip("h5py")
+    page = open_page("?scene=block&elements=16&elements_up=6&instants=13&plots=Contact+tractions")
+    expect(status(page)).to_contain_text("certified")
+    press(page, "Take away")
+    with page.expect_download() as download:
+        press(page, "FCLIB")
+    assert download.value.suggested_filename == "slipfront-block.hdf5"
+    with h5py.File(download.value.path()) as file:
+        assert file["fclib_local/vectors/mu"].shape == (17,)
+        assert file["fclib_local/W/m"][0] == 34

@@ -104,7 +104,8 @@ class Form(Plain):
     shown = param.Dict(default={})
 
     _esm = LADDERS_SCRIPT + script(
-        "say.js", "elements.js", "values.js", "points.js", "controls.js", "form.js"
+        *("say.js", "elements.js", "values.js", "points.js", "controls.js", "decoded.js"),
+        "form.js",
     )
     _stylesheets: ClassVar[list[str]] = [STYLE]
 

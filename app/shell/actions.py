@@ -49,7 +49,9 @@ class ActionBar(Plain):
     scene = param.String(default="")
     file = param.List(default=[])
 
-    _esm = script("say.js", "elements.js", "menu.js", "shell/runs.js", "shell/actions.js")
+    _esm = script(
+        *("say.js", "elements.js", "menu.js", "decoded.js"), "shell/runs.js", "shell/actions.js"
+    )
     _stylesheets: ClassVar[list[str]] = [STYLE, MENU]
 
 
