@@ -98,10 +98,22 @@ def test_a_solver_of_the_file_alone_finds_the_reactions_of_the_reference(scene, 
         assert f"t = {problem.instants[instant]:.6g} s".encode() in words["title"]
 
 
-@pytest.mark.parametrize("scene", SMALL)
-def test_the_solution_in_it_obeys_signorini_and_coulomb(scene):
-    problem = problem_of(scene)
+@pytest.mark.parametrize(
+    ("scene", "changes", "points"),
+    [
+        ("block", {}, 17),
+        ("layers", {}, 10),
+        # The corner's opening is free, its slip prescribed: W has a row of zeros.
+        ("block", {"left": "roller"}, 17),
+        # The corner is held: it shares its force with what holds it, and is left out.
+        ("block", {"left": "clamped"}, 16),
+    ],
+    ids=str,
+)
+def test_the_solution_in_it_obeys_signorini_and_coulomb(scene, changes, points):
+    problem = problem_of(scene, **changes)
     reference, contacts = reference_of(problem), contacts_of(problem)
+    assert len(contacts.friction) == points
     for instant in INSTANTS:
         local = local_problem(contacts, reference, instant, scene, certified=True)
         opening, slip = local.move[::2], local.move[1::2]

@@ -63,6 +63,22 @@ def test_friction_is_drawn_and_its_distance_is_told_until_it_is_removed(
     expect(card(page, "Friction force")).not_to_contain_text(".csv")
 
 
+def test_a_file_may_be_dropped(page: Page, theirs: dict[str, Path]) -> None:
+    open_sheets(page)
+    page.locator(".setting-brought").get_by_text(FIELD).first.evaluate(
+        """(place, text) => {
+          const dataTransfer = new DataTransfer()
+          dataTransfer.items.add(new File([text], "dropped.csv"))
+          const more = {dataTransfer, bubbles: true, cancelable: true}
+          place.dispatchEvent(new DragEvent("drop", more))
+        }""",
+        theirs["friction force"].read_text(),
+    )
+    expect(far(page)).to_contain_text("dropped.csv")
+    press(page, "Remove")
+    expect(far(page)).to_have_count(0)
+
+
 def test_a_displacement_is_drawn_at_the_loaded_end(page: Page, theirs: dict[str, Path]) -> None:
     open_sheets(page)
     field(page).set_input_files(theirs["displacement"])
