@@ -218,7 +218,8 @@ class PageRuns:
         try:
             file = file_of(asked.what, scene, lambda: self._offline(run, scene))
         except RefusedError as refusal:
-            return self._painter.say({"status": Phrase("<b>{}</b>", escape(str(refusal)))})
+            said = f"{refusal.name}: {refusal.value}; {refusal.remedy}."
+            return self._painter.say({"status": Phrase("<b>{}</b>", escape(said))})
         return self._painter.say({}, {TAKE_AWAY: {"file": [*file, asked.number]}})
 
     def _offline(self, run: WorkerRun, scene: Scene) -> str:

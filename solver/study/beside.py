@@ -103,13 +103,16 @@ class Beside:
 
 def weights_of(positions: Array, times: Array) -> Array:
     """Give what every row counts, as above, shape (n_rows,)."""
-    found = np.zeros(len(times))
-    instants, number = np.unique(times, return_inverse=True)
-    for instant, weight in enumerate(_halves(instants)):
-        rows = np.flatnonzero(number == instant)
-        rows = rows[np.argsort(positions[rows], kind="stable")]
-        own = _halves(positions[rows])
-        found[rows] = weight * own / own.sum()
+    order = np.lexsort((positions, times))
+    instants, number = np.unique(times[order], return_inverse=True)
+    own = _halves(positions[order], np.diff(number) == 0)
+    lengths = np.bincount(number, own, len(instants))
+    # All points of an instant may be one.
+    own[lengths[number] == 0.0] = 1.0
+    lengths = np.bincount(number, own, len(instants))
+    over_time = _halves(instants) if len(instants) > 1 else np.ones(len(instants))
+    found = np.empty(len(times))
+    found[order] = over_time[number] * own / lengths[number]
     return found
 
 
@@ -129,9 +132,10 @@ def _between(grid: Array, places: Array) -> tuple[Indices, Indices, Array]:
     return lower, upper, np.clip(share, 0.0, 1.0)
 
 
-def _halves(places: Array) -> Array:
-    """Give half of the distances to the neighbours, of places that rise; 1 where all are one."""
-    if len(places) < 2 or places[0] == places[-1]:
-        return np.ones(len(places))
-    steps = np.diff(places)
-    return 0.5 * (np.append(steps, 0.0) + np.insert(steps, 0, 0.0))
+def _halves(places: Array, joined: NDArray[np.bool_] | bool = True) -> Array:
+    """Give half of the distances to the neighbours, of places that rise where they are joined."""
+    steps = np.diff(places) * joined
+    found = np.zeros(len(places))
+    found[:-1] += 0.5 * steps
+    found[1:] += 0.5 * steps
+    return found
