@@ -11,7 +11,7 @@ from solver.definitions import SettingError
 from solver.disk import read_text, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
-from solver.scenes import discretise
+from solver.prepared import prepared
 from solver.scenes.method import method_of
 from solver.study.beside import Beside
 from solver.study.brought import CAN, FEWEST, FRICTION, read_brought
@@ -37,7 +37,7 @@ def _compare(chosen: argparse.Namespace) -> int:
     except (OSError, ValueError) as problem_there:
         raise SettingError("--with", str(chosen.file), CAN, why(problem_there)) from None
     brought = read_brought(text, chosen.file.name, settings)
-    problem = discretise(settings)
+    problem = prepared(settings, chosen.changes)
     if chosen.interface and chosen.interface not in problem.rubbing:
         known = ", ".join(problem.rubbing)
         raise SettingError("--interface", chosen.interface, known, "choose one of these")

@@ -11,7 +11,7 @@ from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
-from solver.scenes import discretise
+from solver.prepared import prepared
 from solver.scenes.method import method_of
 from solver.study.fclib import (
     check_writer,
@@ -43,7 +43,7 @@ def _fclib(chosen: argparse.Namespace) -> int:
         check_place(chosen.out)
     except OSError as problem_there:
         raise _refused(chosen.out, problem_there) from None
-    problem = discretise(settings)
+    problem = prepared(settings, chosen.changes)
     instants = problem.instants
     time = float(instants[-1]) if chosen.instant is None else chosen.instant
     contacts, instant = contacts_of(problem), instant_at(time, instants)

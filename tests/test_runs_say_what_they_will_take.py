@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ from solver.latin import run_cost as costs
 from solver.latin.run_cost import LARGE, LONG, RunCost, run_cost
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
+from solver.study import fclib
 
 LONG_ONES: dict[str, dict[str, Any]] = {
     "strand": {"wires": 200},
@@ -103,6 +105,27 @@ def test_the_command_says_it_in_one_line(
     line = capsys.readouterr().err
     assert line.startswith("slipfront: this will take about ")
     assert line.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", ["compare", "fclib"])
+def test_commands_that_run_a_scene_for_others_say_it_too(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    command: str,
+) -> None:
+    monkeypatch.setattr(costs, "LONG", 0.0)
+    monkeypatch.setattr(fclib, "can_write", lambda: True)
+    theirs = tmp_path / "theirs.csv"
+    theirs.write_text("x,t,friction force\n" + "0.01,0.5,1\n" * 4)
+    scene, *options = {
+        "compare": ("bar", "--with", str(theirs)),
+        "fclib": ("incline", "--out", str(tmp_path / "one.hdf5")),
+    }[command]
+    main([command, scene, *options, "--set", "pgd_modes=3"])
+    idle, line, *_ = capsys.readouterr().err.splitlines()
+    assert "pgd_modes does nothing" in idle
+    assert line.startswith("slipfront: this will take about ")
 
 
 def test_the_command_says_what_no_reference_would_save(
