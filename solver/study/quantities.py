@@ -14,14 +14,14 @@ from solver.reduction.svd import InterfaceField
 from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study import contact_measures, measures
+from solver.study.clip_measures import OF_CLIPS
 from solver.study.cycle_measures import OF_CYCLES
 from solver.study.finished import FinishedRun
-from solver.study.quantity import Parameter, Quantity
+from solver.study.quantity import WITHIN, Parameter, Quantity
 
 ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
 CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
-WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 
 
 def _with_bases(settings: Settings) -> bool:
@@ -159,6 +159,7 @@ _ALL = (
         WITHIN,
         applies=_on_rods,
     ),
+    *OF_CLIPS,
     Quantity("peak_displacement", "Largest displacement", "m", measures.peak_displacement),
     Quantity("peak_friction", "Largest friction, all points", "N", measures.peak_friction),
     Quantity(

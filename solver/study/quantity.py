@@ -32,6 +32,10 @@ class Parameter:
     needed: bool = False
 
 
+WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
+"""An error that is to be reached."""
+
+
 @dataclass(frozen=True, eq=False)
 class Quantity:
     """A number that a finished run has.

@@ -1,0 +1,217 @@
+"""A friction field as clips with memory, two vectors a branch of the load (solver/README.md, 16).
+
+A slip front is no sum of a few products, but a fixed function of one: as in the Front Transport
+Reduction of P. Krah and others (J. Sci. Comput. 96, 28, 2023). The function here is the clip of the
+local stage; its stops are the bound, and the friction that the last reversal of the load left
+behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.reduction.ramps import BELOW, Seen, fitted
+from solver.reduction.svd import Decomposition, decompose
+
+FADED = 1e-9
+"""Share of its largest value that the bound is not taken to be below, where the load is divided by
+it: an instant without any counts for nothing."""
+SAME_SHAPE = 1e-9
+"""Share of the largest bound by which one that changes in size alone may differ from that."""
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """Instants between two reversals of the load, and the argument of their clip.
+
+    Attributes
+    ----------
+    instants
+        Which, as a slice.
+    way
+        1 where the load rises, or -1.
+    slope, offset
+        The argument is slope times load plus offset, a share of the bound, (n_points,) each. Where
+        the slope takes it up as the load goes on, it is clipped between the friction before and
+        the bound; where it takes it down, between that and the bound the other way.
+    """
+
+    instants: slice
+    way: float
+    slope: Array
+    offset: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Clips:
+    """A friction field, and clips with memory fitted to it.
+
+    Attributes
+    ----------
+    given
+        The field, shape (n_points, n_instants), N/m.
+    bound
+        Largest friction, same shape, or (n_points, 1) where it stays the same, N/m.
+    load
+        What drives it, over the size of the bound at every instant as a share of its largest,
+        shape (n_instants,).
+    branches
+        In their order.
+    space_weights, time_weights
+        Lengths of the points, and weights of the instants, in which errors are measured.
+    """
+
+    given: Array
+    bound: Array
+    load: Array
+    branches: tuple[Branch, ...]
+    space_weights: Array
+    time_weights: Array
+
+    @cached_property
+    def field(self) -> Array:
+        """What the clips are, shape (n_points, n_instants), N/m."""
+        found = np.empty_like(self.given)
+        held = np.zeros(len(found))
+        for branch in self.branches:
+            some = branch.instants
+            found[:, some] = _clipped(branch, held, _during(self.bound, some), self.load)
+            held = found[:, some.stop - 1]
+        return found
+
+    @cached_property
+    def rest(self) -> Decomposition:
+        """What they leave of the field, in singular vectors."""
+        left = self.given - self.field
+        places = np.arange(len(left), dtype=float)
+        return decompose(left, self.space_weights, self.time_weights, places)
+
+    def reconstruct(self, modes: int = 0) -> Array:
+        """Give the field of the clips and so many singular vectors of what they leave, N/m."""
+        rest = self.rest
+        return np.asarray(
+            self.field
+            + (rest.space_modes[:, :modes] * rest.values[:modes]) @ rest.time_modes[:modes]
+        )
+
+    @cached_property
+    def errors(self) -> Array:
+        """Error of the clips with every number of modes from 0 on, shape (n_modes + 1,).
+
+        Relative to the field in L2 over length and time; zero for a field that vanishes.
+        """
+        whole = float(self.space_weights @ self.given**2 @ self.time_weights)
+        if whole == 0.0:
+            return np.zeros(len(self.rest.values) + 1)
+        left = float(np.sqrt(self.rest.values @ self.rest.values / whole))
+        return np.asarray(left * self.rest.errors)
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers they take: two vectors and a place a branch, the load, the bound."""
+        points, instants = self.given.shape
+        return int(len(self.branches) * (2 * points + 1) + instants) + _numbers_of(self.bound)
+
+
+def clips_of(
+    field: Array, bound: Array, load: Array, space_weights: Array, time_weights: Array
+) -> Clips:
+    """Fit clips with memory to a friction field.
+
+    Its branches are those of the load over the size of the bound; the arguments are fitted to the
+    entries that are not clipped, point by point. Of a rod whose friction bound stays the same, and
+    which nothing drives but this load, they are exact.
+
+    Parameters
+    ----------
+    field
+        Shape (n_points, n_instants), N/m; it starts from rest at zero before the first instant.
+    bound
+        Largest friction, non-negative, shape (n_points,), (n_points, 1) or that of the field, N/m.
+    load
+        What drives it, in any unit, shape (n_instants,).
+    space_weights, time_weights
+        Shapes (n_points,) and (n_instants,), positive.
+    """
+    bound = bound.reshape(len(field), -1)
+    size = bound.max(axis=0)
+    most = float(size.max(initial=0.0)) or 1.0
+    share = np.maximum(size / most, FADED)
+    driving = np.asarray(load / share)
+    weights = time_weights * share**2
+    held, before = np.zeros(len(field)), 0.0
+    found: list[Branch] = []
+    for some in monotone(driving):
+        limit = _during(bound, some)
+        branch = _fitted(field[:, some], held, limit, driving, some, before, weights[some])
+        held = _clipped(branch, held, limit, driving)[:, -1]
+        before = float(driving[some.stop - 1])
+        found.append(branch)
+    return Clips(field, bound, driving, tuple(found), space_weights, time_weights)
+
+
+def monotone(load: Array) -> Iterator[slice]:
+    """Cut a load into its branches, each as far as it goes one way; it starts from zero.
+
+    Parameters
+    ----------
+    load
+        Shape (n_instants,). Where it stands still, the branch goes on.
+    """
+    ways = np.sign(np.diff(load, prepend=0.0))
+    moving = np.flatnonzero(ways)
+    turns = moving[1:][ways[moving[1:]] != ways[moving[:-1]]]
+    yield from (slice(int(a), int(b)) for a, b in pairwise([0, *turns, len(load)]))
+
+
+def _fitted(
+    field: Array,
+    held: Array,
+    bound: Array,
+    load: Array,
+    some: slice,
+    before: float,
+    weights: Array,
+) -> Branch:
+    """Fit the argument of one branch, each point counted in the way that its friction goes."""
+    way = 1.0 if load[some.stop - 1] >= before else -1.0
+    up = np.where((field - held[:, None]) @ weights < 0.0, -1.0, 1.0)
+    limit = np.where(bound > 0.0, bound, np.inf)
+    shares, low = (up[:, None] * one / limit for one in (field, held[:, None]))
+    seen = Seen(shares, np.clip(low, -1.0, 1.0), way * load[some], way * before, weights)
+    slope, offset = fitted(seen)
+    return Branch(some, way, way * up * slope, np.where(slope > 0.0, up * offset, BELOW))
+
+
+def _clipped(branch: Branch, held: Array, bound: Array, load: Array) -> Array:
+    """Clip the argument of a branch, shape (n_points, n_instants of it), N/m.
+
+    What was held is within a bound that has fallen since.
+    """
+    own = load[branch.instants]
+    line = (branch.slope[:, None] * own + branch.offset[:, None]) * bound
+    kept = np.clip(held[:, None], -bound, bound)
+    is_up = (branch.way * branch.slope >= 0.0)[:, None]
+    up, down = np.minimum(bound, np.maximum(kept, line)), np.maximum(-bound, np.minimum(kept, line))
+    return np.where(is_up, up, down)
+
+
+def _during(bound: Array, some: slice) -> Array:
+    return bound if bound.shape[1] == 1 else bound[:, some]
+
+
+def _numbers_of(bound: Array) -> int:
+    """Count the numbers of a bound: fewer if it changes in size alone."""
+    sizes, most = bound.max(axis=0), float(bound.max(initial=0.0))
+    shape = bound[:, [int(sizes.argmax())]] / (most or 1.0)
+    is_product = np.abs(bound - shape * sizes).max() <= SAME_SHAPE * most
+    if not is_product:
+        return int(bound.size)
+    points, instants = bound.shape
+    return int(points + instants if instants > 1 else points)

@@ -1,0 +1,231 @@
+"""A slip front on a rod is a clip with memory, exactly; what is none is told by its error."""
+
+from __future__ import annotations
+
+from itertools import islice, pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from solver.arrays import Array
+from solver.files import scene_settings
+from solver.latin import Iterate, iterations
+from solver.reduction.clips import Clips, clips_of, monotone
+from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
+from solver.reference.choice import reference_of
+from solver.scenes import discretise, structure_of
+from solver.scenes.bar import BarSettings
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.clip_measures import clips_in, products_in
+from solver.study.finished import finished_run
+from solver.study.quantities import reading
+
+EXACT = 1e-12
+
+
+def solved(**changes) -> Clips:
+    """Fit clips to the discrete solution of a bar."""
+    settings = BarSettings.checked(changes)
+    problem = discretise(settings)
+    law = problem.rubbing["friction"]
+    lengths = law.by_point(law.weights)
+    friction = reference_of(problem).contact("friction").tangential_force
+    load = structure_of(settings).load
+    return clips_of(
+        friction / lengths[:, None],
+        law.by_point(law.tangential.bound) * problem.scales.force / lengths[:, None],
+        load if load.any() else friction.sum(axis=0),
+        lengths,
+        problem.time_weights * problem.scales.time,
+    )
+
+
+def iterate_of(number: int, scene: str = "bar", **changes) -> tuple[Settings, Iterate]:
+    settings = scene_settings(scene).checked({"finish": "none", **changes})
+    search = iterations(discretise(settings), method_of(settings))
+    return settings, next(islice(search, number - 1, None))
+
+
+@pytest.mark.parametrize("elements", [50, 200, 800])
+@pytest.mark.parametrize(
+    ("load", "branches"),
+    [("ramp", 1), ("triangle", 2), ("sine", 3), ("cycle", 3), ("decaying", 8), ("random", 9)],
+)
+def test_two_vectors_a_branch_are_the_friction_of_a_bar(load, branches, elements):
+    clips = solved(load=load, elements=elements, peak=1200.0)
+    assert len(clips.branches) == branches
+    assert clips.errors[0] < EXACT
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"substructures": 1},
+        {"substructures": 25},
+        {"pressure_profile": "rising"},
+        {"friction_profile": "gap"},
+        {"section_profile": "falling"},
+        {"peak": 2400.0},
+        {"load": "cycles", "instants": 161},
+        {"peak": 0.0, "support_displacement": 1e-3},
+        {"load": "ramp", "pressure_load": "loosening"},
+        {"load": "hold", "pressure_load": "loosening"},
+    ],
+    ids=str,
+)
+def test_they_stay_so_with_cuts_uneven_pressure_sliding_and_a_support_that_moves(changes):
+    assert solved(**changes).errors[0] < EXACT
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"body_force": 800.0},
+        {"load": "sine", "pressure_load": "loosening"},
+        {"friction_law": "compliant"},
+        {"friction_law": "slip-dependent"},
+    ],
+    ids=str,
+)
+def test_where_the_theory_ends_the_error_is_seen_and_modes_of_the_rest_remove_it(changes):
+    clips = solved(**changes)
+    assert clips.errors[0] > 0.01
+    assert clips.errors[-1] < EXACT
+    assert clips.reconstruct(len(clips.rest.values)) == pytest.approx(clips.given, abs=1e-6)
+
+
+def play_of(load: Array, bound: Array) -> Array:
+    """Give the friction on a clamped rod: its axial force follows the load with play."""
+    reach = np.cumsum(bound[::-1])[::-1]
+    axial, now = np.zeros((len(bound) + 1, len(load))), np.zeros(len(bound))
+    axial[-1] = load
+    for instant, force in enumerate(load):
+        now = np.clip(now, force - reach, force + reach)
+        axial[:-1, instant] = now
+    return np.diff(axial, axis=0)
+
+
+@st.composite
+def pulled_rods(draw):
+    sizes = st.floats(0.0, 1.0, allow_subnormal=False).map(lambda one: round(one, 3))
+    bound = draw(arrays.arrays(float, st.integers(1, 12), elements=sizes))
+    load = draw(arrays.arrays(float, st.integers(1, 25), elements=st.integers(-40, 40)))
+    return load / draw(st.sampled_from([5.0, 10.0, 40.0])), bound
+
+
+@given(pulled_rods())
+@examples(deadline=None)
+def test_any_load_on_any_bound_is_a_clip(case):
+    load, bound = case
+    field = play_of(load, bound)
+    clips = clips_of(field, bound, load, np.ones(len(bound)), np.ones(len(load)))
+    assert np.abs(clips.field - field).max() <= EXACT * max(bound.max(), 1.0)
+    assert np.all(np.abs(clips.field) <= bound[:, None] * (1.0 + EXACT))
+
+
+@given(
+    arrays.arrays(float, (6, 9), elements=st.integers(-50, 50)),
+    arrays.arrays(float, 9, elements=st.integers(-9, 9)),
+)
+@examples(deadline=None)
+def test_errors_fall_with_the_modes_that_are_kept_whatever_the_field(field, load):
+    clips = clips_of(field, np.full(6, 30.0), load, np.full(6, 0.5), np.full(9, 2.0))
+    assert np.all(np.diff(clips.errors) <= EXACT)
+    size = np.linalg.norm(field)
+    for modes, error in enumerate(clips.errors):
+        missed = np.linalg.norm(clips.reconstruct(modes) - field)
+        assert missed == pytest.approx(error * size, abs=1e-9 * max(size, 1.0))
+
+
+@given(arrays.arrays(float, st.integers(1, 30), elements=st.integers(-3, 3)))
+def test_branches_go_one_way_and_are_as_few_as_can_be(load):
+    found = list(monotone(load))
+    assert [one.start for one in found[1:]] == [one.stop for one in found[:-1]]
+    assert (found[0].start, found[-1].stop) == (0, len(load))
+    path = np.append(0.0, load)
+    ways = [np.sign(np.diff(path[one.start : one.stop + 1])) for one in found]
+    assert all(not {-1.0, 1.0} <= set(own) for own in ways)
+    last = [own[own != 0.0][-1] for own in ways if own.any()]
+    assert all(one != other for one, other in pairwise(last))
+
+
+def test_reversals_are_remembered_and_those_that_are_undone_are_forgotten():
+    """Loaded again to where it turned, the rod is as if it had never turned."""
+    bound = np.full(10, 100.0)
+    inner = np.array([0, 300, 600, 500, 400, 500, 600, 700.0])
+    plain = np.array([0, 300, 600, 600, 600, 600, 600, 700.0])
+    ones = np.ones(10), np.ones(len(inner))
+    turned, straight = (clips_of(play_of(one, bound), bound, one, *ones) for one in (inner, plain))
+    assert (len(turned.branches), len(straight.branches)) == (3, 1)
+    assert turned.field[:, -2:] == pytest.approx(straight.field[:, -2:], abs=1e-9)
+    assert np.abs(turned.field[:, 4] - straight.field[:, 4]).max() > 99.0
+
+
+def test_without_their_memory_clips_miss():
+    clips = solved(load="triangle", peak=1200.0)
+    forgetful = clips_of(
+        clips.given[:, 50:] - clips.given[:, [50]],
+        clips.bound,
+        clips.load[50:] - clips.load[50],
+        clips.space_weights,
+        clips.time_weights[50:],
+    )
+    assert clips.errors[0] < EXACT < 0.01 < forgetful.errors[0]
+
+
+def test_as_iterates_come_nearer_so_do_their_clips():
+    missed = [clips_in(*iterate_of(number)).errors[0] for number in (1, 5, 20, 60)]
+    assert np.all(np.diff(missed) < 0.0)
+    assert missed[0] > 0.03
+    assert missed[-1] < 3e-4
+
+
+@pytest.mark.parametrize("scene", ["bar", "strand"])
+def test_the_modes_of_a_run_hold_its_friction_and_no_products_need_fewer_numbers(scene):
+    changes = {"linear_stage": "pgd", "substructures": 1, "relaxation": 1.0}
+    _, iterate = iterate_of(8, scene, **changes)
+    assert iterate.reduction is not None
+    own, best = of_bases(iterate, iterate.reduction), in_pieces(iterate)
+    assert own.errors[-1] < 1e-9
+    assert np.all(np.diff(own.numbers) > 0)
+    assert np.all(own.errors >= best.errors[: len(own.errors)] - EXACT)
+    assert own.within(0.1) >= best.within(0.1)
+
+
+def test_a_bar_in_one_piece_is_kept_in_pieces_as_it_is_as_a_whole():
+    settings, iterate = iterate_of(8, substructures=1)
+    pieces, whole = in_pieces(iterate), products_in(clips_in(settings, iterate))
+    assert np.array_equal(pieces.numbers, whole.numbers)
+    assert pieces.errors == pytest.approx(whole.errors, abs=1e-9)
+
+
+def test_numbers_are_those_of_what_has_to_be_kept():
+    clips = solved(load="sine", elements=50, instants=101)
+    vectors, places, load, bound = 3 * 2 * 51, 3, 101, 51
+    assert clips.numbers == vectors + places + load + bound
+    changing = solved(load="ramp", pressure_load="loosening")
+    assert changing.numbers == 2 * 51 + 1 + 101 + (51 + 101)
+    assert of_clips(clips).within(EXACT) == clips.numbers
+    assert Sizes(np.array([0, 9]), np.array([1.0, 0.5])).within(0.1) == np.inf
+
+
+def test_quantities_of_a_run_say_the_same():
+    run = finished_run(BarSettings.checked({}), errors=False, indicators=False)
+    clips = clips_in(run.settings, run.iterate)
+    assert reading("clip_numbers@1e-9")(run) == clips.numbers
+    assert reading("clip_error")(run) == clips.errors[0] < EXACT
+    assert reading("svd_numbers@0.01")(run) == 30 * (51 + 101)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"friction": 0.0}, {"peak": 0.0}, {"instants": 1, "load": "ramp"}], ids=str
+)
+def test_nothing_that_rubs_takes_nothing_that_breaks(changes):
+    clips = solved(**changes)
+    assert np.isfinite(clips.errors).all()
+    assert clips.field == pytest.approx(clips.given, abs=1e-9)
