@@ -84,7 +84,7 @@ def test_the_server_makes_no_figure_for_a_page_and_sends_little_of_any() -> None
             assert len(dashboard._gallery.shown) == 6
             assert not list(document.select({"type": Plot}))
             # Without `defs`, which are of every model that this process has imported so far.
-            assert len(json.dumps(document.to_json(deferred=False)["roots"])) < 593_000
+            assert len(json.dumps(document.to_json(deferred=False)["roots"])) < 598_000
             forget(document)
 
 
@@ -101,11 +101,11 @@ def test_an_address_that_waits_at_an_iteration_costs_one_order_however_far_that_
     ("query", "views", "substructures"),
     [
         ("?instants=1", 5, False),
-        ("?linear_stage=pgd", 11, True),
-        ("?linear_stage=pgd&substructures=1", 11, False),
+        ("?linear_stage=pgd", 12, True),
+        ("?linear_stage=pgd&substructures=1", 12, False),
         ("?linear_stage=pgd&instants=1", 7, True),
-        ("?scene=strand&wires=20&broken=0&elements=2&substructures=1", 12, False),
-        ("?scene=strand", 12, False),
+        ("?scene=strand&wires=20&broken=0&elements=2&substructures=1", 13, False),
+        ("?scene=strand", 13, False),
         ("?scene=block", 9, False),
         ("?scene=layers", 9, False),
         ("?scene=incline", 12, False),

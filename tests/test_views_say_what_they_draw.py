@@ -12,9 +12,9 @@ from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.recording import COLUMNS
 from app.picture.units import MM
-from app.views import convergence, cycles, deformed, error_time, friction, load_path, loop
+from app.views import clips, convergence, cycles, deformed, error_time, friction, load_path, loop
 from app.views.catalogue import VIEWS, fitting
-from app.views.colors import ORANGE
+from app.views.colors import BLUE, GREEN, ORANGE, VERMILION
 from app.views.drawing import POSITION, Curve
 from app.views.in_units import in_units
 from app.views.scales import decades
@@ -228,3 +228,51 @@ def test_what_becomes_of_slip_is_said_only_where_it_is_settled(
 ) -> None:
     drawing = cycles.draw_loops(looked_at(scene, {**changes, "max_iterations": 100}), None)
     assert drawing.sentence.startswith(said)
+
+
+def ring(scene: Scene) -> tuple[float, float]:
+    """Give where the mark of clips alone stands: numbers, and error."""
+    (mark,) = clips.draw(scene, None).marks
+    return float(np.asarray(mark.x)[0]), float(np.asarray(mark.y)[0])
+
+
+def test_numbers_kept_are_those_of_the_iterate_and_fall_below_any_other_once_it_is_solved() -> None:
+    paper = {"method": "paper", "max_iterations": 3}
+    early, late = looked_at("bar", paper), looked_at("bar", {"max_iterations": 40})
+    assert "clips, 3 × 2 vectors: exact" not in keys(clips.draw(early, None))
+    assert "clips, 3 × 2 vectors: exact" in keys(clips.draw(late, None))
+    kept = 3 * (2 * 21 + 1) + 21 + 21
+    assert ring(early)[0] == ring(late)[0] == kept
+    found = early.frame.clipped
+    assert ring(early)[1] == pytest.approx(found.clips.errors[0])
+    assert clips.draw(late, None).sentence == (
+        f"For 1 %: table {21 * 21}, SVD {late.frame.clipped.products.within(0.01):.0f}, "
+        f"PGD {late.frame.clipped.separated.within(0.01):.0f}, clips {kept} numbers."
+    )
+    for color, sizes in (
+        (BLUE, found.products),
+        (GREEN, found.separated),
+        (VERMILION, found.clips),
+    ):
+        curve = next(one for one in clips.draw(early, None).curves if one.color == color)
+        errors = dict(zip(sizes.numbers.tolist(), sizes.errors.tolist(), strict=True))
+        drawn = zip(np.asarray(curve.x).tolist(), np.asarray(curve.y).tolist(), strict=True)
+        assert all(y == pytest.approx(max(errors[x], 1e-6)) for x, y in drawn)
+
+
+def test_whose_modes_are_counted_is_said() -> None:
+    bases = {"linear_stage": "pgd", "pgd_modes": 4}
+    assert "PGD of the run" in keys(clips.draw(looked_at("bar", bases), None))
+    assert "best PGD in 4 pieces" in keys(clips.draw(looked_at("bar"), None))
+    alone = clips.draw(looked_at("bar", {"substructures": 1}), None)
+    assert not [name for name in keys(alone) if "PGD" in name]
+    assert "PGD" not in alone.sentence
+
+
+def test_clips_are_of_rods_over_time_and_said_of_nothing_else() -> None:
+    settings = {name: entry.settings for name, entry in CATALOGUE.items()}
+    assert {name for name, one in settings.items() if clips.VIEW in fitting(one.checked({}))} == {
+        "bar",
+        "strand",
+    }
+    assert clips.VIEW not in fitting(settings["bar"].checked({"instants": 1}))

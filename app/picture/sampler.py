@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.picture.bases import Bases, bases_of
+from app.picture.clipped import Clipped, clipped
 from app.picture.cycled import Cycled, cycled
 from app.picture.frames import DrawnFields, Stand
 from app.picture.meshes import Thinned
@@ -163,6 +164,10 @@ class Sampler:
         """Show an iterate cycle by cycle, and where it slips along the interface."""
         return cycled(self._settings, iterate, self._points, self._rows, self._lengths)
 
+    def clipped(self, iterate: Iterate) -> Clipped:
+        """Keep the friction of an iterate in few numbers."""
+        return clipped(self._settings, iterate)
+
     def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
         """Show what has moved at the chosen instant."""
         return self._geometry.pose(iterate, self._column(look), bodies)
@@ -226,6 +231,11 @@ class Frame:
     def cycles(self) -> Cycled:
         """The cycles of its load."""
         return self.sampler.cycles(self.iterate)
+
+    @cached_property
+    def clipped(self) -> Clipped:
+        """How few numbers its friction takes."""
+        return self.sampler.clipped(self.iterate)
 
     @cached_property
     def spectra(self) -> Floats:

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from app.views import (
     axial,
     basis_size,
+    clips,
     convergence,
     cycles,
     deformed,
@@ -29,7 +30,7 @@ CARDS: tuple[tuple[View, ...], ...] = (
     (status_map.VIEW,),
     (load_path.VIEW, loop.VIEW, cycles.LOOPS, cycles.ENERGY, cycles.FRETTING),
     (convergence.VIEW, error_time.VIEW),
-    (spectra.VIEW, SPACE_MODES, TIME_FUNCTIONS, basis_size.VIEW),
+    (spectra.VIEW, SPACE_MODES, TIME_FUNCTIONS, basis_size.VIEW, clips.VIEW),
 )
 VIEWS: tuple[View, ...] = tuple(view for card in CARDS for view in card)
 
