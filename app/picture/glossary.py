@@ -75,8 +75,8 @@ TERMS: dict[tuple[str, ...], str] = {
     ("mode",): "A shape in space times a function of time; a field is a sum of modes.",
     ("whole table",): "All values of the field, at every point and instant.",
     ("clip",): "Friction as a straight line in the load, cut off at its bound and at what the last "
-    "reversal left: two vectors for each branch, in which the load goes one way. Per cent: by how much "
-    "they miss this iterate.",
+    "reversal left: two vectors for each branch, in which the load goes one way. Per cent: by how "
+    "much they miss this iterate.",
     ("its field",): "The singular values of the field that the modes of a basis have to describe.",
     ("full stage",): "The same run without model reduction, to compare with.",
     ("nested",): "Starts from the solution of a coarser mesh.",
