@@ -70,7 +70,12 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(network: Network) -> Non
     expect(status(page)).to_contain_text("36 substructures")
     page.evaluate("window.stayed = true")
     heard = keys_heard(page)
-    for broken, mended in ((proxy.cut, proxy.mend), (proxy.hush, proxy.mend), (proxy.hush, anew)):
+    for broken, mended in (
+        (proxy.cut, proxy.mend),
+        (proxy.tear, proxy.mend),
+        (proxy.hush, proxy.mend),
+        (proxy.hush, anew),
+    ):
         broken()
         # Nothing is heard for so long, and longer than a page waits that has found its server.
         page.clock.run_for(16000)

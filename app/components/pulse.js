@@ -84,6 +84,9 @@ export function render({model, view}) {
   own.replace_with_json = () => {}
   own.on_event("connection_lost", (_, event) => {
     closed = event
+    // Bokeh would read on in the message in the midst of which the socket broke.
+    const socket = event.connection.deref()
+    socket._receiver = new socket._receiver.constructor()
     lose()
   })
   // Whatever comes is a sign of life; what was missed meanwhile is asked for.
