@@ -32,6 +32,8 @@ class Proxy:
         self._is_cut = self._is_to_tear = False
         self._flows = Event()
         self._flows.set()
+        self._opens = Event()
+        self._opens.set()
         self._sockets: list[socket.socket] = []
         self._silent: list[socket.socket] = []
         Thread(target=self._accept, daemon=True).start()
@@ -64,13 +66,20 @@ class Proxy:
                 one.shutdown(socket.SHUT_RDWR)
         self._silent.clear()
 
+    def mend_slowly(self) -> None:
+        """Mend it, but have those wait who ask for a WebSocket."""
+        self._opens.clear()
+        self._is_cut = False
+
     def mend(self) -> None:
         self._is_cut = False
         self._flows.set()
+        self._opens.set()
 
     def close(self) -> None:
         self.cut()
         self._flows.set()
+        self._opens.set()
         self._listener.shutdown(socket.SHUT_RDWR)
         self._listener.close()
 
@@ -94,6 +103,8 @@ class Proxy:
         with suppress(OSError):
             while data := source.recv(1 << 16):
                 flows.wait()
+                if b"Upgrade: websocket" in data:
+                    self._opens.wait()
                 if self._is_to_tear and data[0] == TEXT and data[1] < MASKED:
                     self._is_to_tear = False
                     sink.sendall(_first_frame(data))
