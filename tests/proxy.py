@@ -6,6 +6,13 @@ import socket
 from contextlib import suppress
 from threading import Event, Thread
 
+TEXT = 0x81
+"""Begins a frame of a WebSocket that is a text."""
+LONGER = 126
+"""Stands for the length of a frame whose length follows, in two bytes."""
+MASKED = 128
+"""From here on, the frame is one of a browser."""
+
 
 class Proxy:
     """Passes on what comes to a port of its own.
@@ -22,9 +29,11 @@ class Proxy:
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.port: int = self._listener.getsockname()[1]
         self.target = 0
-        self._is_cut = False
+        self._is_cut = self._is_to_tear = False
         self._flows = Event()
         self._flows.set()
+        self._opens = Event()
+        self._opens.set()
         self._sockets: list[socket.socket] = []
         self._silent: list[socket.socket] = []
         Thread(target=self._accept, daemon=True).start()
@@ -35,6 +44,10 @@ class Proxy:
         self.drop()
         self._silent, self._sockets = self._sockets, []
         self.drop()
+
+    def tear(self) -> None:
+        """Cut it in the midst of the server's next message: only its first frame passes."""
+        self._is_to_tear = True
 
     def hush(self) -> None:
         """Keep all connections, and pass nothing on."""
@@ -53,13 +66,20 @@ class Proxy:
                 one.shutdown(socket.SHUT_RDWR)
         self._silent.clear()
 
+    def mend_slowly(self) -> None:
+        """Mend it, but have those wait who ask for a WebSocket."""
+        self._opens.clear()
+        self._is_cut = False
+
     def mend(self) -> None:
         self._is_cut = False
         self._flows.set()
+        self._opens.set()
 
     def close(self) -> None:
         self.cut()
         self._flows.set()
+        self._opens.set()
         self._listener.shutdown(socket.SHUT_RDWR)
         self._listener.close()
 
@@ -77,15 +97,27 @@ class Proxy:
                     continue
                 self._sockets += [near, far]
                 for ends in ((near, far), (far, near)):
-                    Thread(target=_pass_on, args=(*ends, self._flows), daemon=True).start()
+                    Thread(target=self._pass_on, args=(*ends, self._flows), daemon=True).start()
 
-
-def _pass_on(source: socket.socket, sink: socket.socket, flows: Event) -> None:
-    with suppress(OSError):
-        while data := source.recv(1 << 16):
-            flows.wait()
-            sink.sendall(data)
-    for one in (source, sink):
+    def _pass_on(self, source: socket.socket, sink: socket.socket, flows: Event) -> None:
         with suppress(OSError):
-            one.shutdown(socket.SHUT_RDWR)
-        one.close()
+            while data := source.recv(1 << 16):
+                flows.wait()
+                if b"Upgrade: websocket" in data:
+                    self._opens.wait()
+                if self._is_to_tear and data[0] == TEXT and data[1] < MASKED:
+                    self._is_to_tear = False
+                    sink.sendall(_first_frame(data))
+                    self.cut()
+                    break
+                sink.sendall(data)
+        for one in (source, sink):
+            with suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+            one.close()
+
+
+def _first_frame(data: bytes) -> bytes:
+    """Give a server's frame that is shorter than 64 KB: the header of a message is one."""
+    start, length = (4, int.from_bytes(data[2:4])) if data[1] == LONGER else (2, data[1])
+    return data[: start + length]

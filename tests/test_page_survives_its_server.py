@@ -66,11 +66,24 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(network: Network) -> Non
             proxy.renew()
         proxy.drop()
 
+    def slowly() -> None:
+        """Have a sign of life fall due while the new socket is not open yet."""
+        with page.expect_websocket():
+            proxy.mend_slowly()
+        page.clock.run_for(2000)
+        proxy.mend()
+
     slider(page, "Wires").press("ArrowRight")
     expect(status(page)).to_contain_text("36 substructures")
     page.evaluate("window.stayed = true")
     heard = keys_heard(page)
-    for broken, mended in ((proxy.cut, proxy.mend), (proxy.hush, proxy.mend), (proxy.hush, anew)):
+    for broken, mended in (
+        (proxy.cut, proxy.mend),
+        (proxy.cut, slowly),
+        (proxy.tear, proxy.mend),
+        (proxy.hush, proxy.mend),
+        (proxy.hush, anew),
+    ):
         broken()
         # Nothing is heard for so long, and longer than a page waits that has found its server.
         page.clock.run_for(16000)

@@ -1,7 +1,10 @@
 const WAIT = 8000, PATIENCE = 10000, BEAT = 2000, UNHEARD = 3
 export function render({model, view}) {
   const found = new Map(), {page} = model
-  const tell = (kind, number) => model.send_msg([kind, page, number])
+  const tell = (kind, number) => {
+    // A socket that is being opened refuses to send.
+    if (!closed) { model.send_msg([kind, page, number]) }
+  }
   const named = (name) => {
     const kept = found.get(name)
     if (kept && kept.document) { return kept }
@@ -38,7 +41,7 @@ export function render({model, view}) {
     state = now
   }
   // A socket may close, or, where a network only falls silent, stay open for minutes.
-  let lost = false, losses = 0, gone = false, closed = null, beats = 0
+  let lost = false, losses = 0, gone = false, closed = null, beats = 0, answered = 0
   // Only its own server knows a page, and for as long as it is open; another one makes it anew.
   const reach = async () => {
     const asked = `${location.pathname}?page=${page}`
@@ -52,18 +55,15 @@ export function render({model, view}) {
   const come_back = async (loss) => {
     // Another loss has its own way back.
     const is_lost = () => lost && !gone && loss === losses
-    if (!is_lost()) { return }
     try {
-      if (!await reach() || !is_lost()) { return }
-      // On a machine that has much to do it takes its time to be heard again; and a socket that had
-      // fallen silent may close just as the network comes back.
+      // A server that has much to do takes its time, to answer here as to be heard again; and a
+      // socket that had fallen silent may close just as the network comes back.
       for (let waited = 0; waited < PATIENCE; waited += BEAT) {
+        if (!is_lost() || !await reach() || !is_lost()) { return }
         closed?.reconnect()
-        closed = null
         await new Promise((done) => setTimeout(done, BEAT))
-        if (!is_lost()) { return }
       }
-      if (await reach() && is_lost()) { location.replace(address()) }
+      if (is_lost()) { location.replace(address()) }
     } catch { setTimeout(() => come_back(loss), 1000) }
   }
   const lose = () => {
@@ -76,7 +76,7 @@ export function render({model, view}) {
     }
   }
   const timer = setInterval(() => {
-    if (beats - Math.abs(model.heard) >= UNHEARD) { lose() }
+    if (beats - answered >= UNHEARD) { lose() }
     if (!closed) { tell("beat", ++beats) }
   }, BEAT)
   const {document: own} = view.model
@@ -84,15 +84,20 @@ export function render({model, view}) {
   own.replace_with_json = () => {}
   own.on_event("connection_lost", (_, event) => {
     closed = event
+    // Bokeh would read on in the message in the midst of which the socket broke.
+    const socket = event.connection.deref()
+    socket._receiver = new socket._receiver.constructor()
     lose()
   })
   // Whatever comes is a sign of life; what was missed meanwhile is asked for.
   const find_again = () => {
     closed = null
+    answered = beats
     if (!lost) { return }
     lost = false
     tell("beat", -++beats)
   }
+  own.on_event("client_reconnected", find_again)
   model.on("heard", find_again)
   model.on("msg:custom", ([number, picture]) => {
     find_again()
