@@ -66,8 +66,9 @@ sup { line-height: 0; }
 .strip > div[hidden] { display: none; }
 .strip p { margin: 0 0 6px; }
 .strip .control input[type=range] { width: 260px; }
-.strip .counts { display: grid; grid-template-columns: repeat(2, 1fr); gap: 6px 12px; margin: 0; }
-.strip .counts li { margin: 0; font-size: 26px; line-height: 1.2; }
+.strip .counts { display: grid; grid-template-columns: repeat(auto-fit, minmax(200px, 1fr));
+  gap: 6px 12px; margin: 0; }
+.strip .counts li { margin: 0; font-size: 24px; line-height: 1.15; }
 .strip .choices button { padding: 12px 16px; margin: 10px 0; font-size: 30px; }
 nav { white-space: nowrap; }
 nav span { margin: 0 8px 0 0; }
