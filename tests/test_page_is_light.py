@@ -108,7 +108,7 @@ def test_an_address_that_waits_at_an_iteration_costs_one_order_however_far_that_
         ("?scene=strand", 12, False),
         ("?scene=block", 9, False),
         ("?scene=layers", 9, False),
-        ("?scene=incline", 12, False),
+        ("?scene=incline", 9, False),
     ],
 )
 def test_views_and_sliders_are_those_that_apply(

@@ -21,6 +21,8 @@ from solver.study.slips import slips_of
 
 SMALLEST_SWING = 0.05
 """Share of the whole range that a path must turn back by to begin another half cycle."""
+NO_SWING = 1e-9
+"""Share of its size by which rounding lets a path that stands still swing."""
 REPEATED = 1e-3
 """Share of its range by which a load may differ from a cycle to the next."""
 
@@ -109,7 +111,7 @@ def turning_points(path: Array) -> list[int]:
     -------
     Indices, the first of each extreme that is held.
     """
-    least = SMALLEST_SWING * float(np.ptp(path))
+    least = max(SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max()))
     found: list[int] = []
     outmost, way = 0, 0.0
     for place, value in enumerate(path):
