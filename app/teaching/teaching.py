@@ -59,6 +59,7 @@ sup { line-height: 0; }
 .control[hidden] { display: none; }
 .control input[type=range] { width: 200px; max-width: 100%; margin: 0 0 4px; }
 .control select { display: inline-block; width: auto; margin: 2px 0; }
+.control select ~ div { display: none; }
 .control label { display: inline-block; margin-right: 6px; white-space: nowrap; }
 .strip { padding: 4px 0 4px 10px; }
 .strip:has(nav) { display: flex; align-items: start; gap: 20px; }
