@@ -91,6 +91,17 @@ PRESSURES: dict[str, Callable[[Array, int], Array]] = {
 }
 """Presets of what presses: all of it at first, or in the end, and never nothing."""
 
+BEGINS = {
+    "triangle": 0.0,
+    "sine": 0.0,
+    "decaying": 0.0,
+    "cycle": 0.2,
+    "delayed": HELD,
+    "cycles": HELD,
+    "shaken": HELD,
+}
+"""Share of the interval from which on a preset comes back to where it is, and may be repeated."""
+
 
 def instants_of(duration: float, number: int) -> Array:
     """Spread instants evenly over a time interval, shape (number,), s; a single one ends it."""
@@ -104,6 +115,7 @@ def load_path(
     peak: float,
     seed: int,
     presets: Mapping[str, Callable[[Array, int], Array]] = PRESETS,
+    cycles: int = 1,
 ) -> Array:
     """Evaluate a load path at the instants of a run.
 
@@ -121,11 +133,23 @@ def load_path(
         Of the random walk.
     presets
         What the names stand for.
+    cycles
+        How often a preset does what it does from where it begins on; the interval stays.
 
     Returns
     -------
     Values at the instants, shape (n_instants,).
     """
-    if isinstance(path, str):
-        return peak * presets[path](instants / duration, seed)
-    return interpolate(path, instants)
+    if not isinstance(path, str):
+        return interpolate(path, instants)
+    phase = instants / duration
+    if cycles > 1 and path in BEGINS:
+        phase = _repeated(phase, BEGINS[path], cycles)
+    return peak * presets[path](phase, seed)
+
+
+def _repeated(phase: Array, begins: float, cycles: int) -> Array:
+    """Go through what comes after a beginning so often in the same time."""
+    turns = cycles * (phase - begins) / (1.0 - begins)
+    again = begins + (1.0 - begins) * (turns - np.floor(turns))
+    return np.where(phase > begins, again, phase)

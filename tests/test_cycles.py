@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from solver.definitions import SettingError
+from solver.loads import BEGINS, PRESETS, PRESSURES, PULLS
 from solver.scenes import CATALOGUE
-from solver.study.cycles import LoadCycles, cycles_in, cycles_of, ends_of
+from solver.study.cycles import LoadCycles, cycles_in, cycles_of, ends_of, turning_points
 from solver.study.finished import FinishedRun, finished_run
 from solver.study.quantities import QUANTITIES, reading
 from solver.study.shakedown import fate_of
@@ -205,6 +207,54 @@ def test_friction_that_still_hardens_gets_no_word_until_it_has_hardened() -> Non
         for length in (1e-3, 1e-5)
     ]
     assert words == [None, "steady slip"]
+
+
+@pytest.mark.parametrize("presets", [PRESETS, PULLS, PRESSURES])
+def test_what_is_repeated_goes_on_where_it_ended(presets: Any) -> None:
+    for name in set(BEGINS) & set(presets):
+        values = presets[name](np.array([BEGINS[name], 1.0]), 1)
+        assert values[0] == pytest.approx(values[1], abs=1e-12), name
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
+    """One more of the preset is always so many cycles more of the load."""
+    settings = CATALOGUE[scene].settings
+    counted = [cycles_in(settings.checked({"instants": 401, "cycles": n})) for n in (2, 3, 9)]
+    more = counted[1] - counted[0]
+    assert more >= 1
+    assert counted[2] == counted[0] + 7 * more
+
+
+def test_repeated_cycles_of_a_bar_take_the_same_each() -> None:
+    """A repeated sine: from one peak to the next, 2 F^3 / (3 ES mu p) each."""
+    cycles = cut(ran("bar", cycles=4, instants=161))
+    assert len(cycles) == 3
+    exact = 2.0 * 900.0**3 / (3.0 * STIFFNESS * BOUND)
+    np.testing.assert_allclose(cycles.energy, exact, rtol=5e-3)
+    assert word(cycles) == "steady slip"
+
+
+def test_what_does_not_come_back_is_not_repeated() -> None:
+    bar = CATALOGUE["bar"].settings
+    for load in ("ramp", "hold", "random"):
+        assert not bar.checked({"load": load}).applies("cycles")
+        paths = [bar.checked({"load": load, "cycles": n}).path("load") for n in (1, 7)]
+        np.testing.assert_array_equal(*paths)
+
+
+def test_more_cycles_than_instants_show_are_refused() -> None:
+    bar = CATALOGUE["bar"].settings
+    bar.checked({"cycles": 25})
+    with pytest.raises(SettingError, match="at most 25 with 101 instants"):
+        bar.checked({"cycles": 26})
+
+
+def test_a_load_that_stands_still_has_no_cycles() -> None:
+    """Rounding makes a constant weight swing by a few digits of the last place."""
+    path = 1e3 + np.array([0.0, 1e-13, 0.0, -1e-13] * 5)
+    assert not turning_points(path)
+    assert cycles_in(CATALOGUE["incline"].settings.checked({})) == 0
 
 
 def test_of_several_loads_the_one_that_turns_most_makes_the_cycles() -> None:

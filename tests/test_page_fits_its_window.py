@@ -2,11 +2,13 @@
 
 import time
 
+import pytest
 from pages import at_rest, comes_true, press, status
 from playwright.sync_api import expect
 from processes import PATIENCE
 
 from app.lessons.lesson import LESSONS
+from solver.scenes import CATALOGUE
 
 NOTHING_SCROLLS = """() => {
   const found = [], look = (root) => root.querySelectorAll("*").forEach((one) => {
@@ -117,6 +119,9 @@ def test_six_plots_are_in_the_first_view_under_all_buttons_and_words(open_page):
     expect(status(page)).to_contain_text("after 3 iterations")
     expect(page.get_by_role("slider", name="Magnification")).to_be_visible()
     all_are_seen(page, 6)
+    # What chooses how bodies are drawn stands in a line that there is anyway.
+    slider, said = page.get_by_role("slider", name="Magnification"), status(page)
+    assert 0.0 < slider.bounding_box()["y"] - said.bounding_box()["y"] < 28.0
     # With the picture there is a band above them.
     press(page, "Scene")
     expect(page.locator(".long .card").first).to_have_accessible_name("Scene")
@@ -124,6 +129,14 @@ def test_six_plots_are_in_the_first_view_under_all_buttons_and_words(open_page):
     comes_true(page, f"() => ({FILLED})() > 0.75")
     nothing_collides_at_any_size(page)
     expect(page.locator(".card").first).to_be_in_viewport(ratio=1)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_the_plots_of_two_runs_are_in_the_first_view(open_page, scene):
+    page = open_page(f'?scene={scene}&compare={{"k_scale":3}}&finish=at-once', 1280, 720)
+    expect(page.locator(".figures .thing")).to_have_count(2)
+    for card in page.locator(".card").all():
+        expect(card).to_be_in_viewport(ratio=1)
 
 
 def top_of_plots(page):
@@ -150,6 +163,9 @@ def test_nothing_pushes_plots_but_figures_that_are_asked_for_or_of_two_runs(open
     expect(figures.get_by_text("Iterations to 1 %")).to_be_hidden()
     page.goto(f'{page.url}&compare={{"multiscale":false}}')
     expect(figures.locator("tbody tr")).to_have_count(3)
+    # A low window has them for the asking, a higher one anyway.
+    expect(figures.get_by_text("Iterations to 1 %")).to_be_hidden()
+    page.set_viewport_size({"width": 1280, "height": 900})
     expect(figures.get_by_text("Iterations to 1 %")).to_be_visible()
     assert figures.bounding_box()["x"] + figures.bounding_box()["width"] <= 1280
     nothing_collides_at_any_size(page)

@@ -47,7 +47,9 @@ def valid_settings(draw):
     values = {name: draw(values_of(DEFINITIONS[name])) for name in sorted(names)}
     elements = values.get("elements", BarSettings.elements)
     values["substructures"] = min(values.get("substructures", BarSettings.substructures), elements)
-    assume((elements + 1) * values.get("instants", BarSettings.instants) <= LARGEST_FIELD)
+    instants = values.get("instants", BarSettings.instants)
+    assume((elements + 1) * instants <= LARGEST_FIELD)
+    values["cycles"] = min(values.get("cycles", 1), max(1, (instants - 1) // 4))
     sections = values.get("section_profile", "uniform")
     if not isinstance(sections, str):
         # Sections are positive, within eight decades of each other.

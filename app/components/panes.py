@@ -37,6 +37,13 @@ CLOSE = {
     }
 }
 """A list in a row of others has no room to spare."""
+SLIM = {
+    "& .MuiSelect-select": {
+        **CLOSE["& .MuiSelect-select"],
+        "padding": "1px 22px 1px 8px !important",
+    }
+}
+"""One in a line of text has less."""
 
 
 def column(*parts: Any, role: str, **options: Any) -> pn.Column:
@@ -65,7 +72,7 @@ def select(
     label: str, options: Any, choose: Callable[[Any], None] = lambda value: None, **more: Any
 ) -> pmui.Select:
     """Give a small list to choose from; `choose` is told what is chosen."""
-    made = pmui.Select(label=label, options=options, size="small", sx=CLOSE, **more)
+    made = pmui.Select(label=label, options=options, size="small", **{"sx": CLOSE, **more})
     made.param.watch(lambda event: choose(event.new), "value")
     return made
 

@@ -23,6 +23,8 @@ input { flex: 1; min-width: 0; margin: 0; accent-color: var(--accent); cursor: p
 button { padding: 0 5px; font: inherit; font-size: 13px; line-height: 1.4; color: inherit;
   background: transparent; border-radius: 4px; cursor: pointer;
   border: 1px solid color-mix(in srgb, currentColor 40%, transparent); }
+:host(.inline) div:has(> label) { display: flex; gap: 8px; align-items: center; }
+:host(.inline) .line { flex: 1; }
 """
 
 

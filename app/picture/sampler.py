@@ -27,6 +27,7 @@ from app.picture.shown import (
     instant_of,
     thinned,
 )
+from app.picture.slip_plane import SlipPlane, slip_plane, space_of
 from app.picture.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
@@ -34,6 +35,7 @@ from solver.discrete.loops import LoopFields
 from solver.latin import Iterate
 from solver.latin.status_changes import status_changes
 from solver.reduction.svd import friction_spectra
+from solver.reference.slip_space import SlipSpace
 from solver.reference.solution import Reference
 from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of, words_of
 from solver.settings import Settings
@@ -168,6 +170,16 @@ class Sampler:
         """Keep the friction of an iterate in few numbers."""
         return clipped(self._settings, iterate)
 
+    @cached_property
+    def _space(self) -> SlipSpace | None:
+        return space_of(self._problem)
+
+    def slips(self, iterate: Iterate) -> SlipPlane | None:
+        """Show an iterate in the plane of two slips, where there are no more."""
+        if self._space is None:
+            return None
+        return slip_plane(self._settings, iterate, self._space, self._columns)
+
     def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
         """Show what has moved at the chosen instant."""
         return self._geometry.pose(iterate, self._column(look), bodies)
@@ -236,6 +248,11 @@ class Frame:
     def clipped(self) -> Clipped:
         """How few numbers its friction takes."""
         return self.sampler.clipped(self.iterate)
+
+    @cached_property
+    def slips(self) -> SlipPlane | None:
+        """The plane of its slips, where two points rub."""
+        return self.sampler.slips(self.iterate)
 
     @cached_property
     def spectra(self) -> Floats:

@@ -10,7 +10,7 @@ import panel as pn
 
 from app.components.fold import Fold
 from app.components.keys import Keys
-from app.components.panes import column, page, text
+from app.components.panes import STYLE, column, page, text
 from app.components.pulse import pulse
 from app.controls.sidebar import Sidebar
 from app.picture.glossary import terms_in
@@ -23,7 +23,7 @@ from app.shell.banner import Banner
 from app.shell.delivery import Delivery
 from app.shell.gallery import gallery
 from app.shell.log import RunLog
-from app.shell.looks import Looks
+from app.shell.looks import PLACES, Looks
 from app.shell.notes import Notes
 from app.shell.opening import Opening
 from app.shell.page_link import PageLink
@@ -113,7 +113,7 @@ class Dashboard:
         beside = pn.FlexBox(*acts, flex_wrap="nowrap", **AT_RIGHT)
         header = [self._tabs.bar, beside]
         self.page = page(self._sidebar.view, header, self._tabs.main, self.session.say)
-        controls = [self._transport.view, beside, self._sidebar.view]
+        controls = [self._transport.view, self._looks.view, beside, self._sidebar.view]
         self._phone = Phone(self.page, self._tabs, self._live, controls, self.session.say)
         if on_phone:
             self._phone.fit()
@@ -185,8 +185,8 @@ class Dashboard:
         whole = Fold(label=label, css_classes=["whole"], width=76, kept_as="method-figures")
         heads = self._banner.view, self._teaching.view, self._transport.view
         folding = column(whole, figures, role="folding")
-        parts = *heads, words, folding, self._gallery, self.pulse, self._keys
-        return column(*parts, role="live", margin=(4, 10))
+        parts = *heads, self._looks.view, words, folding, self._gallery, self.pulse, self._keys
+        return column(*parts, role="live", margin=(4, 10), stylesheets=[STYLE, PLACES])
 
     def _arrange(self) -> None:
         """Show the views that are chosen and apply."""
@@ -195,7 +195,7 @@ class Dashboard:
         self._shown = [] if session.asks else drawn(session.wanted, chosen)
         few = self._stage.is_bare and not session.is_named
         there = self._shown[: FIRST_ROW if few else None]
-        self._transport.view.visible = room is None
+        self._transport.view.visible = self._looks.view.visible = room is None
         self._saver.view.visible = room is None and self._tabs.shows_the_run
         is_free = not (room or session.lesson or self._stage.is_bare)
         self._gallery.offer(there, session.wanted, has_tabs=is_free)
@@ -208,7 +208,8 @@ class Dashboard:
     def _place(self) -> None:
         """Have the widgets stand there that choose anything at present."""
         bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
-        self._transport.place(self._looks.parts(shows_bodies=bodies))
+        self._looks.draw_bodies(is_wanted=bodies)
+        self._transport.place(self._looks.parts())
 
     def _lead_again(self, ticket: str) -> None:
         attendance = self.session.attendance

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
-from app.components.panes import select
+from app.components.panes import SLIM, row, select
 from app.components.scrubber import Scrubber, scrubber
 from app.picture.shown import STRESSES
 from app.session.session import Session
@@ -19,6 +19,19 @@ SAME = 0.02
 STRESS_TITLES = {name if name == STRESSES[0] else f"stress {name}": name for name in STRESSES}
 
 
+PLACES = """
+.looks:not(.shown), :host(:is(.asks, .present, .embed)) .looks { display: none !important; }
+@media (min-width: 761px) {
+  .looks { align-self: flex-end; width: 400px !important; margin: 0 12px -28px 0 !important; }
+  .looks.shown + .status { width: calc(100% - 412px) !important; }
+  .looks.shown + .status { min-height: 28px; padding-top: 4px; }
+  :host(.taught:not(.asks, .present)) :is(.looks, .status) { grid-area: 2 / 2; place-self: start; }
+  :host(.taught) .looks { justify-self: end !important; }
+}
+"""
+"""Where what chooses how bodies are drawn stands: in the line of the status, at its right."""
+
+
 class Looks:
     """What is chosen beside the instant; a widget is made for the first scene that needs it.
 
@@ -26,27 +39,38 @@ class Looks:
     ----------
     session
         Is told what is chosen.
+
+    Attributes
+    ----------
+    view
+        What chooses how bodies are drawn; it stands in the line of the status, at its right.
     """
 
     def __init__(self, session: Session) -> None:
         self._session = session
+        self.view = row(css_classes=["looks"])
         self._showing = False
         self._scene = ""
         self._interfaces: list[str] = []
 
-    def parts(self, *, shows_bodies: bool) -> list[Any]:
-        """Give the widgets that choose anything at present, as they have to stand."""
+    def draw_bodies(self, *, is_wanted: bool) -> None:
+        """Have one choose how bodies are drawn, or not."""
+        if is_wanted and not self.view:
+            self.view[:] = [self._stress, self._magnification]
+        self.view.css_classes = ["looks", "shown"] if is_wanted else ["looks"]
+
+    def parts(self) -> list[Any]:
+        """Give the widgets that choose anything else at present."""
         facts, scene = self._session.facts, self._session.settings.scene
         # A widget that went until the next run of the scene is shown would have the browser build
         # all that stand beside it twice for every change.
         if facts is not None or scene != self._scene:
             self._scene, self._interfaces = scene, list(facts.interfaces) if facts else []
-        found: list[Any] = []
-        if len(self._interfaces) > 1:
-            if facts is not None:
-                self._show(self._interfaces, facts.interface)
-            found.append(self._interface)
-        return [*found, self._stress, self._magnification] if shows_bodies else found
+        if len(self._interfaces) <= 1:
+            return []
+        if facts is not None:
+            self._show(self._interfaces, facts.interface)
+        return [self._interface]
 
     @cached_property
     def _interface(self) -> Any:
@@ -61,7 +85,9 @@ class Looks:
             {self._session.say(title): name for title, name in STRESS_TITLES.items()},
             lambda stress: self._session.watch(stress=stress),
             value=STRESSES[0],
-            width=128,
+            width=112,
+            margin=(0, 8),
+            sx=SLIM,
             description=self._session.say("What colours the deformed bodies."),
         )
 
@@ -75,6 +101,7 @@ class Looks:
             "as many as shows them well.",
             end=DECADES * len(STEPS) + 1,
             text="auto",
+            css_classes=["inline"],
         )
 
     def _show(self, interfaces: list[str], chosen: str) -> None:

@@ -59,6 +59,7 @@ sup { line-height: 0; }
 .control[hidden] { display: none; }
 .control input[type=range] { width: 200px; max-width: 100%; margin: 0 0 4px; }
 .control select { display: inline-block; width: auto; margin: 2px 0; }
+.control select ~ div { display: none; }
 .control label { display: inline-block; margin-right: 6px; white-space: nowrap; }
 .strip { padding: 4px 0 4px 10px; }
 .strip:has(nav) { display: flex; align-items: start; gap: 20px; }
@@ -66,8 +67,9 @@ sup { line-height: 0; }
 .strip > div[hidden] { display: none; }
 .strip p { margin: 0 0 6px; }
 .strip .control input[type=range] { width: 260px; }
-.strip .counts { display: grid; grid-template-columns: repeat(2, 1fr); gap: 6px 12px; margin: 0; }
-.strip .counts li { margin: 0; font-size: 26px; line-height: 1.2; }
+.strip .counts { display: grid; grid-template-columns: repeat(auto-fit, minmax(200px, 1fr));
+  gap: 6px 12px; margin: 0; }
+.strip .counts li { margin: 0; font-size: 24px; line-height: 1.15; }
 .strip .choices button { padding: 12px 16px; margin: 10px 0; font-size: 30px; }
 nav { white-space: nowrap; }
 nav span { margin: 0 8px 0 0; }

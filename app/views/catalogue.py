@@ -16,6 +16,7 @@ from app.views import (
     load_path,
     loop,
     picture,
+    slip_plane,
     spectra,
     status_map,
     tractions,
@@ -27,7 +28,7 @@ from solver.settings import Settings
 CARDS: tuple[tuple[View, ...], ...] = (
     (picture.VIEW, deformed.VIEW),
     (tractions.VIEW, friction.VIEW, axial.VIEW),
-    (status_map.VIEW,),
+    (status_map.VIEW, slip_plane.VIEW),
     (load_path.VIEW, loop.VIEW, cycles.LOOPS, cycles.ENERGY, cycles.FRETTING),
     (convergence.VIEW, error_time.VIEW),
     (spectra.VIEW, SPACE_MODES, TIME_FUNCTIONS, basis_size.VIEW, clips.VIEW),

@@ -9,10 +9,10 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, quantity
+from solver.definitions import Pairs, SettingError, choice, count, quantity
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
-from solver.loads import PRESETS, PRESSURES, instants_of, load_path
+from solver.loads import BEGINS, PRESETS, PRESSURES, instants_of, load_path
 from solver.phrases import Phrase
 from solver.settings import Settings
 
@@ -20,6 +20,8 @@ LARGEST_FIELD = 25_000_000
 """Nodes times instants; a run keeps about ten fields over them."""
 POINTS = 9
 """Of a table that stands for a preset."""
+FEWEST = 4
+"""Instants a cycle, with which one sees that it turns."""
 
 
 class SceneSettings(Settings):
@@ -65,6 +67,17 @@ class SceneSettings(Settings):
         logarithmic=True,
     )
 
+    cycles = count(
+        1,
+        (1, 5000),
+        (1, 20),
+        "How often what the presets of load paths do, after their beginning, is done in the "
+        "interval; a preset that does not come back (ramp, hold, random) stays as it is.",
+        group="Load",
+        title="Times over",
+        applies=lambda settings: settings.is_repeatable,
+    )
+
     PARTS: ClassVar[Mapping[str, str]] = {"substructures": "elements"}
     """Numbers of parts, and the numbers that they are parts of and cannot exceed."""
     MESH: ClassVar[Sequence[str]] = ("elements",)
@@ -108,6 +121,12 @@ class SceneSettings(Settings):
         """Name what may be behind something; `behind` leaves out what does not apply."""
         return {}
 
+    @property
+    def is_repeatable(self) -> bool:
+        """Whether any load path is a preset that comes back to where it began."""
+        names = (name for name in self.definitions() if f"_{name}".endswith("_load"))
+        return any(getattr(self, name) in BEGINS for name in names if self.applies(name))
+
     def times(self) -> Array:
         """Give the instants, shape (n_instants,), s; a single one stands at the end."""
         own: Any = self  # every scene defines these, where it shows them
@@ -120,7 +139,7 @@ class SceneSettings(Settings):
     def points(self, name: str) -> Pairs:
         """Give points of the preset that a curve setting has at present."""
         own: Any = self
-        instants = np.linspace(0.0, own.duration, POINTS)
+        instants = np.linspace(0.0, own.duration, (POINTS - 1) * self.cycles + 1)
         return as_points(instants, self._along(name, instants))
 
     def _along(self, name: str, instants: Array) -> Array:
@@ -128,7 +147,7 @@ class SceneSettings(Settings):
         curve: str | Pairs = getattr(self, name)
         size = self.size_of(name) if isinstance(curve, str) else 0.0
         shapes = {**self.SHAPES, **PRESSURES}
-        return load_path(curve, instants, own.duration, size, own.seed, shapes)
+        return load_path(curve, instants, own.duration, size, own.seed, shapes, self.cycles)
 
     def with_change(self, name: str, value: object) -> Self:
         """Change one setting; numbers of parts that exceed it come down with it."""
@@ -155,6 +174,13 @@ class SceneSettings(Settings):
                     Phrase("{} to {} ({})", self.definitions()[part].bounds[0], whole, most),
                     Phrase("lower {} or raise {}", part, whole),
                 )
+        if self.is_repeatable and 1 < self.cycles > (own.instants - 1) // FEWEST:
+            raise SettingError(
+                "cycles",
+                self.cycles,
+                Phrase("at most {} with {} instants", (own.instants - 1) // FEWEST, own.instants),
+                "give more instants",
+            )
         if self.n_nodes * own.instants > LARGEST_FIELD:
             raise SettingError(
                 "instants",

@@ -21,6 +21,10 @@ from solver.study.slips import slips_of
 
 SMALLEST_SWING = 0.05
 """Share of the whole range that a path must turn back by to begin another half cycle."""
+NO_SWING = 1e-9
+"""Share of its size by which rounding lets a path that stands still swing."""
+LAST = 3
+"""Cycles from which one tells what becomes of slip, whatever came before them."""
 REPEATED = 1e-3
 """Share of its range by which a load may differ from a cycle to the next."""
 
@@ -45,7 +49,7 @@ class LoadCycles:
     before
         Slip before the first, as `slip`, shape (n_points,), m.
     is_repeated
-        Whether everything that acts is the same in all of them.
+        Whether everything that acts is the same in the last three of them, or in all of fewer.
     """
 
     ends: list[int]
@@ -109,7 +113,7 @@ def turning_points(path: Array) -> list[int]:
     -------
     Indices, the first of each extreme that is held.
     """
-    least = SMALLEST_SWING * float(np.ptp(path))
+    least = max(SMALLEST_SWING * float(np.ptp(path)), NO_SWING * float(np.abs(path).max()))
     found: list[int] = []
     outmost, way = 0, 0.0
     for place, value in enumerate(path):
@@ -137,9 +141,9 @@ def _paths(settings: Settings) -> Iterator[Array]:
 
 
 def _is_repeated(settings: Settings, ends: list[int]) -> bool:
-    """Tell whether all that acts begins every cycle alike, and reaches as far in it."""
+    """Tell whether all that acts begins the last cycles alike, and reaches as far in them."""
     for path in _paths(settings):
-        parts = [path[a : b + 1] for a, b in pairwise(ends)]
+        parts = [path[a : b + 1] for a, b in pairwise(ends[-LAST - 1 :])]
         seen = np.array([[one[0], one[-1], one.min(), one.max()] for one in parts])
         if len(seen) and np.ptp(seen, axis=0).max() > REPEATED * np.ptp(path):
             return False

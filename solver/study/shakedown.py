@@ -13,11 +13,9 @@ from typing import Literal
 import numpy as np
 
 from solver.arrays import Array
-from solver.study.cycles import LoadCycles
+from solver.study.cycles import LAST, LoadCycles
 
 Word = Literal["elastic shakedown", "shakedown with slip that dies", "steady slip", "ratcheting"]
-NEEDED = 3
-"""Cycles without which nothing is said."""
 ALIKE = 0.02
 """Share by which the slip of the last cycles may differ where it counts as the same."""
 ONE_WAY = 0.05
@@ -62,7 +60,7 @@ def fate_of(cycles: LoadCycles) -> Fate | None:
     None where that is not settled: with fewer than three cycles, cycles that are not alike, slip
     that still changes, or no slip ever.
     """
-    if len(cycles) < NEEDED or not cycles.is_repeated or not cycles.slip.size:
+    if len(cycles) < LAST or not cycles.is_repeated or not cycles.slip.size:
         return None
     most = cycles.slip.max(axis=0)
     if not most.any() and not cycles.before.any():
@@ -91,7 +89,7 @@ def _word(cycles: LoadCycles, most: Array) -> Word | None:
 
 def _settled(values: Array) -> bool:
     """Tell whether values of points, (n_points, n_cycles), are the same in the last cycles."""
-    last = values[:, -NEEDED:]
+    last = values[:, -LAST:]
     return bool(np.ptp(last, axis=1).max() <= ALIKE * np.abs(last[:, -1]).max())
 
 
