@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.arrays import Array
+
 
 @dataclass(frozen=True)
 class HalfPlane:
@@ -39,7 +41,24 @@ class HalfPlane:
         """Give the half-width that sticks under a shear force of a share of mu P, m."""
         return float(self.half_width * np.sqrt(1.0 - share))
 
+    def pressure(self, place: Array) -> Array:
+        """Give the pressure at places from the middle of the contact, m; Pa."""
+        return self.peak * _root(place / self.half_width)
+
+    def traction(self, place: Array, friction: float, share: float) -> Array:
+        """Give the shear traction under a share of mu P that has grown, Pa; places as above.
+
+        It is that of sliding, less the same for what sticks: two square roots.
+        """
+        stuck = self.stuck(share)
+        back = stuck / self.half_width * _root(place / stuck) if stuck > 0.0 else 0.0
+        return np.asarray(friction * self.peak * (_root(place / self.half_width) - back))
+
     def energy(self, friction: float, share: float) -> float:
         """Give what friction takes in a cycle between plus and minus a share of mu P, J/m."""
         bracket = 4.0 * (1.0 - share) * np.log(1.0 - share) + 4.0 * share - 2.0 * share**2
         return float((friction * self.force) ** 2 / (np.pi * self.modulus) * bracket)
+
+
+def _root(share: Array) -> Array:
+    return np.asarray(np.sqrt(np.maximum(1.0 - share**2, 0.0)))
