@@ -70,7 +70,9 @@ def test_the_page_has_every_row_and_loads_nothing(folder: Path) -> None:
     page = (folder / "proof.html").read_text(encoding="utf-8")
     rows = read(folder)
     parts = {row["part"] for row in rows}
-    assert page.count("<tr>") == len(rows) + len(parts)
+    numbers = {(row["case"], row["quantity"]) for row in rows}
+    assert page.count("<tr>") == len(numbers) + len(CASES) + len(parts)
+    assert page.count(">holds</td>") == len(numbers)
     assert re.findall("<h2>(.*)</h2>", page) == [part.value for part in Part]
     assert parts >= {Part.CLOSED_FORMS.value, Part.PUBLISHED.value}
     assert not re.search(r"<(script|link|img|iframe)", page)
