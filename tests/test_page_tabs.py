@@ -97,6 +97,9 @@ def test_a_link_of_the_proof_opens_its_run_on_the_same_page(page: Page) -> None:
     link.click()
     expect(page.locator(".plots").first).to_be_visible()
     comes_true(page, "location.search.includes('elements=200')")
+    # The bar's loop, over its closed form.
+    expect(page.get_by_text("Hysteresis loop").locator("visible=true").first).to_be_visible()
+    expect(page.get_by_text("closed form").locator("visible=true")).to_have_count(1)
     assert page.evaluate("window.isTheSame")
     open_report(page, "Proof")
     expect(link).to_be_visible()

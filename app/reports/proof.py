@@ -9,6 +9,11 @@ from app.components.links import Links
 from app.reports.report import Report
 from app.session.session import Session
 from app.session.studies import proof_of
+from app.views import axial, loop
+from app.views.catalogue import beside, drawn
+
+EXACT = axial.VIEW, loop.VIEW
+"""Views that show closed forms, and are not the first on their cards."""
 
 
 class ProofReport(Report):
@@ -31,12 +36,23 @@ class ProofReport(Report):
 
     def __init__(self, session: Session, follow: Callable[[str], None]) -> None:
         super().__init__(session.asked.proof, session.turns.soon)
-        self._follow = follow
+        self._session, self._follow = session, follow
 
     def _ask(self) -> None:
         self._job.ask("all cases", proof_of)
 
     def _choices(self) -> list[Any]:
         links = Links(width=0, height=0, margin=0)
-        links.on_msg(lambda message: self._follow(message.data))
+        links.on_msg(lambda message: self.hear(message.data))
         return [links]
+
+    def hear(self, address: str) -> None:
+        """Open the run of a link, with the plots in which closed forms are drawn."""
+        session = self._session
+        self._follow(address)
+        names = {view.name for view in drawn(session.wanted, session.chosen)}
+        for view in EXACT:
+            if view.applies(session.wanted):
+                names -= {one.name for one in beside(view, session.wanted)}
+                names.add(view.name)
+        session.draw(names, is_named=True)
