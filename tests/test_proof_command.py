@@ -5,20 +5,23 @@ from __future__ import annotations
 import csv
 import json
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import parse_qsl
 
+import numpy as np
 import pytest
 
 import solver.reference
 from app.shell.address import settings_from_query
 from solver.cli import main
 from solver.reference.choice import reference_of
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.block import block
 from solver.study.error_against_time import PeerError
-from solver.study.proof import others, published, report
+from solver.study.proof import by_getfem, others, published, report
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part
 
 CASES = list(report.cases())
@@ -133,21 +136,42 @@ def test_a_program_that_is_not_installed_is_said_to_be_absent(
 ) -> None:
     gone = [replace(one, module="not_there") for one in others.PUBLIC]
     monkeypatch.setattr(others, "PUBLIC", gone)
+    monkeypatch.setattr(by_getfem, "installed", lambda: None)
     assert not list(others.other_cases())
     _, page = report.write_proof([], tmp_path)
-    assert "Not installed: PIQP, OSQP, DAQP, Clarabel" in page.read_text(encoding="utf-8")
+    assert "Not installed: PIQP, OSQP, DAQP, Clarabel, GetFEM." in page.read_text(encoding="utf-8")
 
 
-def test_a_program_that_gives_up_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_getfem_finds_the_same_forces_at_all_nodes_and_instants() -> None:
+    there = by_getfem.installed()
+    if there is None:
+        pytest.skip("GetFEM is not installed")
+    settings = CATALOGUE["block"].settings.checked({**others.SHEARED, "plane": "stress"})
+    theirs = by_getfem.solve_block(block(settings), there.python)
+    ours = reference_of(discretise(settings)).contact("support")
+    assert ours.normal_force is not None
+    scale = ours.normal_force.max()
+    assert np.abs(theirs.normal_force - ours.normal_force).max() < 1e-9 * scale
+    assert np.abs(theirs.tangential_force - ours.tangential_force).max() < 1e-9 * scale
+
+
+def test_a_program_that_gives_up_proves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def give_up(*_given: object) -> object:
         raise PeerError("gave up at instant 1: no more digits")
 
     monkeypatch.setattr(others, "solve_by", give_up)
     monkeypatch.setattr(others, "PUBLIC", [replace(others.PUBLIC[0], module="numpy")])
-    (case,) = others.other_cases()
-    rows = list(report.rows_of(case))
-    assert rows
-    assert not any(row.holds for row in rows)
+    broken = by_getfem.Installed(sys.executable, "0")
+    monkeypatch.setattr(by_getfem, "installed", lambda: broken)
+    monkeypatch.setattr(by_getfem, "PROGRAM", tmp_path / "nowhere.py")
+    found = list(others.other_cases())
+    assert len(found) == 2
+    for case in found:
+        rows = list(report.rows_of(case))
+        assert rows
+        assert not any(row.holds for row in rows)
 
 
 def test_slip_in_an_infinite_body_is_nearer_on_a_finer_mesh(

@@ -11,11 +11,14 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.scenes import discretise
+from solver.scenes.block import block
 from solver.study.error_against_time import PeerError
+from solver.study.proof import by_getfem
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part, of_scene
 from solver.study.public_solvers import PUBLIC, Public, PublicFields, solve_by
 
 ABSENT = "Not installed: {}."
+SHEARED: dict[str, Any] = {"elements": 24, "elements_up": 12, "instants": 17}
 PULLED: dict[str, Any] = {"load": "decaying", "elements": 50, "instants": 61, "substructures": 5}
 
 
@@ -28,7 +31,8 @@ class Program(NamedTuple):
 
 def other_programs() -> tuple[Program, ...]:
     """Give all that there is a case for."""
-    return tuple(Program(one.name, one.installed) for one in PUBLIC)
+    solvers = (Program(one.name, one.installed) for one in PUBLIC)
+    return (*solvers, Program(by_getfem.NAME, by_getfem.installed() is not None))
 
 
 def absent() -> str:
@@ -42,6 +46,9 @@ def other_cases() -> Iterator[KnownCase]:
     for public in PUBLIC:
         if public.installed:
             yield _quadratic(public)
+    there = by_getfem.installed()
+    if there is not None:
+        yield _block(there)
 
 
 def _quadratic(public: Public) -> KnownCase:
@@ -64,6 +71,41 @@ def _quadratic(public: Public) -> KnownCase:
         1e-4,
         "bar",
         PULLED,
+        numbers,
+        part=Part.OTHERS,
+    )
+
+
+def _block(there: by_getfem.Installed) -> KnownCase:
+    """Have GetFEM press a block on a rough parabola, and shear it to and fro."""
+
+    @cache
+    def solved(settings: Any) -> by_getfem.Found:
+        return by_getfem.solve_block(block(settings), there.python)
+
+    def numbers(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+        theirs, ours = solved(settings), answer.fields.contact("support")
+        assert ours.normal_force is not None
+        pressed = [one.sum(axis=0)[-1] for one in (theirs.normal_force, ours.normal_force)]
+        yield KnownNumber("pressing force", "N/m", *map(float, pressed))
+        largest = [one.max() for one in (theirs.normal_force, ours.normal_force)]
+        yield KnownNumber("largest pressing force of a node", "N/m", *map(float, largest))
+        lost = (
+            -float(np.sum(force * np.diff(moved, axis=1, prepend=0.0)))
+            for force, moved in (
+                (theirs.tangential_force, theirs.moved),
+                (ours.tangential_force, ours.slip),
+            )
+        )
+        yield KnownNumber("energy lost to friction", "J/m", *lost)
+
+    return of_scene(
+        f"block pressed and sheared, as {by_getfem.NAME} has it",
+        f"{by_getfem.NAME} {there.version}, the same elements told in its language, contact and "
+        "friction at the nodes by its augmented Lagrangian",
+        1e-6,
+        "block",
+        SHEARED,
         numbers,
         part=Part.OTHERS,
     )
