@@ -22,7 +22,7 @@ IN_HEADER = {
         "borderColor": "rgba(255, 255, 255, 0.6)",
         "textTransform": "none",
         "whiteSpace": "nowrap",
-        "padding": "3px 9px",
+        "padding": "3px 6px",
         "fontSize": "15px",
     },
     "& button.Mui-selected, & button.Mui-selected:hover": {
