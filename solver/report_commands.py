@@ -30,6 +30,7 @@ from solver.study.figure_page import write_figures
 from solver.study.growth import growth
 from solver.study.paper_figures import paper_figures
 from solver.study.proof import report as proof
+from solver.study.proof.sections import summary
 from solver.study.study_page import write_study
 from solver.study.study_report import aligned, conditions, growth_table, table, winners
 
@@ -214,7 +215,7 @@ def _proof(chosen: argparse.Namespace) -> int:
             print(proof.line(row), flush=True)
             rows.append(row)
         files = proof.write_proof(rows, chosen.out)
-    print(f"{proof.summary(rows)}\n{len(files)} files in {chosen.out}")
+    print(f"{summary(rows)}\n{len(files)} files in {chosen.out}")
     return 0 if all(row.holds for row in rows) else 1
 
 

@@ -20,6 +20,7 @@ OURS = re.compile(r'File ".*/(app|solver)/')
 REPORTS = {
     "Study": "Every form of LATIN and the incremental solver",
     "Stability": "Stiff and extreme cases of every scene",
+    "Proof": "Closed forms, published numbers",
 }
 """What stands on the tabs that have a button to start."""
 Visit = Callable[..., Page]

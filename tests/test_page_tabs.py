@@ -87,6 +87,24 @@ def test_the_stability_table_fills_row_by_row_and_can_be_filtered(page: Page) ->
     expect(verdicts.first).to_be_visible()
 
 
+def test_a_link_of_the_proof_opens_its_run_on_the_same_page(page: Page) -> None:
+    open_report(page, "Proof")
+    press(page, "Start")
+    link = page.get_by_role("link", name="bar pulled", exact=True)
+    expect(link).to_be_visible()
+    press(page, "Cancel")
+    page.evaluate("window.isTheSame = true")
+    link.click()
+    expect(page.locator(".plots").first).to_be_visible()
+    comes_true(page, "location.search.includes('elements=200')")
+    # The bar's loop, over its closed form.
+    expect(page.get_by_text("Hysteresis loop").locator("visible=true").first).to_be_visible()
+    expect(page.get_by_text("closed form").locator("visible=true")).to_have_count(1)
+    assert page.evaluate("window.isTheSame")
+    open_report(page, "Proof")
+    expect(link).to_be_visible()
+
+
 def test_figures_drawn_before_and_after_are_dark_in_the_dark_theme_say_values_and_can_be_left(
     page: Page,
 ) -> None:

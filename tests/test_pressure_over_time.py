@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from solver import Latin, solve
 from solver.discrete.rods import Rods
 from solver.latin import Accuracy, Iterations, Paper
+from solver.reference.broken_wire import broken_wire
 from solver.reference.choice import reference_of
 from solver.reference.closed_form import ClosedForm, closed_form
 from solver.reference.contact import IncrementalContact
@@ -20,6 +21,7 @@ from solver.reference.distance import distance_to
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.bar import BarSettings, bar
+from solver.scenes.strand import strand
 
 STIFFNESS = 659_400.0
 DRAWN = settings(derandomize=True, deadline=None, max_examples=25)
@@ -130,7 +132,7 @@ def test_a_strand_is_certified_under_a_pressure_that_changes(grip):
 def test_the_broken_wire_is_pulled_out_as_the_pressure_falls():
     own = {"load": "hold", "peak": 250.0, "pressure_load": "loosening", "elements": 200}
     chosen = CATALOGUE["strand"].settings.checked(own)
-    exact = CATALOGUE["strand"].broken_wire(chosen)
+    exact = broken_wire(strand(chosen))
     assert exact is not None
     found = reference_of(discretise(chosen))
     opened = np.ptp(exact.slip[[100, 101]], axis=0)

@@ -5,22 +5,34 @@ from __future__ import annotations
 import csv
 import json
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import parse_qsl
 
+import numpy as np
 import pytest
 
 import solver.reference
 from app.shell.address import settings_from_query
 from solver.cli import main
-from solver.scenes import CATALOGUE
-from solver.study.proof import report
-from solver.study.proof.case import KnownCase, KnownNumber
+from solver.reference.choice import reference_of
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.block import block
+from solver.study.error_against_time import PeerError
+from solver.study.proof import by_getfem, others, published, report
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part
 
 CASES = list(report.cases())
-CLOSED_FORMS = {"bent_wire", "cantilever", "changing_friction_bar", "compliant_bar", "half_plane"}
+CLOSED_FORMS = {
+    "bent_wire",
+    "cantilever",
+    "changing_friction_bar",
+    "compliant_bar",
+    "half_plane",
+    "slip_front",
+}
 
 
 def read(folder: Path) -> list[dict[str, str]]:
@@ -59,7 +71,13 @@ def test_every_number_holds_by_both_solvers(folder: Path) -> None:
 
 def test_the_page_has_every_row_and_loads_nothing(folder: Path) -> None:
     page = (folder / "proof.html").read_text(encoding="utf-8")
-    assert page.count("<tr>") == len(read(folder)) + 1
+    rows = read(folder)
+    parts = {row["part"] for row in rows}
+    numbers = {(row["case"], row["quantity"]) for row in rows}
+    assert page.count("<tr>") == len(numbers) + len(CASES) + len(parts)
+    assert page.count(">holds</td>") == len(numbers)
+    assert re.findall("<h2>(.*)</h2>", page) == [part.value for part in Part]
+    assert parts >= {Part.CLOSED_FORMS.value, Part.PUBLISHED.value}
     assert not re.search(r"<(script|link|img|iframe)", page)
 
 
@@ -111,6 +129,62 @@ def test_every_closed_form_that_has_a_file_of_its_own_is_used() -> None:
     assert there >= CLOSED_FORMS
     for name in CLOSED_FORMS:
         assert any(f"solver.reference.{name}" in source for source in sources), name
+
+
+def test_a_program_that_is_not_installed_is_said_to_be_absent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gone = [replace(one, module="not_there") for one in others.PUBLIC]
+    monkeypatch.setattr(others, "PUBLIC", gone)
+    monkeypatch.setattr(by_getfem, "installed", lambda: None)
+    assert not list(others.other_cases())
+    _, page = report.write_proof([], tmp_path)
+    assert "Not installed: PIQP, OSQP, DAQP, Clarabel, GetFEM." in page.read_text(encoding="utf-8")
+
+
+def test_getfem_finds_the_same_forces_at_all_nodes_and_instants() -> None:
+    there = by_getfem.installed()
+    if there is None:
+        pytest.skip("GetFEM is not installed")
+    settings = CATALOGUE["block"].settings.checked({**others.SHEARED, "plane": "stress"})
+    theirs = by_getfem.solve_block(block(settings), there.python)
+    ours = reference_of(discretise(settings)).contact("support")
+    assert ours.normal_force is not None
+    scale = ours.normal_force.max()
+    assert np.abs(theirs.normal_force - ours.normal_force).max() < 1e-9 * scale
+    assert np.abs(theirs.tangential_force - ours.tangential_force).max() < 1e-9 * scale
+
+
+def test_a_program_that_gives_up_proves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def give_up(*_given: object) -> object:
+        raise PeerError("gave up at instant 1: no more digits")
+
+    monkeypatch.setattr(others, "solve_by", give_up)
+    monkeypatch.setattr(others, "PUBLIC", [replace(others.PUBLIC[0], module="numpy")])
+    broken = by_getfem.Installed(sys.executable, "0")
+    monkeypatch.setattr(by_getfem, "installed", lambda: broken)
+    monkeypatch.setattr(by_getfem, "PROGRAM", tmp_path / "nowhere.py")
+    found = list(others.other_cases())
+    assert len(found) == 2
+    for case in found:
+        rows = list(report.rows_of(case))
+        assert rows
+        assert not any(row.holds for row in rows)
+
+
+def test_slip_in_an_infinite_body_is_nearer_on_a_finer_mesh(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def deviation() -> float:
+        *_, case = published.published_cases()
+        answer = Answer(problem := case.problem(), reference_of(problem))
+        return max(number.deviation for number in case.numbers(answer))
+
+    fine = deviation()
+    monkeypatch.setattr(published, "ELEMENTS", 50)
+    assert deviation() > 1.4 * fine
 
 
 def test_a_folder_that_cannot_be_made_is_refused(

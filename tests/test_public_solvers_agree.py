@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from benchmarks import peers
-from benchmarks.peers import PUBLIC, solve_by
 
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
+from solver.study import public_solvers
 from solver.study.error_against_time import Peer, PeerError, error_against_time
+from solver.study.public_solvers import PUBLIC, solve_by
 
 WHAT_THEY_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
 
@@ -36,7 +36,7 @@ def test_public_solvers_agree_with_the_incremental_solver(public, changes):
 
 
 def test_a_solver_that_takes_too_long_is_stopped(monkeypatch):
-    monkeypatch.setattr(peers, "TIME_LIMIT", -1.0)
+    monkeypatch.setattr(public_solvers, "TIME_LIMIT", -1.0)
     idle = replace(PUBLIC[0], prepare=lambda *given: lambda lower, upper: 0.0 * lower)
     with pytest.raises(PeerError, match="at instant 1"):
         solve_by(

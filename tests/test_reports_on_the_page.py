@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import pickle
 import re
+from collections.abc import Sequence
+from html import escape
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -17,14 +19,15 @@ from app.reports.reports import EVERY, WRONG, StabilityReport, StudyReport, comp
 from app.session.report_folder import SECTIONS, ReportFolder, files, said
 from app.session.report_job import Found, ReportJob
 from app.session.session import Session
-from app.session.studies import stability_of, study_of
+from app.session.studies import proof_of, stability_of, study_of
 from app.session.turns import Turns
 from solver.scenes.bar import BarSettings
 from solver.scenes.layers import LayersSettings
 from solver.study.audit.audit import Audited, Verdict, audit
 from solver.study.audit.cases import Case
 from solver.study.audit.stability import stability_report
-from solver.study.page import PlotSection
+from solver.study.page import PlotSection, Section
+from solver.study.proof.report import cases
 
 TINY = {"elements": 4, "substructures": 2, "instants": 5}
 
@@ -70,6 +73,28 @@ def test_stability_is_shown_as_it_grows_and_then_whole(
     assert (
         "In other units the bar has the same iterates" in (tmp_path / "stability.html").read_text()
     )
+
+
+def test_the_proof_is_shown_case_by_case_with_links_that_stay_on_the_page(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    two = list(cases())[:2]
+    monkeypatch.setattr("app.session.studies.cases", lambda: iter(two))
+    grown: list[int] = []
+    show = ReportFolder.show
+
+    def count(growing: ReportFolder, sections: Sequence[Section]) -> None:
+        grown.append("".join(map(str, sections)).count('<td class="verdict'))
+        show(growing, sections)
+
+    monkeypatch.setattr(ReportFolder, "show", count)
+    proof_of(tmp_path)
+    assert grown == [1, 2]
+    assert set(files(tmp_path)) == {"proof.csv", "proof.html"}
+    shown = "".join(pickle.loads(said(tmp_path, SECTIONS)))
+    assert re.findall('<a class="run" href="([^"]*)"', shown) == [
+        escape(case.address) for case in two
+    ]
 
 
 def row(**changes: Any) -> Audited:

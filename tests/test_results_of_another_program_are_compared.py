@@ -15,7 +15,7 @@ from solver.discrete.problem import Problem
 from solver.reference.choice import reference_of
 from solver.reference.distance import determinate_forces
 from solver.reference.solution import Reference
-from solver.scenes import CATALOGUE, closed_form_of, discretise
+from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
 from solver.study.beside import Beside, weights_of
 from solver.study.brought import Brought, read_brought
@@ -100,17 +100,16 @@ def test_the_distance_to_the_closed_form_falls_with_the_mesh() -> None:
     for elements in (20, 40, 80):
         settings = settings_of(load="ramp", elements=elements, instants=2 * elements + 1)
         fine = settings_of(load="ramp", elements=400, instants=401)
-        exact = closed_form_of(fine)
-        assert exact is not None
+        grid = discretise(fine)
+        friction, _ = exact_of(fine, grid)
         where = np.sort(rng.choice(np.arange(1, 400), 150, replace=False))
         when = np.sort(rng.choice(np.arange(1, 401), 60, replace=False))
-        grid = discretise(fine)
         x, t = grid.friction.positions[where], grid.instants[when]
         text = table(
             "friction force",
             x,
             t,
-            exact.friction_force[np.ix_(where, when)] / (0.0025 * fine.length),
+            friction.up[np.ix_(where, when)],
         )
         brought = read_brought(text, "exact.csv", settings)
         problem = discretise(settings)

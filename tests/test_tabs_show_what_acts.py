@@ -10,6 +10,7 @@ from lone_link import LoneLink
 
 from app.controls.items import NOTE, SCENE
 from app.controls.sidebar import Sidebar
+from app.reports.proof import ProofReport
 from app.reports.report import Report
 from app.reports.reports import PaperFigures, StabilityReport, StudyReport
 from app.session.pages import Pages
@@ -44,7 +45,12 @@ def test_a_report_that_no_setting_changes_shows_none_and_the_live_run_has_all_ag
     session: Session, sidebar: Sidebar
 ) -> None:
     live = shown_for(sidebar, None)
-    for report in (PaperFigures(session.asked.figures), StabilityReport(session.asked.stability)):
+    reports = (
+        PaperFigures(session.asked.figures),
+        StabilityReport(session.asked.stability),
+        ProofReport(session, lambda address: None),
+    )
+    for report in reports:
         assert set(shown_for(sidebar, report)) == {NOTE, ""}
     assert shown_for(sidebar, None) == live
 

@@ -149,11 +149,10 @@ def test_broken_wire_is_shown_beside_its_closed_form() -> None:
     shown = told("strand", {"load": "ramp", "max_iterations": 150}, look)
     wires, axial = shown.recording.stand.wires, shown.frame(look).axial
     assert wires is not None
-    assert wires.exact is not None
-    assert wires.exact_positions is not None
     assert axial is not None
     broken = axial[wires.numbers.index(2)]
-    exact = np.interp(wires.positions, wires.exact_positions, wires.exact[0, :, -1])
+    known, _ = shown.recording.stand.known("axial force")
+    exact = np.interp(wires.positions, known.across, known.up[:, -1])
     assert broken == pytest.approx(exact, abs=0.03 * 600.0)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from app.picture.portrait import Portrait
 from app.picture.shown import Axes, Bytes, Floats, Mesh, Wires
+from solver.reference.exact_curve import ExactCurve, Of
 
 
 @dataclass(frozen=True)
@@ -31,9 +32,8 @@ class Stand:
         Force at the loaded end, shape (n_curve,), N; None where frames tell it.
     all_instants
         The instants of `load` and of end displacements, thinned to `LONGEST_CURVE`, s.
-    closed_form, closed_form_end
-        Friction force, N/m, and end displacement, m, of the closed form; None where there is
-        none, or as long as it is not computed.
+    exact
+        Closed forms, thinned as the fields are; none where there is none, or not yet.
     portrait
         What a picture of the scene shows of every iterate alike.
     mesh
@@ -56,13 +56,16 @@ class Stand:
     loop: Axes
     load: Floats | None
     all_instants: Floats
-    closed_form: Floats | None
-    closed_form_end: Floats | None
     portrait: Portrait
     words: str
     mesh: Mesh | None = None
     wires: Wires | None = None
     is_idle: bool = False
+    exact: tuple[ExactCurve, ...] = ()
+
+    def known(self, of: Of) -> list[ExactCurve]:
+        """Give what is known of a quantity without a mesh."""
+        return [one for one in self.exact if one.of == of]
 
 
 @dataclass(frozen=True)

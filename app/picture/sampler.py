@@ -35,9 +35,10 @@ from solver.discrete.loops import LoopFields
 from solver.latin import Iterate
 from solver.latin.status_changes import status_changes
 from solver.reduction.svd import friction_spectra
+from solver.reference.exact_curve import ExactCurve
 from solver.reference.slip_space import SlipSpace
 from solver.reference.solution import Reference
-from solver.scenes import broken_wire_of, closed_form_of, kind_of, loop_of, structure_of, words_of
+from solver.scenes import exact_of, kind_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 
 Changes = tuple[dict[str, int], NDArray[np.bool_]]
@@ -87,7 +88,7 @@ class Sampler:
         self._geometry = DrawnGeometry(problem, described, mesh)
 
     def stand(self) -> Stand:
-        """Describe what the fields stand on, without the closed form."""
+        """Describe what the fields stand on, without closed forms."""
         problem, law, loop = self._problem, self._law, self.loop
         bound = coefficient = None
         if law.opens:
@@ -109,8 +110,6 @@ class Sampler:
             loop=Axes(loop.across, loop.up),
             load=None if load is None else floats(load[self._curve]),
             all_instants=floats(problem.instants[self._curve]),
-            closed_form=None,
-            closed_form_end=None,
             portrait=self._geometry.portrait,
             words=words_of(self._settings),
             mesh=self._mesh.mesh if self._mesh else None,
@@ -118,19 +117,16 @@ class Sampler:
             is_idle=nothing_acts(problem),
         )
 
-    def completed(self, stand: Stand) -> Stand:
-        """Add the closed form, where there is one."""
-        closed = closed_form_of(self._settings)
-        if closed is not None:
-            return replace(
-                stand,
-                closed_form=self._density(closed.friction_force),
-                closed_form_end=floats(closed.end_displacement[self._curve]),
-            )
-        exact = broken_wire_of(self._settings)
-        if exact is not None and self._wires is not None:
-            return replace(stand, wires=self._wires.completed(exact, self._columns))
-        return stand
+    def completed(self, stand: Stand, found: Reference | None) -> Stand:
+        """Add what is known of it without a mesh, for the forces of a reference."""
+        curves = exact_of(self._settings, self._problem, found)
+        return replace(stand, exact=tuple(map(self._drawn, curves)))
+
+    def _drawn(self, exact: ExactCurve) -> ExactCurve:
+        if exact.of == "loop":
+            return replace(exact, across=exact.across[self._curve], up=exact.up[self._curve])
+        rows = thinned(len(exact.across))
+        return replace(exact, across=exact.across[rows], up=exact.up[np.ix_(rows, self._columns)])
 
     def reference(self, found: Reference) -> DrawnFields:
         """Show a reference."""

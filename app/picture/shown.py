@@ -87,16 +87,11 @@ class Wires:
         Where the force is given along each of them, shape (n_positions,), m.
     broken
         Number of the broken one, or 0.
-    exact_positions, exact
-        Force of the broken wire and of its neighbours in closed form, shape (2, n_nodes,
-        n_instants), N, and its places, m; None where there is none, or not yet.
     """
 
     numbers: tuple[int, ...]
     positions: Floats
     broken: int
-    exact_positions: Floats | None = None
-    exact: Floats | None = None
 
 
 @dataclass(frozen=True)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
-from numpy.typing import NDArray
 
 from app.picture.shown import Floats, Wires, thinned
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
 from solver.latin import Iterate
-from solver.reference.broken_wire import BrokenWire
 
 MOST_WIRES = 12
 
@@ -29,7 +25,7 @@ class ShownWires:
     Attributes
     ----------
     base
-        What the forces stand on, without the closed form.
+        What the forces stand on.
     """
 
     def __init__(self, problem: Problem, broken: int) -> None:
@@ -41,22 +37,10 @@ class ShownWires:
             wires.add(broken - 1)
         elements = thinned(self._shape[1])
         self._chosen = np.ix_(np.array(sorted(wires)), elements)
-        self._length = problem.scales.displacement
         self.base = Wires(
             numbers=tuple(wire + 1 for wire in sorted(wires)),
             positions=self._force.positions[: self._shape[1]][elements].astype(np.float32),
             broken=broken,
-        )
-
-    def completed(self, exact: BrokenWire, columns: NDArray[np.intp]) -> Wires:
-        """Add the closed form at these instants."""
-        rows = thinned(len(exact.force))
-        both = np.stack([exact.force, exact.neighbour_force])
-        places = np.linspace(0.0, self._length, len(exact.force))
-        return replace(
-            self.base,
-            exact_positions=places[rows].astype(np.float32),
-            exact=both[np.ix_(np.arange(2), rows, columns)].astype(np.float32),
         )
 
     def forces(self, iterate: Iterate, column: int) -> Floats:

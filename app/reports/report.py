@@ -20,7 +20,7 @@ import panel_material_ui as pmui
 
 from app.charts.filling import drawn
 from app.charts.keys import legend
-from app.components.panes import button, column, row, select, text
+from app.components.panes import STYLE, button, column, row, select, text
 from app.picture.glossary import explained
 from app.session.report_job import Found, ReportJob
 from solver.study.page import Section
@@ -57,12 +57,13 @@ class Report:
         self._shown: tuple[Any, ...] = (None,)
         self._role = "report"
         self._drawings: deque[tuple[pn.Column, Future[Any]]] = deque()
-        self.view = column(role="paper", margin=(4, 10), visible=False)
+        # Without the style sheet, 20 kB, before somebody looks.
+        self.view = column(role="paper", margin=(4, 10), visible=False, stylesheets=[])
 
     def open(self) -> None:
         """Show the report; nothing is computed before somebody asks."""
         if not self.view.objects:
-            self.view[:] = self._made()
+            self.view.param.update(objects=self._made(), stylesheets=[STYLE])
         self._refresh()
 
     def refresh(self) -> None:

@@ -21,16 +21,17 @@ class Asked:
 
     Attributes
     ----------
-    figures, study, stability, mesh, inquiry
-        Three reports, a quantity on three meshes, and a sweep.
+    figures, study, stability, proof, mesh, inquiry
+        Four reports, a quantity on three meshes, and a sweep.
     """
 
     def __init__(self, executor: ReportExecutor, began: Callable[[], None]) -> None:
-        self.figures, self.study, self.stability, self.mesh = (
-            ReportJob(executor, began) for _ in range(4)
+        self.figures, self.study, self.stability, self.proof, self.mesh = (
+            ReportJob(executor, began) for _ in range(5)
         )
         self.inquiry = Inquiry(began=began)
-        self._all = self.figures, self.study, self.stability, self.mesh, self.inquiry
+        reports = self.figures, self.study, self.stability, self.proof
+        self._all = *reports, self.mesh, self.inquiry
 
     @property
     def is_busy(self) -> bool:

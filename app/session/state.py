@@ -21,7 +21,7 @@ from solver.settings import Settings
 from solver.study.brought import Brought
 
 WHAT_IF = "What if"
-TABS = ("Live", WHAT_IF, "Figures", "Study", "Stability")
+TABS = ("Live", WHAT_IF, "Figures", "Study", "Stability", "Proof")
 VIEWS = ("page", "present", "embed")
 DEFAULT_PACE = WHOLE
 PACES: dict[str, Rate] = {WHOLE: WHOLE, "1": 1.0, "5": 5.0, "20": 20.0, "fastest": None}

@@ -22,6 +22,9 @@ from solver.study.page import Section
 from solver.study.paper_figures import MAKERS
 from solver.study.paper_runs import PaperRuns
 from solver.study.progress import Tell
+from solver.study.proof.case import HeldNumber, rows_of
+from solver.study.proof.report import cases, write_proof
+from solver.study.proof.sections import proof_sections
 from solver.study.quantities import reading
 from solver.study.study_page import study_sections, write_study
 
@@ -74,6 +77,16 @@ def stability_of(quick: bool, folder: Path) -> None:
     report = stability_report(rows, invariance())
     growing.publish(report.write)
     growing.show(report.sections())
+
+
+def proof_of(folder: Path) -> None:
+    """Set what is known beside what is found, and show it case by case."""
+    growing, chosen, rows = ReportFolder(folder), list(cases()), list[HeldNumber]()
+    for number, case in enumerate(chosen):
+        growing.tell(f"{number} of {len(chosen)} cases", number / len(chosen))
+        rows += rows_of(case)
+        growing.show(proof_sections(rows, page=""))
+    growing.publish(lambda place: write_proof(rows, place))
 
 
 def mesh_of_run(scene: str, values: dict[str, Any], of: str, units: str, folder: Path) -> None:

@@ -18,7 +18,7 @@ from app.session.session import Session
 from app.session.state import TABS, WHAT_IF
 from app.session.undo import Undo
 from app.shell.actions import Actions
-from app.shell.address import Sight, sight_from_query
+from app.shell.address import Sight, settings_from_query, sight_from_query
 from app.shell.banner import Banner
 from app.shell.delivery import Delivery
 from app.shell.gallery import gallery
@@ -92,7 +92,7 @@ class Dashboard:
         )
         self._saver = Saver(session)
         self._live = self._make_live()
-        self._tabs = Tabs(session, self._live, WhatIf(session, self._open_run))
+        self._tabs = Tabs(session, self._live, WhatIf(session, self._open_run), self._open_run)
         self._delivery = Delivery(
             session, self.pulse, self._gallery, lambda: self._tabs.shows_the_run
         )
@@ -291,8 +291,9 @@ class Dashboard:
         if self._tabs.shows_the_run:
             self.session.ask(afresh=True)
 
-    def _open_run(self, settings: Settings) -> None:
-        """Show the run of a point of a chart."""
+    def _open_run(self, chosen: Settings | str) -> None:
+        """Show the run of a point of a chart, or of an address."""
+        settings = settings_from_query(chosen)[0] if isinstance(chosen, str) else chosen
         with self.session.together():
             self.session.tab = TABS[0]
             self.session.adopt(settings)

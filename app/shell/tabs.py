@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 
 from app.components.panes import looks
+from app.reports.proof import ProofReport
 from app.reports.report import Report
 from app.reports.reports import PaperFigures, StabilityReport, StudyReport
 from app.session.session import Session
@@ -20,7 +22,7 @@ IN_HEADER = {
         "borderColor": "rgba(255, 255, 255, 0.6)",
         "textTransform": "none",
         "whiteSpace": "nowrap",
-        "padding": "3px 14px",
+        "padding": "3px 6px",
         "fontSize": "15px",
     },
     "& button.Mui-selected, & button.Mui-selected:hover": {
@@ -44,6 +46,8 @@ class Tabs:
         The live run.
     what_if
         The tab that asks over ranges.
+    follow
+        Opens the run of an address on the live tab.
 
     Attributes
     ----------
@@ -53,7 +57,9 @@ class Tabs:
         What is chosen, of which nothing else is seen.
     """
 
-    def __init__(self, session: Session, live: Any, what_if: WhatIf) -> None:
+    def __init__(
+        self, session: Session, live: Any, what_if: WhatIf, follow: Callable[[str], None]
+    ) -> None:
         self._session = session
         self._live = live
         beside: list[WhatIf | Report] = [
@@ -61,6 +67,7 @@ class Tabs:
             PaperFigures(session.asked.figures, session.turns.soon),
             StudyReport(session),
             StabilityReport(session.asked.stability, session.turns.soon),
+            ProofReport(session, follow),
         ]
         self._beside = dict(zip(TABS[1:], beside, strict=True))
         self.bar = pmui.RadioButtonGroup(

@@ -31,9 +31,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     top = max(SHARED * float(np.abs(load).max()), float(axial.max()))
     limits = held(kept, min(-0.1 * top, float(axial.min())), top)
     curves = []
-    if wires.exact is not None and wires.exact_positions is not None:
-        exact = wires.exact[:, :, scene.instant]
-        curves += [Curve(wires.exact_positions, one, GREEN, 7) for one in exact]
+    exact = scene.run.stand.known("axial force")
+    curves += [Curve(one.across, one.up[:, scene.instant], GREEN, 7) for one in exact]
     for place in np.argsort([number == wires.broken for number in wires.numbers], kind="stable"):
         number = wires.numbers[place]
         width = 3.5 if number == wires.broken else 2.0
@@ -42,7 +41,7 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         along(0.0, scene.run.settings.length),
         spanned(*limits, label="Axial force", unit="N"),
         curves,
-        keys=_keys(wires, is_exact=wires.exact is not None),
+        keys=_keys(wires, is_exact=bool(exact)),
         kept=limits,
     )
 

@@ -33,8 +33,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     keys = [Key(BLUE, "line", scene.name)]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
-    if begun.closed_form is not None:
-        curves.append(Curve(places, begun.closed_form[:, instant], GREEN, 7))
+    if exact := begun.known("friction"):
+        curves += [Curve(one.across, one.up[:, instant], GREEN, 7) for one in exact]
         keys.append(Key(GREEN, "band", "closed form"))
     if scene.ghost is not None:
         before, fields, then = scene.ghost

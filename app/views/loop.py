@@ -11,7 +11,7 @@ from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.shown import Axes
 from app.views import brought
-from app.views.colors import BLUE, GHOST, ORANGE, VERMILION
+from app.views.colors import BLUE, GHOST, GREEN, ORANGE, VERMILION
 from app.views.drawing import Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, held, spanned
@@ -45,6 +45,9 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     if ghost is not None:
         curves.append(Curve(*ghost, GHOST, 2))
         keys.append(Key(GHOST, "line", scene.ghost_name))
+    if exact := begun.known("loop"):
+        curves += [Curve(one.across, one.up, GREEN, 7) for one in exact]
+        keys.append(Key(GREEN, "band", "closed form"))
     if run.reference is not None:
         curves.append(Curve(*_pair(run, run.reference), ORANGE, 4.5))
     curves += [Curve(*now, BLUE), *theirs]
@@ -61,8 +64,8 @@ def _limits(
     begun, settled = run.stand, None
     if run.reference is not None:
         settled = _pair(run, run.reference)
-    elif begun.closed_form_end is not None and begun.load is not None:
-        settled = begun.closed_form_end, begun.load
+    elif exact := begun.known("loop"):
+        settled = exact[0].across, exact[0].up
     across, up = (
         _around([one[axis] for one in pairs], settled and settled[axis], unit, kept and kept[axis])
         for axis, (_, unit) in enumerate((begun.loop.across, begun.loop.up))

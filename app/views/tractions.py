@@ -6,7 +6,7 @@ import numpy as np
 
 from app.picture.frames import DrawnFields
 from app.views import brought
-from app.views.colors import BLUE, GREY, ORANGE, PURPLE
+from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE
 from app.views.drawing import POSITION, Curve, Drawing, Plot, View, is_plane
 from app.views.legend import Key
 from app.views.scales import Limits, along, held, spanned, upright
@@ -32,7 +32,10 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     drawn = [now, scene.ghost[1]] if scene.ghost is not None else [now]
     shown = [one for each in drawn for one in (each.pressure, each.friction) if one is not None]
     shown += brought.friction_of(scene)
-    low, high = min(float(one.min()) for one in shown), max(float(one.max()) for one in shown)
+    exact = [*begun.known("pressure"), *begun.known("friction")]
+    ends = [(float(one.min()), float(one.max())) for one in shown]
+    ends += [(float(one.up.min()), float(one.up.max())) for one in exact]
+    low, high = min(low for low, _ in ends), max(high for _, high in ends)
     limits = held(kept, min(low, -top), max(high, top))
     y = spanned(*limits, label="Traction", unit="Pa")
     curves = [upright(begun.cuts, y, color=GREY, alpha=0.35, width=1)]
@@ -42,6 +45,9 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         curves += _pair(before.stand.positions, fields, then, width=1.2)
         past.append(Key(BLUE, "thin", scene.ghost_name))
     places = begun.positions
+    if exact:
+        keys.append(Key(GREEN, "band", "closed form"))
+        curves += [Curve(one.across, one.up[:, instant], GREEN, 7) for one in exact]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
         curves += _pair(places, run.reference, instant, ORANGE, width=4.5)

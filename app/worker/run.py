@@ -177,9 +177,9 @@ class WorkerRun:
         if look.interface in ("", self._sampler.interface):
             return
         self._sampler = Sampler(self._problem, self._settings, look)
-        stand = self._sampler.stand()
-        self.recording.stand = self._sampler.completed(stand) if self._is_compared else stand
-        self._show_reference()
+        self.recording.stand = self._sampler.stand()
+        if self._is_compared:
+            self._show_known()
 
     def frame(self, look: Look) -> Frame:
         """Show the iterate that is looked at."""
@@ -226,17 +226,17 @@ class WorkerRun:
         except Interrupted:
             return
         self._is_compared = True
-        self.recording.stand = self._sampler.completed(self.recording.stand)
         if self._reference is not None:
             self._distance = distance_to(self._reference, self._problem)
             self.recording.measure(self._unmeasured, self._distance)
         self._unmeasured.clear()
-        self._show_reference()
+        self._show_known()
         if not self.recording.iteration:
             self._account(newest, newest)
         self.has_news = True
 
-    def _show_reference(self) -> None:
+    def _show_known(self) -> None:
+        self.recording.stand = self._sampler.completed(self.recording.stand, self._reference)
         if self._reference is not None:
             self.recording.reference = self._sampler.reference(self._reference)
             self.recording.reference_seconds = self._reference.seconds

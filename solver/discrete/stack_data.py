@@ -51,10 +51,15 @@ class Support:
         Opening at the nodes of the lowest side, shape (nodes along,), m.
     friction
         Coefficient mu.
+    bound
+        Largest friction force per area where it is known, shape (nodes along, n_instants), Pa; the
+        support then presses as much as that takes, and adds no pressure of its own. None where
+        contact decides, and may open.
     """
 
     gap: Array
     friction: float
+    bound: Array | None = None
 
 
 @dataclass(frozen=True)

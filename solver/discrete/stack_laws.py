@@ -72,25 +72,31 @@ def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str,
         weights = [part.rectangle.edge_weights("bottom") for part in above]
         node = np.concatenate([own[span] for own, span in zip(places, spans, strict=True)])
         found, points = np.unique(node, return_inverse=True)
-        if body == 0 and scene.support is not None:
-            friction, gap = scene.support.friction, scene.support.gap[node] / scene.length
+        support = scene.support if body == 0 else None
+        if support is not None:
+            friction, gap = support.friction, support.gap[node] / scene.length
         else:
             friction, gap = scene.friction, np.zeros(len(node))
         upper = np.concatenate([part.rows["bottom"] for part in above])
         lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
         # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
         bases = [sparse.coo_array(_macro_basis(scene, part, "bottom")) for part in above]
-        along, across = (
-            Component(upper[:, axis], None if lower is None else lower[:, axis]) for axis in (0, 1)
+        along, *across = (
+            Component(upper[:, axis], None if lower is None else lower[:, axis])
+            for axis in range(upper.shape[1])
         )
-        sliders = Sliders.of_contact(along, np.full(len(node), friction))
         areas = scene.length * np.concatenate(
             [own[span] for own, span in zip(weights, spans, strict=True)]
         )
+        if support is None or support.bound is None:
+            sliders = Sliders.of_contact(along, np.full(len(node), friction))
+        else:
+            scaled = support.bound[node] / (scene.young * scene.length)
+            sliders = Sliders.of_known_bound(along, scaled * areas[:, None])
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
             Contact(
-                normal=Unilateral(component=across, gap=gap),
+                normal=Unilateral(component=across[0], gap=gap) if across else None,
                 tangential=scene.friction_law.on(sliders, areas, scene.length),
                 points=points,
                 positions=x[found],

@@ -120,9 +120,12 @@ def _held(scene: StackData, place: Place, side: str) -> Held:
     A spring has those of one node.
 
     A contact has none at an end where the left or right side prescribes the normal displacement:
-    any pressing force would be a solution there, and so would any friction up to it.
+    any pressing force would be a solution there, and so would any friction up to it. A support of
+    known bound has the component along it, everywhere.
     """
     beyond = neighbour(scene, place, side)
+    if beyond == "support" and scene.support is not None and scene.support.bound is not None:
+        return Held((0,))
     if beyond == "support" or (not isinstance(beyond, str) and beyond[2] != place[2]):
         first = place[0] == 0 and scene.sides["left"].y.prescribed
         last = place[0] == scene.substructures[0] - 1 and scene.sides["right"].y.prescribed

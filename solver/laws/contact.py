@@ -74,8 +74,9 @@ class Contact(Pairs):
 
     @property
     def is_plain(self) -> bool:
-        """Whether its bound is known, on a support, and nothing but slip below it moves."""
-        return self.is_on_support and not self.opens and self.tangential.softness is None
+        """Whether it is a rod's, of known bound, on a support, and nothing but slip moves there."""
+        on_support = self.is_on_support and isinstance(self.around, Rod)
+        return on_support and not self.opens and self.tangential.softness is None
 
     @cached_property
     def shares(self) -> Array:

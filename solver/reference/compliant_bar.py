@@ -8,6 +8,7 @@ springs' density over ES, a zone of length s at the end slips under F = q s + q 
 from __future__ import annotations
 
 import numpy as np
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
 
@@ -40,3 +41,24 @@ def pulled_compliant_bar(
         return float(force * np.tanh(beta * length) / (stiffness * beta)), 0.0
     zone = float(brentq(lambda s: carried(s) - force, 0.0, length * (1.0 - 1e-12)))
     return float(bound / density + (force * zone - 0.5 * bound * zone**2) / stiffness), zone
+
+
+def cycled_compliant_bar(
+    force: float, length: float, stiffness: float, bound: float, density: float
+) -> tuple[float, float]:
+    """Give where the end is when the bar is unloaded, m, and what a cycle takes, J.
+
+    By Masing's rule: from a point of return on, the first curve over the force, doubled.
+
+    Parameters
+    ----------
+    force
+        F, N, between plus and minus which the bar is pulled.
+    length, stiffness, bound, density
+        As of `pulled_compliant_bar`.
+    """
+    rest = length, stiffness, bound, density
+    most, _ = pulled_compliant_bar(force, *rest)
+    back, _ = pulled_compliant_bar(0.5 * force, *rest)
+    stored, _ = quad(lambda one: pulled_compliant_bar(one, *rest)[0], 0.0, force)
+    return most - 2.0 * back, 4.0 * (force * most - 2.0 * stored)

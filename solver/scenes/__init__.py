@@ -6,11 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from solver.definitions import Pairs
-from solver.discrete.loops import Loop
+from solver.discrete.loops import Loop, LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
-from solver.reference.broken_wire import BrokenWire
-from solver.reference.closed_form import ClosedForm
+from solver.reference.exact_curve import ExactCurve
 from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK
@@ -70,16 +69,12 @@ def loop_of(settings: Settings, problem: Problem) -> Loop:
     return structure_of(settings).loop(problem)
 
 
-def closed_form_of(settings: Settings) -> ClosedForm | None:
-    """Solve a rod on its support without discretisation in space, where that is known."""
-    solve = entry_of(settings).closed_form
-    return None if solve is None else solve(settings)
-
-
-def broken_wire_of(settings: Settings) -> BrokenWire | None:
-    """Solve a broken wire without discretisation in space, where that is known."""
-    solve = entry_of(settings).broken_wire
-    return None if solve is None else solve(settings)
+def exact_of(
+    settings: Settings, problem: Problem, found: LoopFields | None = None
+) -> list[ExactCurve]:
+    """Give what is known of a scene without a mesh, as `Entry.exact`; often that is nothing."""
+    exact = entry_of(settings).exact
+    return [] if exact is None else list(exact(settings, problem, found))
 
 
 def points_of(settings: Settings, name: str) -> Pairs:

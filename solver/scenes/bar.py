@@ -14,9 +14,9 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods import Rods
 from solver.loads import PRESETS, interpolate
 from solver.phrases import Amount, Phrase, Sentence
-from solver.reference.closed_form import closed_form
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.exact_rods import exact_bar
 from solver.scenes.words import acting, is_steel
 
 PROFILES = {
@@ -287,5 +287,5 @@ BAR = Entry(
     sizes=shared.ROD_SIZES,
     grows=("elements",),
     coarser=_coarser,
-    closed_form=lambda settings: closed_form(bar(settings)),
+    exact=lambda settings, problem, found: exact_bar(bar(settings), problem),
 )

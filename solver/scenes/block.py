@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -11,12 +11,16 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, curve, quantity, redefined
 from solver.discrete.equilibrium import loss_of_equilibrium
+from solver.discrete.loops import LoopFields
+from solver.discrete.problem import Problem
 from solver.discrete.stack import Stack
 from solver.discrete.stack_data import Support
 from solver.loads import PRESETS, interpolate
 from solver.phrases import Phrase, Sentence, plain
+from solver.reference.exact_curve import ExactCurve
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.exact_bodies import exact_parabola
 from solver.scenes.sides import AT_REST, LOADED_SIDES, SideSettings
 from solver.scenes.words import acting, is_steel, listed
 
@@ -171,6 +175,15 @@ def _body_force(settings: BlockSettings) -> Array | None:
     return sizes[:, None] * settings.path("body_load") if sizes.any() else None
 
 
+def _exact(
+    settings: BlockSettings, problem: Problem, found: LoopFields | None
+) -> Iterable[ExactCurve]:
+    """Give tractions on a parabola, once there are forces for which to give them."""
+    if found is None or settings.gap != "parabola":
+        return ()
+    return exact_parabola(block(settings), settings.radius, problem, found)
+
+
 BLOCK = Entry(
     title="Block pressed and sheared",
     source="Johnson, Contact Mechanics, 1985, ch. 4 and 7",
@@ -185,4 +198,5 @@ BLOCK = Entry(
     words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
+    exact=_exact,
 )

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeVar
 
+from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
-from solver.reference.broken_wire import BrokenWire
-from solver.reference.closed_form import ClosedForm
+from solver.reference.exact_curve import ExactCurve
 from solver.scenes.base import SceneSettings
 
 S = TypeVar("S", bound=SceneSettings)
@@ -52,8 +52,9 @@ class Entry(Generic[S]):
     coarser
         Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
         where no run starts from them.
-    closed_form, broken_wire
-        Solve it without discretisation in space, where that is known, or give None.
+    exact
+        Give what is known of it without a mesh, for its settings, its problem, and what an
+        incremental solver has found, if it has: closed forms of contact are for the forces there.
     sizes
         Numbers over which costs are measured, by setting.
     grows
@@ -70,5 +71,4 @@ class Entry(Generic[S]):
     sizes: Mapping[str, tuple[int, ...]]
     grows: tuple[str, ...]
     coarser: Callable[[S], Iterable[Problem]] | None = None
-    closed_form: Callable[[S], ClosedForm | None] | None = None
-    broken_wire: Callable[[S], BrokenWire | None] | None = None
+    exact: Callable[[S, Problem, LoopFields | None], Iterable[ExactCurve]] | None = None

@@ -19,6 +19,7 @@ from solver.discrete.stack_data import Spring, Support
 from solver.loads import PULLS
 from solver.phrases import Phrase, Sentence, plain
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.exact_bodies import exact_slope
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
 
@@ -159,4 +160,5 @@ INCLINE = Entry(
     words=_words,
     sizes=shared.PLANE_SIZES,
     grows=shared.PLANE_GROWS,
+    exact=lambda settings, problem, found: exact_slope(incline(settings)),
 )

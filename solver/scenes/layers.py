@@ -14,6 +14,7 @@ from solver.discrete.stack_data import Given, Side
 from solver.loads import PRESETS
 from solver.phrases import Phrase, Sentence
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.exact_bodies import exact_layers
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting, counted, is_steel
 
@@ -205,4 +206,5 @@ LAYERS = Entry(
     words=_words,
     sizes={**shared.PLANE_SIZES, "layers": (2, 4, 8, 16)},
     grows=("layers",),
+    exact=lambda settings, problem, found: exact_layers(layers(settings), problem, found),
 )

@@ -15,9 +15,9 @@ from solver.discrete.rods import Rods
 from solver.discrete.rods_data import COARSEST, neighbours
 from solver.loads import PULLS
 from solver.phrases import Amount, Phrase, Sentence
-from solver.reference.broken_wire import broken_wire
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
+from solver.scenes.exact_rods import exact_strand
 from solver.scenes.words import acting, counted, is_steel
 
 
@@ -253,5 +253,5 @@ STRAND = Entry(
     sizes={**shared.ROD_SIZES, "wires": (2, 4, 8, 16)},
     grows=("wires",),
     coarser=_coarser,
-    broken_wire=lambda settings: broken_wire(strand(settings)),
+    exact=lambda settings, problem, found: exact_strand(strand(settings)),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
@@ -16,6 +17,14 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 
 LATIN, INCREMENTAL = "LATIN", "incremental"
+
+
+class Part(Enum):
+    """Where what is known is from."""
+
+    CLOSED_FORMS = "Closed forms"
+    PUBLISHED = "Published numbers"
+    OTHERS = "Other programs on the same mesh"
 
 
 @dataclass(frozen=True)
@@ -60,6 +69,8 @@ class KnownCase:
         What is known of it, beside what an iterate or a reference has.
     address
         What follows the page's address to open this run there; empty for what no scene shows.
+    part
+        Of the report.
     """
 
     title: str
@@ -70,6 +81,7 @@ class KnownCase:
     method: Callable[[], Latin]
     numbers: Callable[[Answer], Iterable[KnownNumber]]
     address: str = ""
+    part: Part = Part.CLOSED_FORMS
 
 
 @dataclass(frozen=True)
@@ -95,6 +107,7 @@ def of_scene(
     scene: str,
     values: Mapping[str, Any],
     numbers: Callable[[Any, Answer], Iterable[KnownNumber]],
+    part: Part = Part.CLOSED_FORMS,
 ) -> KnownCase:
     """Make a case of a scene of the catalogue; `numbers` is given its settings too."""
     settings = CATALOGUE[scene].settings.checked(dict(values))
@@ -113,6 +126,7 @@ def of_scene(
         method=lambda: method_of(settings),
         numbers=lambda answer: numbers(settings, answer),
         address=f"?{urlencode({'scene': scene, **texts})}",
+        part=part,
     )
 
 

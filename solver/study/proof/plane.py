@@ -41,6 +41,7 @@ def _pressed(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
 
 def _sheared(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
     contact = answer.fields.contact("support")
+    yield from _partly_slipped(settings, answer)
     slip = np.diff(contact.slip, axis=1)[:, 2 * STEPS :]
     taken = -np.sum(contact.tangential_force[:, 2 * STEPS + 1 :] * slip)
     assert contact.normal_force is not None
@@ -48,6 +49,31 @@ def _sheared(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
     share = abs(float(contact.tangential_force[:, -1].sum())) / (settings.friction * total)
     exact = _half_plane(settings, total).energy(settings.friction, share)
     yield KnownNumber("energy of a cycle", "J/m", exact, float(taken))
+
+
+def _partly_slipped(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    """Compare what sticks as the shear has its first peak.
+
+    Its half-width from the second moments of pressure and friction, as of two square roots: a count
+    of nodes would be coarse.
+    """
+    law, contact = answer.problem.rubbing["support"], answer.fields.contact("support")
+    assert contact.normal_force is not None
+    pressing, shear = (
+        np.abs(one[:, 2 * STEPS]) for one in (contact.normal_force, contact.tangential_force)
+    )
+    total, carried = float(pressing.sum()), settings.friction * float(pressing.sum())
+    exact = _half_plane(settings, total)
+    share = float(shear.sum()) / carried
+    square = (law.positions - law.positions @ pressing / total) ** 2
+    moments = settings.friction * float(square @ pressing) - float(square @ shear)
+    found = 2.0 * np.sqrt(moments / (carried - shear.sum()))
+    yield KnownNumber("half-width of stick", "m", exact.stuck(share), float(found))
+    middle = int(np.argmax(pressing))
+    traction = shear[middle] / law.by_point(law.weights[:, None])[middle, 0]
+    place = law.positions[middle : middle + 1] - law.positions @ pressing / total
+    known = float(exact.traction(place, settings.friction, share)[0])
+    yield KnownNumber("shear traction in the middle", "Pa", known, float(traction))
 
 
 def _tilted(settings: Any, answer: Answer) -> Iterator[KnownNumber]:

@@ -5,18 +5,21 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
-from html import escape
 from pathlib import Path
 
 from solver.disk import check_place, write
-from solver.study.page import table, write_page
+from solver.study.page import write_page
 from solver.study.proof.case import HeldNumber, KnownCase, rows_of
+from solver.study.proof.others import other_cases
 from solver.study.proof.plane import plane_cases
+from solver.study.proof.published import published_cases
 from solver.study.proof.rods import rod_cases
+from solver.study.proof.sections import proof_sections, verdict
 
 HEAD = f"{'':<5} {'case':<56} {'solver':<12} {'quantity':<28} {'deviation':>9} {'allowed':>8}"
 COLUMNS = (
     "holds",
+    "part",
     "case",
     "solver",
     "quantity",
@@ -32,18 +35,15 @@ COLUMNS = (
 PAGE = "http://localhost:5006/app"
 """Where the page is served by default; links of the report open runs there."""
 TITLE = "Proof: what is known beside what Slipfront finds"
-WORDS = (
-    "<p>Each row is a number that a closed form gives, and the same number of a run: by LATIN, "
-    "ended as a run on the page ends, and by the incremental solver on the same mesh. "
-    "<em>Deviation</em> is their distance over the number that is known, <em>allowed</em> what the "
-    f'mesh leaves. Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>'
-)
+LINKS = f'<p>Links open the run on a page served at <a href="{PAGE}">{PAGE}</a>.</p>'
 
 
 def cases() -> Iterator[KnownCase]:
     """Give all cases, none of them solved yet."""
     yield from rod_cases()
     yield from plane_cases()
+    yield from published_cases()
+    yield from other_cases()
 
 
 def proven(folder: Path, chosen: Sequence[KnownCase]) -> Iterator[HeldNumber]:
@@ -68,30 +68,20 @@ def files_of(folder: Path) -> tuple[Path, Path]:
 def line(row: HeldNumber) -> str:
     """Give one row of the console's table."""
     return (
-        f"{_verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.number.quantity:<28} "
+        f"{verdict(row):<5} {row.case.title:<56} {row.solver:<12} {row.number.quantity:<28} "
         f"{row.number.deviation:9.1e} {row.case.allowed:8.0e}"
     )
 
 
 def write_proof(rows: Sequence[HeldNumber], folder: Path) -> tuple[Path, Path]:
     """Write the table and the page; give their names."""
-    text, page = io.StringIO(), [_cells(row) for row in rows]
+    text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerows([COLUMNS, *(_entries(row) for row in rows)])
     files = files_of(folder)
     write(files[0], text.getvalue())
-    heads = [name for name in COLUMNS if name != "address"]
-    write_page(files[1], TITLE, [WORDS, f"<p>{summary(rows)}</p>", table(heads, page)])
+    write_page(files[1], TITLE, [LINKS, *proof_sections(rows, PAGE)])
     return files
-
-
-def summary(rows: Sequence[HeldNumber]) -> str:
-    """Say how many rows hold."""
-    return f"{sum(row.holds for row in rows)} of {len(rows)} numbers hold."
-
-
-def _verdict(row: HeldNumber) -> str:
-    return "holds" if row.holds else "FAILS"
 
 
 def _entries(row: HeldNumber) -> list[str]:
@@ -102,18 +92,5 @@ def _entries(row: HeldNumber) -> list[str]:
         f"{number.deviation:.3g}",
         f"{case.allowed:g}",
     ]
-    words = [_verdict(row), case.title, row.solver, number.quantity, number.unit]
+    words = [verdict(row), case.part.value, case.title, row.solver, number.quantity, number.unit]
     return [*words, *entries, case.mesh, case.source, case.address]
-
-
-def _cells(row: HeldNumber) -> str:
-    number, case = row.number, row.case
-    title = escape(case.title)
-    if case.address:
-        title = f'<a href="{escape(PAGE + case.address)}">{title}</a>'
-    words = [f"<b>{_verdict(row)}</b>", title, row.solver, escape(number.quantity), number.unit]
-    entries = [f"{number.exact:.6g}", f"{number.found:.6g}", f"{number.deviation:.1e}"]
-    entries.append(f"{case.allowed:g}")
-    cells = [f"<td>{one}</td>" for one in words]
-    cells += [f'<td class="number">{one}</td>' for one in entries]
-    return "".join([*cells, f"<td>{escape(case.mesh)}</td><td>{escape(case.source)}</td>"])

@@ -13,7 +13,7 @@ from solver.discrete.rods import Rods
 from solver.latin import Accuracy, Auto, Iterations, Latin
 from solver.reference.bent_wire import BentWire
 from solver.reference.changing_friction_bar import pulled_changing_bar
-from solver.reference.compliant_bar import pulled_compliant_bar
+from solver.reference.compliant_bar import cycled_compliant_bar, pulled_compliant_bar
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, of_scene
 
 OWN = "solver/README.md, 6: equilibrium of the part that slips"
@@ -54,14 +54,23 @@ def _slid(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
 
 def _cycled(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
     stiffness, bound = _bar(settings)
-    load, end = settings.path("load"), answer.fields.displacement[-1]
     most = PEAK**2 / (2.0 * stiffness * bound)
+    back = most - PEAK**2 / (4.0 * stiffness * bound)
+    return _loop(settings, answer, back, 2.0 * PEAK**3 / (3.0 * stiffness * bound))
+
+
+def _sprung_cycle(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    return _loop(settings, answer, *cycled_compliant_bar(PEAK, *_sprung(settings)))
+
+
+def _loop(settings: Any, answer: Answer, back: float, energy: float) -> Iterator[KnownNumber]:
+    """Compare where the end is when first unloaded, and what a cycle takes from the peak on."""
+    load, end = settings.path("load"), answer.fields.displacement[-1]
     loaded = int(np.argmax(load))
     unloaded = loaded + int(np.argmin(np.abs(load[loaded : loaded + len(load) // 2])))
-    back = most - (PEAK - load[unloaded]) ** 2 / (4.0 * stiffness * bound)
     yield KnownNumber("end displacement, unloaded", "m", back, float(end[unloaded]))
     taken = float(np.trapezoid(load[loaded:], end[loaded:]))
-    yield KnownNumber("energy of a cycle", "J", 2.0 * PEAK**3 / (3.0 * stiffness * bound), taken)
+    yield KnownNumber("energy of a cycle", "J", energy, taken)
 
 
 def _loosened(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
@@ -70,11 +79,16 @@ def _loosened(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
     yield _end(settings.path("load")[-1] ** 2 / (2.0 * stiffness * bound), answer)
 
 
-def _gave_way(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+def _sprung(settings: Any) -> tuple[float, float, float, float]:
+    """Give length, ES, bound and density of the springs, as the closed forms take them."""
     stiffness, bound = _bar(settings)
-    length, force = settings.length, float(settings.path("load")[-1])
-    density = settings.contact_stiffness * stiffness / length**2
-    yield _end(pulled_compliant_bar(force, length, stiffness, bound, density)[0], answer)
+    density = settings.contact_stiffness * stiffness / settings.length**2
+    return settings.length, stiffness, bound, density
+
+
+def _gave_way(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+    force = float(settings.path("load")[-1])
+    yield _end(pulled_compliant_bar(force, *_sprung(settings))[0], answer)
 
 
 def _changed(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
@@ -93,6 +107,13 @@ def _broke(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
     before = first + round(settings.break_position * settings.elements)
     opening = np.diff(answer.fields.displacement[[before, before + 1], -1])[0]
     yield KnownNumber("opening of the break", "m", 2.0 * slip, float(opening))
+    # Half of what is regained on the way: as strain of the element there.
+    reached = round(0.5 * tension / (sides * bound) / settings.length * settings.elements)
+    size = settings.length / settings.elements
+    nodes = before - reached - 1 + np.arange(2)
+    strain = np.diff(answer.fields.displacement[nodes, -1])[0] / size
+    exact = sides * bound * (reached + 0.5) * size
+    yield KnownNumber("force of the broken wire", "N", exact, float(stiffness * strain))
 
 
 def _path(peak: float) -> Array:
@@ -159,6 +180,14 @@ def rod_cases() -> Iterator[KnownCase]:
     soft = {**_pull(1200.0), "friction_law": "compliant", "contact_stiffness": 100.0}
     yield of_scene(
         "bar on contact that gives way before it slips", JENKINS, 1e-4, "bar", soft, _gave_way
+    )
+    yield of_scene(
+        "bar on contact that gives way, pulled to and fro",
+        f"{JENKINS}; Masing's rule",
+        2e-3,
+        "bar",
+        {**soft, **cycle},
+        _sprung_cycle,
     )
     for word, ratio in (("hardens", 1.5), ("softens", 0.5)):
         law = {"friction_law": "slip-dependent", "friction_ratio": ratio, "slip_length": 1e-3}

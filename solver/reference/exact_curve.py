@@ -1,0 +1,31 @@
+"""A closed form as a curve that a plot may draw below that of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from solver.arrays import Array
+
+Of = Literal["friction", "pressure", "axial force", "loop"]
+
+
+@dataclass(frozen=True, eq=False)
+class ExactCurve:
+    """What is known of one quantity, without a mesh along the body.
+
+    Attributes
+    ----------
+    of
+        The quantity: friction on the body above and pressure, of the interface that all of it is
+        about; axial force in a rod; or the loop that the scene shows.
+    across
+        Places, shape (n_places,), m; of a loop what it is over, shape (n_instants,).
+    up
+        Shape (n_places, n_instants), N/m or Pa of tractions, N of an axial force; of a loop its
+        force, shape (n_instants,).
+    """
+
+    of: Of
+    across: Array
+    up: Array

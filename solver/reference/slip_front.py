@@ -1,0 +1,64 @@
+"""Slip on a straight interface in an infinite body, under a strength that is given (published).
+
+Half spaces of one material rub on each other under a uniform shear stress. The strength is given
+over the interface; where it is below that stress, a zone slips whose shape is known.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import erfc
+
+from solver.arrays import Array
+
+POINTS = 4000
+WIDEST = 60.0
+"""Front over diffusion length up to which a solution is sought: T down to 0.006."""
+
+
+def front_over_diffusion(stress: float) -> float:
+    """Give lambda of the front a = lambda sqrt(4 alpha t) of slip that a fluid drives.
+
+    The pressure of the fluid over the interface is DP erfc(|x| / sqrt(4 alpha t)) from the place
+    where it is let in. The front runs as it does because nothing is singular there: the mean of
+    erfc(lambda |s|) over s = cos(theta) is T (R. C. Viesca, Self-similar fault slip in response to
+    fluid injection, J. Fluid Mech. 928, A29, 2021).
+
+    Parameters
+    ----------
+    stress
+        T: what the shear stress lacks to the strength before, over the largest loss of strength;
+        between 0.006 and 1.
+    """
+    place = np.abs(np.cos((np.arange(POINTS) + 0.5) * np.pi / POINTS))
+    return float(brentq(lambda factor: erfc(factor * place).mean() - stress, 0.0, WIDEST))
+
+
+def slip_under_growing_strength(
+    place: Array, half_length: float, drop: float, stiffness: float
+) -> Array:
+    """Give the slip of a zone of given length, whose strength grows evenly from its middle.
+
+    Stress drops by `drop` in the middle and by nothing at both ends, beyond which nothing slips
+    (R. Buergmann, D. D. Pollard, S. J. Martel, Slip distributions on faults, J. Struct. Geol. 16,
+    1675-1690, 1994).
+
+    Parameters
+    ----------
+    place
+        Distance from the middle, shape (n,), m.
+    half_length, drop
+        m; Pa.
+    stiffness
+        G / (1 - nu), Pa.
+
+    Returns
+    -------
+    Shape (n,), m; 0 outside.
+    """
+    share = np.clip(np.abs(place) / half_length, 0.0, 1.0)
+    root = np.sqrt(1.0 - share**2)
+    safe = np.maximum(share, np.finfo(float).tiny)
+    grown = (root + share**2 * np.arccosh(1.0 / safe)) / np.pi
+    return np.asarray(2.0 * drop / stiffness * half_length * (root - grown))

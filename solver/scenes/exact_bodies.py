@@ -1,0 +1,105 @@
+"""Closed forms of bodies in the plane, as curves for their plots."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.loops import LoopFields
+from solver.discrete.problem import Problem
+from solver.discrete.stack import Stack
+from solver.laws import Coulomb
+from solver.reference.cantilever import cantilever
+from solver.reference.exact_curve import ExactCurve
+from solver.reference.half_plane import HalfPlane
+
+SMALL = 0.12
+"""Largest half-width of a contact, over the length and the height of its body, that is still that
+of a half-plane: to some 2 % (tests/test_hertz_and_cattaneo.py)."""
+UNCOUPLED = 0.49
+"""Poisson's ratio from which on pressure and friction leave each other alone on a rigid support."""
+STEADY = 0.01
+"""Change of the pressing force, as a share, that is none."""
+
+
+def exact_parabola(
+    body: Stack, radius: float, problem: Problem, found: LoopFields
+) -> Iterator[ExactCurve]:
+    """Give pressure and friction of Hertz, Cattaneo and Mindlin, for the forces that are found."""
+    law, contact = problem.rubbing["support"], found.contact("support")
+    assert contact.normal_force is not None
+    assert body.support is not None
+    total = contact.normal_force.sum(axis=0)
+    most = float(total.max())
+    friction = body.support.friction
+    if most <= 0.0 or (friction and body.poisson < UNCOUPLED) or body.friction_law != Coulomb():
+        return
+    wide = body.poisson**2 if body.state == "strain" else 0.0
+    modulus = body.young / (1.0 - wide)
+    if HalfPlane(most, radius, modulus).half_width > SMALL * min(body.length, body.height):
+        return
+    pressed = np.maximum(total, most * np.finfo(float).eps)
+    place = law.positions[:, None] - law.positions @ contact.normal_force / pressed
+    pressure = np.stack(
+        [
+            HalfPlane(float(force), radius, modulus).pressure(own)
+            for force, own in zip(pressed, place.T, strict=True)
+        ],
+        axis=1,
+    )
+    yield ExactCurve("pressure", law.positions, pressure)
+    shear = contact.tangential_force.sum(axis=0)
+    begins = _begins(shear, total, friction)
+    if begins is not None:
+        held = float(total[begins:].mean())
+        middle = float(law.positions @ contact.normal_force[:, -1] / total[-1])
+        exact = HalfPlane(held, radius, modulus)
+        traction = exact.traction_over(law.positions - middle, friction, shear)
+        yield ExactCurve("friction", law.positions, traction)
+
+
+def _begins(shear: Array, total: Array, friction: float) -> int | None:
+    """Give the last instant before any shear, if a steady force presses from then on."""
+    acts = np.flatnonzero(np.abs(shear) > STEADY * friction * total.max())
+    if not friction or not len(acts):
+        return None
+    first = max(int(acts[0]) - 1, 0)
+    return first if np.ptp(total[first:]) <= STEADY * total.max() else None
+
+
+def exact_slope(body: Stack) -> Iterator[ExactCurve]:
+    """Give the force of the spring over the angle: what friction leaves to it, up and down."""
+    assert body.tilt is not None
+    assert body.support is not None
+    if body.body_force is None or body.friction_law != Coulomb():
+        return
+    weight = np.hypot(*body.body_force) * body.length * body.height
+    down = weight * np.sin(body.tilt)
+    friction = body.support.friction * weight * np.cos(body.tilt)
+    force = np.zeros_like(down)
+    now = 0.0
+    for instant, (least, most) in enumerate(zip(down - friction, down + friction, strict=True)):
+        now = max(min(max(now, float(least)), float(most)), 0.0)
+        force[instant] = now
+    yield ExactCurve("loop", np.degrees(body.tilt), force)
+
+
+def exact_layers(body: Stack, problem: Problem, found: LoopFields | None) -> Iterator[ExactCurve]:
+    """Give the force that bends beams, apart without friction, or as one where nothing slips."""
+    given = body.sides["right"].y
+    if body.state != "stress" or (body.stiffness is not None and np.ptp(body.stiffness)):
+        return
+    if not given.prescribed:
+        return
+    apart = body.friction == 0.0
+    if not apart and (found is None or any(_slips(found, name) for name in problem.rubbing)):
+        return
+    beams, height = (body.bodies, body.height) if apart else (1, body.bodies * body.height)
+    stiffness = beams * cantilever(body.length, height, body.young, body.poisson)
+    yield ExactCurve("loop", given.mean, stiffness * given.mean)
+
+
+def _slips(found: LoopFields, name: str) -> bool:
+    return bool(np.any(found.contact(name).status))

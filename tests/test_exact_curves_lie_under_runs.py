@@ -1,0 +1,126 @@
+"""Closed forms as curves: what plots draw of them lies under what is found, and obeys its laws."""
+
+from __future__ import annotations
+
+from typing import Any
+from urllib.parse import parse_qsl
+
+import numpy as np
+import pytest
+
+from app.shell.address import settings_from_query
+from solver.discrete.rods import Rods
+from solver.reference.choice import reference_of
+from solver.reference.closed_form import closed_form
+from solver.reference.half_plane import HalfPlane
+from solver.reference.masing import masing
+from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
+from solver.scenes.bar import BarSettings
+from solver.scenes.block import BlockSettings
+from solver.study.proof.report import cases
+
+KNOWN = {
+    "bar pulled": ["friction", "loop"],
+    "bar pulled to and fro": ["friction", "loop"],
+    "bar whose pressure halves while the load stands": ["friction", "loop"],
+    "bar on contact that gives way before it slips": ["loop"],
+    "bar on contact that gives way, pulled to and fro": ["loop"],
+    "bar on friction that hardens with slip": ["loop"],
+    "bar on friction that softens with slip": ["loop"],
+    "broken wire between two others": ["axial force", "axial force"],
+    "parabola pressed on a plane": ["pressure"],
+    "parabola sheared to and fro": ["pressure", "friction"],
+    "block on a slope, caught by a spring": ["loop"],
+    "three layers without friction": ["loop"],
+    "three layers that friction glues": ["loop"],
+}
+"""What the run of each case of the proof is drawn over."""
+APART = {"friction": 0.03, "pressure": 0.08, "loop": 0.01}
+"""Mean distance to the reference's curve over its mean size, that the meshes of the proof leave."""
+PRESSED = 0.1
+"""Friction summed along a parabola, over mu P: pressing what is no half-plane leaves some."""
+
+
+def settings_of(title: str) -> Any:
+    (case,) = [case for case in cases() if case.title == title]
+    assert dict(parse_qsl(case.address.removeprefix("?")))["scene"] in CATALOGUE
+    return settings_from_query(case.address)[0]
+
+
+@pytest.mark.parametrize(("title", "known"), KNOWN.items())
+def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
+    settings = settings_of(title)
+    problem = discretise(settings)
+    found = reference_of(problem)
+    curves = exact_of(settings, problem, found)
+    assert [one.of for one in curves] == known
+    for curve in curves:
+        assert np.abs(curve.up).max() > 0.0
+        if curve.of == "axial force":
+            continue
+        if curve.of == "loop":
+            loop = loop_of(settings, problem)
+            force = loop.force if isinstance(loop.force, np.ndarray) else loop.force(found)
+            pairs = [(curve.up, force), (curve.across, loop.displacement(found.displacement))]
+        else:
+            (name, law), *_ = problem.rubbing.items()
+            contact = found.contact(name)
+            own = contact.normal_force if curve.of == "pressure" else contact.tangential_force
+            weights = law.by_point(law.weights)[:, None]
+            if curve.of == "friction" and contact.normal_force is not None:
+                missing = np.cumsum(curve.up * weights - own, axis=0)
+                most = settings.friction * contact.normal_force.sum(axis=0).max()
+                assert np.abs(missing).max() <= PRESSED * most
+                continue
+            pairs = [(curve.up, own / weights)]
+        for exact, ours in pairs:
+            assert np.abs(exact - ours).mean() <= APART[curve.of] * np.abs(exact).mean()
+
+
+def test_masings_rule_gives_the_bar_on_any_path_that_does_not_slide_throughout():
+    load = np.cumsum(np.random.default_rng(3).uniform(-400.0, 400.0, 200))
+    load *= 1400.0 / np.abs(load).max()
+    instants = np.linspace(0.0, 1.0, 200)
+    bar = Rods(
+        length=1.0,
+        stiffness=659_400.0,
+        elements=20,
+        substructures=1,
+        bound=np.full(21, 1500.0),
+        load=load,
+        instants=instants,
+        duration=1.0,
+    )
+    exact = closed_form(bar)
+    assert exact is not None
+    found = masing(load, lambda force: force**2 / (2.0 * 659_400.0 * 1500.0))
+    assert found == pytest.approx(exact.end_displacement, abs=1e-6 * np.abs(found).max())
+
+
+def test_traction_of_a_shear_that_turns_begins_as_cattaneos_and_carries_the_force():
+    contact = HalfPlane(1e6, 5.0, 2.1e11)
+    place = np.linspace(-1.2, 1.2, 4801) * contact.half_width
+    most = 0.3 * contact.force
+    shear = most * np.array([0.0, 0.3, 0.6, 0.1, -0.6, 0.6])
+    found = contact.traction_over(place, 0.3, shear)
+    assert np.trapezoid(found, place, axis=0) == pytest.approx(shear, abs=2e-3 * most)
+    grown = contact.traction(place, 0.3, 0.6)
+    peak = 0.3 * contact.peak
+    # The levels are steps, so near the ends of what sticks it is a little off.
+    for instant, sign in ((2, 1.0), (4, -1.0), (5, 1.0)):
+        assert np.abs(found[:, instant] - sign * grown).mean() < 2e-3 * peak
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        BarSettings.checked({"body_force": 100.0}),
+        BarSettings.checked({"friction_law": "compliant", "pressure_load": "loosening"}),
+        BlockSettings.checked({"gap": "flat"}),
+        BlockSettings.checked({"radius": 500.0, "elements": 12, "elements_up": 6}),
+    ],
+    ids=["body force", "springs under a pressure that falls", "flat", "wide contact"],
+)
+def test_nothing_is_drawn_where_no_closed_form_is_known(settings):
+    problem = discretise(settings)
+    assert exact_of(settings, problem, reference_of(problem)) == []
