@@ -38,7 +38,7 @@ from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.files import settings_from_command
 from solver.reference.assembly import assembled_stiffness, external_force
-from solver.reference.choice import is_alone
+from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
 from solver.study.error_against_time import Peer, PeerError, error_against_time
 from solver.study.study_report import aligned, conditions, table, winners
@@ -266,7 +266,7 @@ def main() -> int:
     asked.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
     chosen = asked.parse_args()
     settings = settings_from_command(chosen.scene, chosen.changes)
-    if not is_alone(discretise(settings)):
+    if not rubs_on_supports(discretise(settings)):
         print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
         return 2
     found = error_against_time(settings, chosen.repeats, peers=peers())

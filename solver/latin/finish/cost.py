@@ -14,9 +14,9 @@ import numpy as np
 from solver.discrete.problem import Problem
 from solver.latin.direction.rules import sliding_share
 from solver.latin.local.slide import slide_of
-from solver.reference.choice import is_alone
 from solver.reference.contact import jumps_in
 from solver.reference.states import HELD, States
+from solver.reference.supports import rubs_on_supports
 
 SYSTEMS = 3
 """Linear systems for every instant that a step may solve in any case."""
@@ -69,8 +69,8 @@ class Costs:
     Attributes
     ----------
     condensing
-        Of the structure onto its contacts, once; none where they are of known bound, on one rigid
-        support.
+        Of the structure onto its contacts, once; none where they are of known bound, on rigid
+        supports.
     system
         Of one linear system of the step.
     iteration
@@ -141,7 +141,7 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     passes = products / DENSE + PASSES * PASS * problem.n_rows
     shift = 0.0 if slide_of(problem) is None else SHIFT
     iteration = OF_ITERATION + problem.n_instants * (passes + shift)
-    if is_alone(problem):
+    if rubs_on_supports(problem):
         return Costs(0.0, BAND_CALLS + BAND * n_jumps, iteration, problem.n_instants)
     for part in problem.substructures:
         stiffness = part.elasticity.stiffness
