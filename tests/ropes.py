@@ -13,7 +13,7 @@ from solver.reference.incremental import incremental
 from solver.reference.solution import Reference
 from solver.scenes.rope import RopeSettings, rope
 
-STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "construction": "mooring"}
+STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "substructures": 4}
 
 
 def settings_of(**changes: Any) -> RopeSettings:

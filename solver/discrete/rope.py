@@ -59,8 +59,15 @@ class Rope(RopeData):
             height=None,
             instants=self.instants,
             acts=tuple(act for act in self._acts() if np.any(act.values)),
-            holds=(Hold("clamp", "left"), Hold("clamp", "right")),
+            holds=tuple(self._holds()),
         )
+
+    def _holds(self) -> Iterator[Hold]:
+        """Give what grips the wires; beside it they move, unlike a bar, as far as anywhere."""
+        still = np.zeros(len(self.instants))
+        yield Hold("clamp", "left", moved=still)
+        if not self.is_clamped:
+            yield Hold("clamp", "right", moved=still)
 
     def _acts(self) -> Iterator[Act]:
         end, middle = np.array([[1.0, 0.5]]), np.array([[0.5, 0.5]])

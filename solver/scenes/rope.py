@@ -145,7 +145,7 @@ class RopeSettings(SceneSettings):
         title="Elements per wire",
     )
     substructures = count(
-        1,
+        10,
         (1, 20_000),
         (1, 50),
         "Number of pieces (substructures) that a wire is cut into, all alike.",
