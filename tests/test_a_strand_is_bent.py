@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ropes import exact_moment, layers_of, moment_of, settings_of, solved
+from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import Rods, solve
 from solver.definitions import SettingError
@@ -34,7 +34,7 @@ def test_first_bending_meets_the_closed_form(construction: str) -> None:
     most = {"mooring": 0.3, "seven-wire": 0.1, "conductor": 0.2}[construction]
     settings = settings_of(construction=construction, load="ramp", curvature=most)
     scene, found = solved(settings)
-    exact = exact_moment(settings, scene.curvature)
+    exact = exact_of(settings).moment(scene.curvature)
     assert np.abs(moment_of(scene, found) - exact).max() < 0.005 * exact[-1]
     assert found.status.any()
 
@@ -45,8 +45,15 @@ def test_a_cycle_loses_the_energy_of_masings_rule(curvature: float) -> None:
     scene, found = solved(settings)
     moment, last = moment_of(scene, found), slice(60, None)
     loop = abs(float(np.trapezoid(moment[last], scene.curvature[last])))
-    exact = sum(wires * bent.energy(curvature) for wires, bent in layers_of(settings))
-    assert loop == pytest.approx(exact, rel=0.01)
+    assert loop == pytest.approx(exact_of(settings).energy(curvature), rel=0.01)
+
+
+@pytest.mark.parametrize("load", ["cycle", "random", "decaying"])
+def test_along_any_path_it_follows_masings_rule_with_memory(load: str) -> None:
+    settings = settings_of(load=load, curvature=0.12, instants=301, elements=80, seed=4)
+    scene, found = solved(settings)
+    exact = exact_of(settings).along(scene.curvature)
+    assert np.abs(moment_of(scene, found) - exact).max() < 0.005 * np.abs(exact).max()
 
 
 def test_while_all_sticks_it_is_as_stiff_as_one_body_and_once_all_slips_as_loose_wires() -> None:

@@ -131,7 +131,7 @@ def _box(posed: Posed, moves: float, sizes: Array) -> Box:
     described = posed.described
     sides = dict.fromkeys(OUTWARD, moves)
     if described.height is None:
-        sides["top"] = sides["bottom"] = 0.0
+        sides["top"], sides["bottom"] = 0.0, posed.below()
     rooms = dict.fromkeys(OUTWARD, MARGIN)
     for hold in described.holds:
         rooms[hold.side] = max(rooms[hold.side], MARGIN + room_of(hold))

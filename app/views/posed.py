@@ -123,6 +123,10 @@ class Posed:
             return np.asarray(found - [0.0, 0.5 * (PITCH - THICKNESS) * self.length])
         return found
 
+    def below(self) -> float:
+        """Give how far contacts lie below all bodies, as those of wires that rub below, m."""
+        return max(0.0, -float(self._contacts()[:, 1].min()))
+
     def gap(self) -> Array | None:
         """Give the gap as it is drawn: magnified as displacements are, and at most so deep."""
         gaps = [hold.gap for hold in self.described.holds if hold.gap is not None]

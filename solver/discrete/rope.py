@@ -27,7 +27,7 @@ class Rope(RopeData):
         At the clamp, or the mean along the strand, which is that of every section; with the wires
         bent each about their own axis.
         """
-        weights, stuck = [], self.own_bending * self.curvature
+        weights, stuck = [], self.section.slipping_bending * self.curvature
         for wire in self.wires:
             helix, arc = wire.helix, wire.arc
             find = helix.levers_at_beginning if self.is_clamped else helix.mean_levers

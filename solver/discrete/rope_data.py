@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.cross_section import CrossSection
 from solver.discrete.helical_wire import HelicalWire
 from solver.laws import Coulomb, FrictionLaw
 from solver.refusal import RefusedError
@@ -57,6 +58,16 @@ class RopeWire:
         return f"wire {self.layer + 1}.{self.number + 1}"
 
     @property
+    def area(self) -> float:
+        """Of its cross-section, m^2."""
+        return float(np.pi * self.diameter**2 / 4.0)
+
+    @property
+    def young(self) -> float:
+        """Young's modulus, Pa."""
+        return self.helix.stiffness / self.area
+
+    @property
     def arc(self) -> Array:
         """Arc lengths of the nodes, shape (n_nodes,), m."""
         return np.linspace(0.0, self.length, len(self.curvature))
@@ -86,8 +97,8 @@ class RopeData:
     is_clamped
         Whether the curvature falls away from a clamp, so that every wire is there; or it is the
         same all along, and the wires of a layer differ by their phase alone.
-    own_bending
-        Bending stiffness of all wires, each about its own axis, N m^2.
+    section
+        The strand's cross-section.
     instants, duration
         Instants, shape (n_instants,), and length of the interval, s.
     friction_law
@@ -104,7 +115,7 @@ class RopeData:
     tension: Array
     curvature: Array
     is_clamped: bool
-    own_bending: float
+    section: CrossSection
     instants: Array
     duration: float
     friction_law: FrictionLaw = field(default_factory=Coulomb)

@@ -9,6 +9,7 @@ from solver.definitions import Pairs
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
+from solver.reference.bent_strand import BentStrand
 from solver.reference.broken_wire import BrokenWire
 from solver.reference.closed_form import ClosedForm
 from solver.scenes.bar import BAR
@@ -81,6 +82,12 @@ def closed_form_of(settings: Settings) -> ClosedForm | None:
 def broken_wire_of(settings: Settings) -> BrokenWire | None:
     """Solve a broken wire without discretisation in space, where that is known."""
     solve = entry_of(settings).broken_wire
+    return None if solve is None else solve(settings)
+
+
+def bent_strand_of(settings: Settings) -> BentStrand | None:
+    """Solve a strand of helical wires without discretisation in space, where that is known."""
+    solve = entry_of(settings).bent_strand
     return None if solve is None else solve(settings)
 
 

@@ -8,6 +8,7 @@ from typing import Generic, Literal, NamedTuple, TypeVar
 
 from solver.discrete.problem import Problem
 from solver.discrete.structure import Structure
+from solver.reference.bent_strand import BentStrand
 from solver.reference.broken_wire import BrokenWire
 from solver.reference.closed_form import ClosedForm
 from solver.scenes.base import SceneSettings
@@ -53,7 +54,7 @@ class Entry(Generic[S]):
     coarser
         Makes the problems of the same scene, uncut, on ever coarser meshes, the finest first; None
         where no run starts from them.
-    closed_form, broken_wire
+    closed_form, broken_wire, bent_strand
         Solve it without discretisation in space, where that is known, or give None.
     sizes
         Numbers over which costs are measured, by setting.
@@ -73,3 +74,4 @@ class Entry(Generic[S]):
     coarser: Callable[[S], Iterable[Problem]] | None = None
     closed_form: Callable[[S], ClosedForm | None] | None = None
     broken_wire: Callable[[S], BrokenWire | None] | None = None
+    bent_strand: Callable[[S], BentStrand | None] | None = None
