@@ -20,7 +20,7 @@ from solver.study.proof import report
 from solver.study.proof.case import KnownCase, KnownNumber
 
 CASES = list(report.cases())
-CLOSED_FORMS = {"bent_wire", "cantilever", "changing_friction_bar", "compliant_bar", "half_plane"}
+CLOSED_FORMS = {"bent_strand", "cantilever", "changing_friction_bar", "compliant_bar", "half_plane"}
 
 
 def read(folder: Path) -> list[dict[str, str]]:

@@ -119,7 +119,7 @@ def _bent(share: float) -> KnownCase:
         yield KnownNumber("energy of a cycle, a metre", "J/m", strand.energy(peak), taken)
 
     title = f"strand of helical wires bent to {share:g} kappa_0"
-    return of_scene(title, PAPAILIOU, 0.005, "rope", changes, numbers)
+    return of_scene(title, PAPAILIOU, 0.01, "rope", changes, numbers)
 
 
 def _pull(peak: float) -> dict[str, Any]:
