@@ -16,9 +16,11 @@ from app.views import (
     load_path,
     loop,
     picture,
+    section,
     spectra,
     status_map,
     tractions,
+    unrolled,
 )
 from app.views.drawing import View
 from app.views.modes import SPACE_MODES, TIME_FUNCTIONS
@@ -26,8 +28,9 @@ from solver.settings import Settings
 
 CARDS: tuple[tuple[View, ...], ...] = (
     (picture.VIEW, deformed.VIEW),
+    (section.SECTION, section.RANGES),
     (tractions.VIEW, friction.VIEW, axial.VIEW),
-    (status_map.VIEW,),
+    (unrolled.VIEW, status_map.VIEW),
     (load_path.VIEW, loop.VIEW, cycles.LOOPS, cycles.ENERGY, cycles.FRETTING),
     (convergence.VIEW, error_time.VIEW),
     (spectra.VIEW, SPACE_MODES, TIME_FUNCTIONS, basis_size.VIEW, clips.VIEW),

@@ -54,23 +54,21 @@ class Rope(RopeData):
     def described(self) -> Description:
         """Say what there is, for whoever draws it."""
         return Description(
-            bodies=len(self.wires),
-            length=max(float(wire.along[-1]) for wire in self.wires),
-            height=None,
+            bodies=1,
+            length=self.seen_length,
+            height=self.section.diameter,
             instants=self.instants,
             acts=tuple(act for act in self._acts() if np.any(act.values)),
             holds=tuple(self._holds()),
         )
 
     def _holds(self) -> Iterator[Hold]:
-        """Give what grips the wires; beside it they move, unlike a bar, as far as anywhere."""
-        still = np.zeros(len(self.instants))
-        yield Hold("clamp", "left", moved=still)
-        if not self.is_clamped:
-            yield Hold("clamp", "right", moved=still)
+        """Give the clamp; beside it wires move, unlike a bar, as far as anywhere."""
+        if self.is_clamped:
+            yield Hold("clamp", "left", moved=np.zeros(len(self.instants)))
 
     def _acts(self) -> Iterator[Act]:
-        end, middle = np.array([[1.0, 0.5]]), np.array([[0.5, 0.5]])
+        end = np.array([[1.0, 0.5]])
         right, up = OUTWARD["right"], OUTWARD["top"]
-        yield Act("body", "κ", middle, right, up, self.curvature, "1/m")
+        yield Act("right y", "κ", end, up, right, self.curvature, "1/m")
         yield Act("right x", "T", end, right, right, self.tension, "N")

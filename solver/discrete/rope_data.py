@@ -143,6 +143,12 @@ class RopeData:
         return max(wire.length for wire in self.wires)
 
     @property
+    def seen_length(self) -> float:
+        """Of the strand that is drawn, m: what is bent, or a turn of its outermost wires."""
+        longest = max(float(wire.along[-1]) for wire in self.wires)
+        return longest if self.is_clamped else 2.0 * longest
+
+    @property
     def stiffness(self) -> float:
         """Axial stiffness of the stiffest wire, N."""
         return max(wire.helix.stiffness for wire in self.wires)

@@ -185,7 +185,7 @@ class RopeSettings(SceneSettings):
         return False
 
     def _candidates(self) -> Mapping[str, str]:
-        return {"body": "curvature", "right x": "tension"}
+        return {"right y": "curvature", "right x": "tension"}
 
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
