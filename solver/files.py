@@ -209,7 +209,7 @@ def _in_the_plane(inside: Inside, iterate: Iterate) -> dict[str, Any]:
 
 
 def interface_arrays(iterate: Iterate) -> dict[str, Any]:
-    """Give the arrays `interface/NAME/...` of all interfaces between bodies, or that may open.
+    """Give the arrays `interface/NAME/...` of all interfaces but a lone support of known bound.
 
     `points` are places along the interface, m; `determinate` tells where the force is no arbitrary
     share of what a support or a ring of contacts carries; the others are as in `ContactFields`,
@@ -218,7 +218,7 @@ def interface_arrays(iterate: Iterate) -> dict[str, Any]:
     found: dict[str, Any] = {}
     determinate = determinate_forces(iterate.problem)
     for name, law in iterate.problem.rubbing.items():
-        if law.is_plain:
+        if law.is_plain and len(iterate.problem.rubbing) == 1:
             continue
         fields = iterate.contact(name)
         *_, tangential = iterate.problem.contact_places[name]

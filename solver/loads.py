@@ -31,8 +31,12 @@ def interpolate(points: Pairs | Array, where: Array) -> Array:
 
 
 def _polyline(ordinates: Array) -> Callable[[Array, int], Array]:
+    return lambda phase, seed: _evenly(ordinates, phase)
+
+
+def _evenly(ordinates: Array, phase: Array) -> Array:
     points = np.column_stack([np.linspace(0.0, 1.0, len(ordinates)), ordinates])
-    return lambda phase, seed: interpolate(points, phase)
+    return interpolate(points, phase)
 
 
 def _random_walk(phase: Array, seed: int) -> Array:
@@ -101,6 +105,11 @@ BEGINS = {
     "shaken": HELD,
 }
 """Share of the interval from which on a preset comes back to where it is, and may be repeated."""
+
+
+def to_and_fro(phase: Array, cycles: int) -> Array:
+    """Go from 0 to 1, and from there to -1 and back so many times, as "cycle" does once."""
+    return _evenly(np.array([0.0, 1.0, *[0.0, -1.0, 0.0, 1.0] * cycles]), phase)
 
 
 def instants_of(duration: float, number: int) -> Array:

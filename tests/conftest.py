@@ -15,6 +15,7 @@ from contextlib import ExitStack, closing
 import hypothesis.internal.conjecture.providers as draws
 import pytest
 from browser import Chrome, Server, free_port
+from hypothesis import settings
 from hypothesis.internal.constants_ast import Constants
 from pages import Visit, visits
 from playwright.sync_api import expect, sync_playwright
@@ -78,6 +79,10 @@ came to one of these last would work on alone."""
 # What the first process compiles is there for the hundreds after it, servers and commands too
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# The same examples each time, however long a busy machine takes over one
+settings.register_profile("same", derandomize=True, deadline=None)
+settings.load_profile("same")
 
 # Hypothesis also draws numbers that stand in our modules, those that happen to be loaded: which
 # examples a test sees would depend on the tests that ran before it in the same process

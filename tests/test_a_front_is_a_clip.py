@@ -7,7 +7,6 @@ from itertools import islice, pairwise
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import settings as examples
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -119,7 +118,6 @@ def pulled_rods(draw):
 
 
 @given(pulled_rods())
-@examples(deadline=None)
 def test_any_load_on_any_bound_is_a_clip(case):
     load, bound = case
     field = play_of(load, bound)
@@ -132,7 +130,6 @@ def test_any_load_on_any_bound_is_a_clip(case):
     arrays.arrays(float, (6, 9), elements=st.integers(-50, 50)),
     arrays.arrays(float, 9, elements=st.integers(-9, 9)),
 )
-@examples(deadline=None)
 def test_errors_fall_with_the_modes_that_are_kept_whatever_the_field(field, load):
     clips = clips_of(field, np.full(6, 30.0), load, np.full(6, 0.5), np.full(9, 2.0))
     assert np.all(np.diff(clips.errors) <= EXACT)

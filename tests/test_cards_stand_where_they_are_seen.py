@@ -13,7 +13,7 @@ from app.session.report_executor import ReportExecutor
 from app.session.session import Session
 from app.shell.layout import layout
 from app.views.catalogue import VIEWS, beside, drawn, fitting
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, kind_of
 from solver.settings import Settings
 
 USUAL = {name: entry.settings.checked({}) for name, entry in CATALOGUE.items()}
@@ -30,9 +30,12 @@ def names(session: Session) -> list[str]:
 
 
 @pytest.mark.parametrize("settings", USUAL.values(), ids=USUAL)
-def test_every_view_of_a_scene_stands_on_one_of_six_cards(settings: Settings) -> None:
+def test_every_view_of_a_scene_stands_on_one_of_as_many_cards_as_the_window_holds(
+    settings: Settings,
+) -> None:
     cards = [tuple(beside(view, settings)) for view in drawn(settings, None)]
-    assert len(cards) == 6
+    # Below the band of a strand's picture there is a card more: its cross-section.
+    assert len(cards) == (7 if kind_of(settings) == "rope" else 6)
     assert sorted(view.name for card in cards for view in card) == sorted(
         view.name for view in fitting(settings)
     )
@@ -56,7 +59,7 @@ def test_the_first_six_cards_have_places_of_their_own_in_the_window(
 
 def test_long_things_have_a_band_and_all_others_stand_beside_their_plots() -> None:
     long = {name for name, one in USUAL.items() if layout(drawn(one, None), one).is_long}
-    assert long == {"bar", "strand", "layers"}
+    assert long == {"bar", "strand", "layers", "rope"}
 
 
 def test_without_the_picture_cards_fill_their_rows() -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from solver.laws import Component, Contact, Sliders, Unilateral
 from solver.laws.play import play
 
-ANY = settings(derandomize=True, deadline=None, max_examples=100)
+ANY = settings(max_examples=100)
 ROUNDING = 1e-12
 
 

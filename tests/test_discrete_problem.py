@@ -19,7 +19,7 @@ from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.method import method_of
 
-ANY = settings(derandomize=True, deadline=None, max_examples=60)
+ANY = settings(max_examples=60)
 response = importlib.import_module("solver.latin.linear.response")
 coarse = importlib.import_module("solver.latin.linear.coarse")
 

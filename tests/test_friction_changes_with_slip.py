@@ -42,7 +42,7 @@ def gamma(ratio, slip_length):
     return np.sqrt(BOUND * abs(ratio - 1.0) / slip_length / AXIAL)
 
 
-@settings(derandomize=True, deadline=None, max_examples=80)
+@settings(max_examples=80)
 @given(
     st.integers(0, 2**31),
     st.booleans(),

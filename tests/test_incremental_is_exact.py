@@ -14,7 +14,7 @@ from solver.reference import search as module
 from solver.reference.incremental import Interrupted, Reference, incremental
 from solver.scenes.bar import BarSettings, bar
 
-EXACT = settings(derandomize=True, deadline=None, max_examples=60)
+EXACT = settings(max_examples=60)
 EPS = float(np.finfo(float).eps)
 SHARES = st.floats(-1.0, 1.0).map(lambda share: share if abs(share) > 1e-200 else 0.0)
 """Of the peak load; what is smaller leaves no digits once it is scaled."""

@@ -24,6 +24,14 @@ SIZES: dict[str, dict[str, Any]] = {
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
     "layers": {"elements": 12, "layers": 3, "instants": 11},
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
+    "rope": {
+        "elements": 8,
+        "layers": 1,
+        "length": 0.15,
+        "tension": 4e4,
+        "substructures": 2,
+        "instants": 11,
+    },
 }
 OF_THE_METHOD = {"k_scale": 3.0, "multiscale": False, "tolerance": 1e-3, "linear_stage": "pgd"}
 OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
@@ -54,6 +62,16 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
     },
     "layers": {"contrast": 2.0, "pull": 1e6, "substructures": 2, "friction": 0.31},
     "incline": {"slope": 41.0, "weight": 1001.0, "slack": 1e-4, "spring": 1e6, "height": 0.06},
+    "rope": {
+        "construction": "seven-wire",
+        "curvature": 0.11,
+        "tension": 251e3,
+        "tension_load": "shaken",
+        "bending": "uniform",
+        "fall_off": 0.3,
+        "length": 0.7,
+        "layers": 2,
+    },
 }
 
 

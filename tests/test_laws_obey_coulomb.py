@@ -16,7 +16,7 @@ from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 
-ANY = settings(derandomize=True, deadline=None, max_examples=40)
+ANY = settings(max_examples=40)
 EPS = float(np.finfo(float).eps)
 SHAPES = array_shapes(min_dims=2, max_dims=2, max_side=30)
 REAL = st.floats(-1e6, 1e6)

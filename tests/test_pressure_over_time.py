@@ -24,7 +24,7 @@ from solver.scenes.bar import BarSettings, bar
 from solver.scenes.strand import strand
 
 STIFFNESS = 659_400.0
-DRAWN = settings(derandomize=True, deadline=None, max_examples=25)
+DRAWN = settings(max_examples=25)
 FACTORS = st.lists(st.floats(0.05, 1.0), min_size=8, max_size=8)
 
 

@@ -26,7 +26,7 @@ from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part
 
 CASES = list(report.cases())
 CLOSED_FORMS = {
-    "bent_wire",
+    "bent_strand",
     "cantilever",
     "changing_friction_bar",
     "compliant_bar",

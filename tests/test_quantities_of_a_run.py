@@ -225,7 +225,9 @@ def test_there_are_no_cycles_beyond_those_of_the_load() -> None:
 
 def test_every_quantity_can_be_taken_of_every_scene() -> None:
     for scene in CATALOGUE:
-        run = ran(scene, errors=True, **(SMALL if scene in ("bar", "strand") else SMALL_BLOCK))
+        run = ran(
+            scene, errors=True, **(SMALL_BLOCK if CATALOGUE[scene].kind == "plane" else SMALL)
+        )
         for name, quantity in QUANTITIES.items():
             if name == "memory" and scene != "bar":  # it takes a process of its own
                 continue

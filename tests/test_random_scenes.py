@@ -28,6 +28,7 @@ SIZES = {
     "block": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "layers": {"elements": (1, 8), "elements_up": (1, 2), "layers": (2, 3), "instants": (1, 8)},
     "incline": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
+    "rope": {"elements": (2, 12), "layers": (1, 2), "instants": (1, 10)},
 }
 CUTS = {"substructures": "elements", "substructures_up": "elements_up"}
 TIGHT = {"max_iterations": 200, "linear_stage": "full"}

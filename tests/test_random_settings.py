@@ -26,7 +26,6 @@ RUNS = os.environ.get("SLIPFRONT_RANDOM_RUNS")
 RANDOM = settings(
     derandomize=RUNS is None,
     database=None,
-    deadline=None,
     max_examples=int(RUNS or 25),
     print_blob=True,
     suppress_health_check=list(HealthCheck),

@@ -16,7 +16,7 @@ from solver.scenes.bar import BarSettings, bar
 
 BOUND = 1500.0
 STIFFNESS = 659_400.0
-EXACT = settings(derandomize=True, deadline=None, max_examples=25)
+EXACT = settings(max_examples=25)
 FORCES = st.lists(st.floats(-2400.0, 2400.0), min_size=1, max_size=12)
 
 

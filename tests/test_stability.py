@@ -248,7 +248,7 @@ def test_one_scene_alone_can_be_asked(tmp_path, capsys):
     assert {case.scene for case in cases_of("strand")} == {"strand"}
     assert main(["stability", "strand", "--quick", "--out", str(tmp_path)]) == 0
     assert "In other units" not in capsys.readouterr().out
-    assert main(["stability", "rope", "--out", str(tmp_path)]) == 2
+    assert main(["stability", "cable", "--out", str(tmp_path)]) == 2
     assert ", ".join(CATALOGUE) in capsys.readouterr().err
 
 

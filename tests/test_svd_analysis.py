@@ -6,7 +6,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -75,7 +75,6 @@ def constant_speed_front(n_points, n_instants):
 
 
 @given(weighted_fields())
-@settings(deadline=None)
 def test_modes_are_orthonormal_in_their_own_inner_products(case):
     field, space, time = case
     found = decompose(field, space, time, np.arange(len(space)))
@@ -86,7 +85,6 @@ def test_modes_are_orthonormal_in_their_own_inner_products(case):
 
 
 @given(weighted_fields())
-@settings(deadline=None)
 def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(case):
     field, space, time = case
     found = decompose(field, space, time, np.arange(len(space)))
@@ -98,7 +96,6 @@ def test_the_error_of_every_rank_is_the_distance_to_its_approximation_and_falls(
 
 
 @given(weighted_fields(), st.floats(0.0, 1.0))
-@settings(deadline=None)
 def test_no_fewer_modes_than_counted_reach_the_error(case, share):
     field, space, time = case
     found = decompose(field, space, time, np.arange(len(space)))

@@ -18,7 +18,7 @@ from solver.study.sweep.order import snake
 from solver.study.sweep.plan import axis_of
 
 BAR = BarSettings.checked({})
-ANY = settings(derandomize=True, deadline=None, max_examples=60)
+ANY = settings(max_examples=60)
 
 
 def values_of(text: str) -> list[Any]:

@@ -85,6 +85,10 @@ def test_every_substructure_has_a_colour_of_its_own(scene: str) -> None:
     shown = looked_at(scene)
     drawing = pictured(shown)
     assert drawing.bodies is not None
+    if shown.run.stand.strand is not None:
+        # Wires are seen from outside, and coloured by what slips.
+        assert not any(float(value).is_integer() for value in set(drawing.bodies.values))
+        return
     assert set(drawing.bodies.values) == set(range(shown.run.settings.n_substructures))
 
 

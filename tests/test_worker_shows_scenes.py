@@ -25,6 +25,14 @@ SIZES: dict[str, dict[str, Any]] = {
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 3, "instants": 13},
     "incline": {"elements": 12, "elements_up": 6, "instants": 13},
+    "rope": {
+        "elements": 10,
+        "layers": 1,
+        "length": 0.15,
+        "tension": 4e4,
+        "substructures": 2,
+        "instants": 13,
+    },
 }
 
 

@@ -31,5 +31,5 @@ def _read(value: Any, numbers: bytes, start: int) -> Any:
     if kind == "image":
         at, rows, columns, dtype = where
         return np.frombuffer(numbers, dtype, rows * columns, start + at).reshape(rows, columns)
-    corners = np.frombuffer(numbers, np.uint32, where[1], start + where[0]).reshape(-1, 4)
+    corners = np.frombuffer(numbers, np.uint16, where[1], start + where[0]).reshape(-1, where[4])
     return corners, np.frombuffer(numbers, np.float32, where[3], start + where[2]).reshape(-1, 2)

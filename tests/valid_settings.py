@@ -11,9 +11,7 @@ from solver.definitions import CurveParameter, SettingError
 from solver.scenes.bar import BarSettings
 from solver.scenes.base import LARGEST_FIELD
 
-ANY = settings(
-    derandomize=True, deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow]
-)
+ANY = settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
 DEFINITIONS = BarSettings.definitions()
 
 

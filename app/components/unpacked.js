@@ -1,11 +1,11 @@
 // Pictures as bytes, as `app.wire.block` packs them, and what they set.
 const floats = (buffer, at, count) => new Float32Array(buffer, at, count)
-const corners = (buffer, base, [c, n, p, m]) => {
-  const corner = new Uint32Array(buffer, base + c, n), place = floats(buffer, base + p, m)
+const corners = (buffer, base, [c, n, p, m, each]) => {
+  const corner = new Uint16Array(buffer, base + c, n), place = floats(buffer, base + p, m)
   const xs = [], ys = []
-  for (let i = 0; i < n; i += 4) {
-    const x = new Float32Array(4), y = new Float32Array(4)
-    for (let j = 0; j < 4; j++) {
+  for (let i = 0; i < n; i += each) {
+    const x = new Float32Array(each), y = new Float32Array(each)
+    for (let j = 0; j < each; j++) {
       x[j] = place[2 * corner[i + j]]
       y[j] = place[2 * corner[i + j] + 1]
     }

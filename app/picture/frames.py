@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from app.picture.portrait import Portrait
 from app.picture.shown import Axes, Bytes, Floats, Mesh, Wires
+from app.picture.strands import Strand
 from solver.reference.exact_curve import ExactCurve, Of
 
 
@@ -40,6 +41,8 @@ class Stand:
         Of plane bodies.
     wires
         Of a strand.
+    strand
+        One that is bent.
     words
         What the scene is, and what acts on it, in a sentence.
     is_idle
@@ -60,12 +63,20 @@ class Stand:
     words: str
     mesh: Mesh | None = None
     wires: Wires | None = None
+    strand: Strand | None = None
     is_idle: bool = False
     exact: tuple[ExactCurve, ...] = ()
 
     def known(self, of: Of) -> list[ExactCurve]:
         """Give what is known of a quantity without a mesh."""
         return [one for one in self.exact if one.of == of]
+
+    @property
+    def length(self) -> float | None:
+        """Of the chosen wire along the strand, m, where one is bent alike all along."""
+        if self.strand is None or self.strand.is_clamped:
+            return None
+        return float(self.strand.lengths[self.interfaces.index(self.interface)])
 
 
 @dataclass(frozen=True)

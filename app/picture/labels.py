@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 from app.picture.units import BY_SIZE, measured
@@ -65,3 +66,13 @@ def _in_titles(settings: Settings, part: Any, written: str) -> str:
     if definition is not None:
         return about(definition).title
     return in_titles(settings, part if isinstance(part, str) else str(part), written)
+
+
+def called(interface: str, interfaces: Sequence[str]) -> str:
+    """Call an interface as it stands in a list of all; a wire that is alone, by its layer."""
+    kind, _, numbers = interface.partition(" ")
+    layer, _, wire = numbers.partition(".")
+    if kind == "wire" and wire:
+        is_alone = sum(one.startswith(f"{kind} {layer}.") for one in interfaces) == 1
+        return Phrase("layer {}", layer) if is_alone else Phrase("layer {}, {}", layer, wire)
+    return Phrase("contact {}", numbers) if kind == "contact" else interface

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,12 +39,15 @@ class Portrait:
         Contact points, interface after interface, shape (n_points, 2), m.
     chains
         Number of the interface of each of them, shape (n_points,).
+    seams
+        Lines on the bodies, as between the wires of a strand, broken by NaN, shape (n, 2), m.
     """
 
     described: Description
     mesh: Mesh
     places: Floats
     chains: NDArray[np.intp]
+    seams: Floats = field(default_factory=lambda: np.zeros((0, 2), dtype=np.float32))
 
     @property
     def size(self) -> tuple[float, float]:
@@ -66,12 +69,18 @@ class Pose:
         Displacement of the contact points, shape (n_points, 2), m.
     status
         Of the contact points, shape (n_points,).
+    colors
+        Status of every quadrilateral, where these are the wires that slip; else None.
+    seams
+        Displacement of the portrait's seams, shape (n, 2), m.
     """
 
     displacement: Floats
     largest: float
     slid: Floats
     status: Bytes
+    colors: Bytes | None = None
+    seams: Floats | None = None
 
 
 def rims(portrait: Portrait) -> list[NDArray[np.intp]]:

@@ -13,12 +13,11 @@ from app.picture.bases import Bases, bases_of
 from app.picture.clipped import Clipped, clipped
 from app.picture.cycled import Cycled, cycled
 from app.picture.frames import DrawnFields, Stand
+from app.picture.helices import HelixGeometry
 from app.picture.meshes import Thinned
 from app.picture.portrait import DrawnGeometry, Pose
 from app.picture.shown import (
     LONGEST_CURVE,
-    MOST_SPECTRA,
-    MOST_VALUES,
     Axes,
     Floats,
     Look,
@@ -28,13 +27,15 @@ from app.picture.shown import (
     thinned,
 )
 from app.picture.slip_plane import SlipPlane, slip_plane, space_of
+from app.picture.spectra import spectra_of
+from app.picture.strands import StrandField, shown_strand
 from app.picture.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import LoopFields
+from solver.discrete.rope import Rope
 from solver.latin import Iterate
 from solver.latin.status_changes import status_changes
-from solver.reduction.svd import friction_spectra
 from solver.reference.exact_curve import ExactCurve
 from solver.reference.slip_space import SlipSpace
 from solver.reference.solution import Reference
@@ -65,7 +66,10 @@ class Sampler:
 
     def __init__(self, problem: Problem, settings: Settings, look: Look) -> None:
         names = list(problem.rubbing)
-        self.interface = look.interface if look.interface in names else names[0]
+        structure = structure_of(settings)
+        self._strand = shown_strand(settings)
+        usual = self._strand.base.usual if self._strand else names[0]
+        self.interface = look.interface if look.interface in names else usual
         self._problem = problem
         self._settings = settings
         self._law = law = problem.rubbing[self.interface]
@@ -77,7 +81,7 @@ class Sampler:
         self._curve = thinned(problem.n_instants, LONGEST_CURVE)
         self._lengths = law.by_point(law.weights)[self._rows]
         self.loop = loop_of(settings, problem)
-        described = structure_of(settings).described()
+        described = structure.described()
         self._mesh: Thinned | None = None
         self._wires: ShownWires | None = None
         if problem.inside is not None:
@@ -85,7 +89,11 @@ class Sampler:
         elif kind_of(settings) == "wires":
             self._wires = ShownWires(problem, described.broken[0] + 1 if described.broken else 0)
         mesh = self._mesh.mesh if self._mesh else None
-        self._geometry = DrawnGeometry(problem, described, mesh)
+        self._geometry: DrawnGeometry | HelixGeometry = (
+            HelixGeometry(structure)
+            if isinstance(structure, Rope)
+            else DrawnGeometry(problem, described, mesh)
+        )
 
     def stand(self) -> Stand:
         """Describe what the fields stand on, without closed forms."""
@@ -114,6 +122,7 @@ class Sampler:
             words=words_of(self._settings),
             mesh=self._mesh.mesh if self._mesh else None,
             wires=self._wires.base if self._wires else None,
+            strand=self._strand.base if self._strand else None,
             is_idle=nothing_acts(problem),
         )
 
@@ -179,6 +188,12 @@ class Sampler:
     def pose(self, iterate: Iterate, look: Look, bodies: MeshField | None) -> Pose:
         """Show what has moved at the chosen instant."""
         return self._geometry.pose(iterate, self._column(look), bodies)
+
+    def strand(self, iterate: Iterate, look: Look) -> StrandField | None:
+        """Show the wires of a strand that is bent at the chosen instant, and where it is cut."""
+        if self._strand is None:
+            return None
+        return self._strand.at(iterate, self._column(look), look.place or 0.0, self.interface)
 
     def axial(self, iterate: Iterate, look: Look) -> Floats | None:
         """Give the forces in the wires of a strand at the chosen instant."""
@@ -252,11 +267,8 @@ class Frame:
 
     @cached_property
     def spectra(self) -> Floats:
-        """Singular values, shape (n_substructures, n_values), NaN where there is none.
-
-        They are those of the substructures `thinned(number, MOST_SPECTRA)`.
-        """
-        return _table(friction_spectra(self.iterate))
+        """Singular values, as `spectra_of` gives them."""
+        return spectra_of(self.iterate)
 
     @cached_property
     def bases(self) -> Bases | None:
@@ -275,15 +287,11 @@ class Frame:
         return self.sampler.pose(self.iterate, self.look, self.mesh)
 
     @cached_property
+    def strand(self) -> StrandField | None:
+        """The wires of a strand that is bent."""
+        return self.sampler.strand(self.iterate, self.look)
+
+    @cached_property
     def axial(self) -> Floats | None:
         """Forces in the wires of a strand, shape (n_wires, n_positions), N."""
         return self.sampler.axial(self.iterate, self.look)
-
-
-def _table(spectra: list[NDArray[np.float64]]) -> Floats:
-    """Give spectra as rows of one table, padded with NaN."""
-    chosen = [spectra[place][:MOST_VALUES] for place in thinned(len(spectra), MOST_SPECTRA)]
-    table = np.full((len(chosen), max(map(len, chosen))), np.nan, dtype=np.float32)
-    for row, values in zip(table, chosen, strict=True):
-        row[: len(values)] = values
-    return table

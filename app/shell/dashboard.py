@@ -34,6 +34,7 @@ from app.shell.tabs import Tabs
 from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
 from app.teaching.teaching import Teaching, name_of
+from app.views import deformed
 from app.views.catalogue import drawn
 from app.whatif.ready import over_k
 from app.whatif.whatif import WhatIf
@@ -207,8 +208,7 @@ class Dashboard:
 
     def _place(self) -> None:
         """Have the widgets stand there that choose anything at present."""
-        bodies = any(view.plot.equal and view.plot.scale for view in self._shown)
-        self._looks.draw_bodies(is_wanted=bodies)
+        self._looks.draw_bodies(is_wanted=deformed.VIEW in self._shown)
         self._transport.place(self._looks.parts())
 
     def _lead_again(self, ticket: str) -> None:

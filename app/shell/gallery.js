@@ -12,9 +12,10 @@ const pick = ({xs, ys}, x, y) => {
   }
   return xs.findIndex((across, i) => holds(across, ys[i]))
 }
+// What is coloured by something else is no substructure.
 const substructure = (data, x, y) => {
-  const at = pick(data, x, y)
-  return at < 0 ? undefined : data.value[at] + 1
+  const value = data.value[pick(data, x, y)]
+  return Number.isInteger(value) ? value + 1 : undefined
 }
 // How far a point is from lines, of which the nearest has a name.
 const nearest = ({xs, ys, name}, x, y) => {
@@ -41,7 +42,8 @@ export function render({model}) {
   // A drag tells where it is now, not everywhere it has been.
   let told = null
   const listen = (plot, kind, bodies) => {
-    const at = ({x, y}) => bodies ? substructure(bodies.data, x, y) : kind === "time" ? x : y
+    const at = ({x, y}) => kind === "wire" ? Math.round(y) - 1
+      : bodies ? substructure(bodies.data, x, y) : kind === "time" ? x : y
     const choose = (event) => {
       const value = at(event)
       if (value === undefined) { return }
@@ -59,7 +61,8 @@ export function render({model}) {
     if (far * (x_scale.compute(1) - x_scale.compute(0)) < NEAR) {
       model.send_msg({kind: "interface", value: name})
     }
-    if (at >= 0) { model.send_msg({kind: "place", value: along.data.x[at]}) }
+    const on = along.data.x[at]
+    if (on !== undefined) { model.send_msg({kind: "place", value: on}) }
   }
   // What a screen reader says of a plot beside its name: what is drawn, and of which moment.
   const describe = (element, slug) => {
@@ -108,12 +111,12 @@ export function render({model}) {
     words.properties.text.change.connect(write)
     write()
     describe(element, slug)
-    const [bodies, held, ...parts] = ["bodies", "handles.drawn", "along", "contacts"].map((one) =>
-      made.get_model_by_name(`${slug}.${one}`))
+    const [bodies, held, along, contacts] = ["bodies", "handles.drawn", "along", "contacts"].map(
+      (one) => made.get_model_by_name(`${slug}.${one}`))
     const choose = chooses ? listen(plot, chooses, bodies) : null
+    const chosen = contacts ? touch(plot, bodies, along, contacts) : null
+    if (chosen) { plot.on_event("tap", chosen) }
     if (held) {
-      const chosen = touch(plot, bodies, ...parts)
-      plot.on_event("tap", chosen)
       handles(place, plot, held, model, (event) => [choose, chosen].forEach((one) => one(event)))
     }
     if (slug === "convergence") {

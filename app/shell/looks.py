@@ -8,9 +8,9 @@ from typing import Any
 
 from app.components.panes import SLIM, row, select
 from app.components.scrubber import Scrubber, scrubber
+from app.picture.labels import called
 from app.picture.shown import STRESSES
 from app.session.session import Session
-from solver.phrases import Phrase
 
 STEPS = (1.0, 2.0, 5.0)
 DECADES = 6
@@ -106,7 +106,7 @@ class Looks:
 
     def _show(self, interfaces: list[str], chosen: str) -> None:
         select = self._interface
-        options = {self._session.say(_called(name)): name for name in interfaces}
+        options = {self._session.say(called(name, interfaces)): name for name in interfaces}
         if select.options == options and select.value == chosen:
             return
         self._showing = True
@@ -117,7 +117,12 @@ class Looks:
 
     def chooses(self) -> dict[str, Callable[[Any], None]]:
         """Give what a tap on the picture of the scene does, by what it chooses."""
-        return {"interface": self._choose, "place": self._mark}
+        return {"interface": self._choose, "place": self._mark, "wire": self._choose_number}
+
+    def _choose_number(self, number: int) -> None:
+        """Choose an interface by its place in the list."""
+        if 0 <= number < len(self._interfaces):
+            self._choose(self._interfaces[number])
 
     def _choose(self, interface: str) -> None:
         if not self._showing and interface:
@@ -135,8 +140,3 @@ class Looks:
         text = "auto" if factor is None else f"× {factor:,.0f}"
         self._magnification.param.update(shown=place, text=text)
         self._session.watch(magnification=factor)
-
-
-def _called(interface: str) -> str:
-    kind, _, numbers = interface.partition(" ")
-    return Phrase("contact {}", numbers) if kind == "contact" else interface

@@ -71,7 +71,8 @@ def arrows(posed: Posed, act: Act) -> list[Arrow]:
 
 def stroke(act: Act, found: list[Arrow]) -> Array:
     """Give arrows; what is spread over a side has a line over their tails."""
-    strokes = [sketch.arrow(one.place, one.tail, one.head) for one in found]
+    draws = sketch.bow if act.unit == "1/m" else sketch.arrow
+    strokes = [draws(one.place, one.tail, one.head) for one in found]
     if len(found) > 2 and act.unit != "N":
         outer = [max((one.tail, one.head), key=lambda end: float(np.hypot(*end))) for one in found]
         strokes.append(sketch.line([one.place for one in found], outer))
@@ -89,7 +90,8 @@ def words(posed: Posed, box: Box, units: str) -> list[Word]:
         texts = [_value(posed, act, units) for act in acts]
         if column:
             x, dx = columns[column]
-            found.append(Word(x, y, joined("\n", texts), column, up, dx, dy))
+            between = BETWEEN if posed.is_strand else "\n"
+            found.append(Word(x, y, joined(between, texts), column, up, dx, dy))
             continue
         found.append(Word(0.5 * posed.length, y, BETWEEN.join(texts), "center", up, dy=dy))
     for act in posed.described.acts:
@@ -103,7 +105,7 @@ def lines_of(posed: Posed) -> tuple[int, int]:
     """Give the lines of words below and above the bodies."""
     lines = {"bottom": 0, "top": 0}
     for (row, column), own in _said(posed).items():
-        lines[row] = max(lines[row], len(own) if column else 1)
+        lines[row] = max(lines[row], len(own) if column and not posed.is_strand else 1)
     return lines["bottom"], lines["top"]
 
 

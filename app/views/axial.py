@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.picture.labels import called
 from app.picture.shown import Wires
 from app.views.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION
 from app.views.drawing import POSITION, Curve, Drawing, Plot, View
@@ -23,6 +24,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
 
     The scale holds all instants: the largest tension, and what a break adds to it.
     """
+    if scene.run.stand.strand is not None:
+        return _of_one(scene, kept)
     wires, axial = scene.run.stand.wires, scene.frame.axial
     if wires is None or axial is None:
         return None
@@ -46,6 +49,29 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     )
 
 
+def _of_one(scene: Scene, kept: Limits | None) -> Drawing | None:
+    """Draw the force along the chosen wire of a strand that is bent, which slip keeps low."""
+    stand, field = scene.run.stand, scene.frame.strand
+    if stand.strand is None or field is None:
+        return None
+    values = np.concatenate([field.force, field.stuck_force])
+    limits = held(kept, float(values.min()), float(values.max()))
+    places = stand.strand.middles * (stand.length or scene.length)
+    return Drawing(
+        along(0.0, scene.length),
+        spanned(*limits, label="Axial force", unit="N"),
+        [
+            Curve(places, field.stuck_force, GREY, 1.5, "dashed"),
+            Curve(places, field.force, BLUE),
+        ],
+        keys=(
+            Key(BLUE, "line", called(stand.interface, stand.interfaces)),
+            Key(GREY, "dashed", "if nothing slipped"),
+        ),
+        kept=limits,
+    )
+
+
 def _color(number: int, wires: Wires) -> str:
     if number == wires.broken:
         return VERMILION
@@ -65,5 +91,5 @@ VIEW = View(
     "Force in the wires",
     Plot(POSITION, "Axial force"),
     draw,
-    lambda settings: kind_of(settings) == "wires",
+    lambda settings: kind_of(settings) in ("wires", "rope"),
 )

@@ -16,10 +16,12 @@ from app.views import (
     load_path,
     loop,
     picture,
+    section,
     slip_plane,
     spectra,
     status_map,
     tractions,
+    unrolled,
 )
 from app.views.drawing import View
 from app.views.modes import SPACE_MODES, TIME_FUNCTIONS
@@ -27,8 +29,9 @@ from solver.settings import Settings
 
 CARDS: tuple[tuple[View, ...], ...] = (
     (picture.VIEW, deformed.VIEW),
+    (section.SECTION, section.RANGES),
     (tractions.VIEW, friction.VIEW, axial.VIEW),
-    (status_map.VIEW, slip_plane.VIEW),
+    (unrolled.VIEW, status_map.VIEW, slip_plane.VIEW),
     (load_path.VIEW, loop.VIEW, cycles.LOOPS, cycles.ENERGY, cycles.FRETTING),
     (convergence.VIEW, error_time.VIEW),
     (spectra.VIEW, SPACE_MODES, TIME_FUNCTIONS, basis_size.VIEW, clips.VIEW),

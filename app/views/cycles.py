@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -24,6 +25,7 @@ WIDEST, ALL_BARS = 16.0, 200.0
 """Width of a bar, and of all together, px."""
 
 
+@lru_cache(maxsize=8)
 def has_cycles(settings: Settings) -> bool:
     """Tell whether there are cycles to compare."""
     return cycles_in(settings) > 1

@@ -117,6 +117,8 @@ class Box:
 class QuadMesh:
     """Quadrilaterals: corners (n_quads, 4), places (n_nodes, 2), values (n_quads,).
 
+    Or other polygons, of as many corners each.
+
     Attributes
     ----------
     box

@@ -100,10 +100,12 @@ def make_figure(view: View, say: Language = ENGLISH) -> Plot:
         drawn["words"] = _empty(f"{slug}.words.drawn", "x", "y", "text", "across", "up")
         made.add_glyph(drawn["words"], words)
     if plot.is_touched:
-        names = "xs", "ys", "setting", "value", "rate", "is_metric"
-        held = drawn["handles"] = _empty(f"{slug}.handles.drawn", *names)
         contacts = _empty(f"{slug}.contacts", "xs", "ys", "name")
-        made.tags = [*made.tags, held, contacts, _empty(f"{slug}.along", "x")]
+        made.tags = [*made.tags, contacts, _empty(f"{slug}.along", "x")]
+    if plot.is_touched and plot.words:
+        names = "xs", "ys", "setting", "value", "rate", "is_metric"
+        drawn["handles"] = _empty(f"{slug}.handles.drawn", *names)
+        made.tags = [*made.tags, drawn["handles"]]
     if plot.equal:
         _fit(made, view, words, drawn if plot.words else {})
     return made

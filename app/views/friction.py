@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.picture.labels import called
 from app.views import brought
 from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE
 from app.views.drawing import POSITION, Axis, Curve, Drawing, Plot, View, is_plane
@@ -31,6 +32,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         Curve(places, -bound, GREY, 1.5, "dashed"),
     ]
     keys = [Key(BLUE, "line", scene.name)]
+    if begun.strand is not None:
+        keys.insert(0, Key(GREY, "bare", called(begun.interface, begun.interfaces)))
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if exact := begun.known("friction"):

@@ -77,6 +77,13 @@ def on_bodies(portrait: Portrait, settings: Settings, gap: Array | None) -> Iter
 
 
 def choices(contacts: Mapping[str, Array]) -> dict[str, Array]:
-    """Thin out where interfaces lie, shape (n_points, 2) each; none where there is no choice."""
-    found = {name: one[thinned(len(one), ROUGH)] for name, one in contacts.items() if len(one)}
+    """Thin out where interfaces lie, shape (n_points, 2) each; none where there is no choice.
+
+    Lines that are broken, by NaN, stay as they are.
+    """
+    found = {
+        name: one if np.isnan(one).any() else one[thinned(len(one), ROUGH)]
+        for name, one in contacts.items()
+        if len(one)
+    }
     return found if len(found) > 1 else {}

@@ -10,13 +10,15 @@ import numpy as np
 from app.picture.frames import DrawnFields
 from app.picture.recording import Recording
 from app.picture.shown import Axes
+from app.picture.strands import Stiffness
 from app.views import brought
-from app.views.colors import BLUE, GHOST, GREEN, ORANGE, VERMILION
-from app.views.drawing import Curve, Drawing, Marks, Plot, View, has_instants
+from app.views.colors import BLUE, GHOST, GREEN, GREY, ORANGE, PURPLE, VERMILION
+from app.views.drawing import Axis, Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.legend import Key
 from app.views.scales import Limits, held, spanned
 from app.views.scene import Scene
 
+STIFFNESS = Key(GREY, "dashed", "all stick"), Key(PURPLE, "dotted", "all slip")
 Pair = tuple[np.ndarray, np.ndarray]
 POINT = Marks((), (), VERMILION)
 STILL = 1e-6
@@ -42,6 +44,9 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     curves, keys = [], [Key(BLUE, "line", scene.name)]
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
+    if begun.strand is not None:
+        curves += _stiffness(begun.strand.bending, x)
+        keys += STIFFNESS
     if ghost is not None:
         curves.append(Curve(*ghost, GHOST, 2))
         keys.append(Key(GHOST, "line", scene.ghost_name))
@@ -55,6 +60,15 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     at = [float(np.interp(time, begun.all_instants, one)) for one in now]
     point = replace(POINT, x=at[:1], y=at[1:])
     return Drawing(x, y, curves, (point,), keys=[*keys, *more], kept=limits)
+
+
+def _stiffness(bending: Stiffness, x: Axis) -> list[Curve]:
+    """Give lines as steep as a strand is stiff while nothing slips, and once all does."""
+    ends = np.array([x.low, x.high])
+    return [
+        Curve(ends, value * ends, key.color, 1.5, key.mark)
+        for key, value in zip(STIFFNESS, bending, strict=True)
+    ]
 
 
 def _limits(

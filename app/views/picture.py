@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.picture.portrait import THICKNESS, Portrait
 from app.picture.units import measured
@@ -15,6 +16,7 @@ from app.views.colors import (
     BACKWARD,
     FORCE,
     FORWARD,
+    FRONT,
     GHOST,
     GIVEN,
     GREY,
@@ -41,9 +43,14 @@ MARGIN = 6.0
 """Pixels that are left free on every side."""
 FILLED, LAYERS_FILL = 0.45, 0.65
 """Shares of its height that bodies have where that is not to scale: of rods, and of layers."""
-THICKEST, LAYER = 72.0, 40.0
-"""Pixels of the thickness of a rod, and of a layer, at most; neither is to scale."""
+THICKEST, LAYER, STRAND = 72.0, 40.0, 90.0
+"""Pixels of the thickness of a rod, a layer and a strand, at most; none is to scale."""
 SHADES = shaded(64)
+PALETTE = *SHADES, BACKWARD, STICK, FORWARD
+"""Colours of substructures, and then of what slips."""
+_OF_PARTS = len(PALETTE) / (len(SHADES) - 1e-3)
+"""Times the last substructure: where the whole palette ends, if that has the last shade."""
+_COLORS = Colors(0, len(PALETTE))
 STEPS = 0.008, 0.01, 0.02, 0.03, 0.045, 0.06, 0.09
 """Shares of the bodies' size that displacements usually take."""
 STATUSES = ((0, STICK, "stick"), (-1, BACKWARD, "slip −"), (1, FORWARD, "slip +"))
@@ -75,6 +82,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
     arrows = [(act, acting.arrows(posed, act)) for act in acts]
     outlines, ghosts = ghosts_of(scene, scale.factor)
     last, place = int(portrait.mesh.parts.max()), scene.look.place
+    is_told = scene.frame.pose.colors is not None
     if place is not None:
         ghosts = [*ghosts, Key(VERMILION, "line", f"x = {measured(place, 'm', scene.look.units)}")]
     box = _box(posed, scale.reach * posed.size, sizes_of(scene))
@@ -82,15 +90,15 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
         bodies=QuadMesh(
             portrait.mesh.quads,
             posed.placed(posed.nodes).astype(np.float32),
-            portrait.mesh.parts.astype(np.float32),
+            _values(scene),
             box,
             portrait.mesh.nodes[portrait.mesh.quads, 0].mean(axis=1),
         ),
-        colors=Colors(0, max(last, 1)),
+        colors=_COLORS if is_told else Colors(0, max(last, 1) * _OF_PARTS),
         curves=[
             *(posed.curve(one, GREY, 1, dash="dotted") for one in posed.outlines()),
             *(posed.curve(one, GREY, 1.5) for one in held(posed)),
-            *_bands(posed),
+            *(_lines(posed) if is_told else _bands(posed)),
             *(posed.curve(one, GREY, 2.5) for one in posed.broken()),
             *(
                 posed.curve(acting.stroke(act, own), GIVEN if act.unit == "m" else FORCE, 2.5)
@@ -172,7 +180,21 @@ def _flattest(posed: Posed) -> float:
     """Give the metres up in a pixel at least, of long bodies."""
     if posed.described.height is None:
         return THICKNESS * posed.length / THICKEST
-    return posed.height / posed.described.bodies / LAYER if posed.is_long else 0.0
+    thick = STRAND if posed.is_strand else LAYER
+    return posed.height / posed.described.bodies / thick if posed.is_long else 0.0
+
+
+def _values(scene: Scene) -> NDArray[np.float32]:
+    """Give what colours the bodies: their substructures, or what slips where they are wires."""
+    told = scene.frame.pose.colors
+    if told is None:
+        return scene.run.stand.portrait.mesh.parts.astype(np.float32)
+    return (told + (len(SHADES) + 1.5)).astype(np.float32)
+
+
+def _lines(posed: Posed) -> list[Curve]:
+    """Give the lines between the wires of a strand."""
+    return [posed.curve(posed.seams(), FRONT, 1)]
 
 
 def _bands(posed: Posed) -> list[Curve]:
@@ -194,6 +216,10 @@ def _chosen(posed: Posed, scene: Scene, last: int) -> list[Curve]:
     if scene.run.settings.applies("pgd_modes") and last:
         part = last if look.substructure is None else min(look.substructure, last)
         found.append(posed.curve(posed.outline_of(part), VERMILION, 2.5))
+    stand = scene.run.stand
+    if stand.strand is not None:
+        wire = posed.line_of(stand.interfaces.index(stand.interface))
+        found.append(posed.curve(wire, VERMILION, 2))
     if look.place is not None:
         found.append(posed.curve(posed.across(look.place), VERMILION, 1.5))
     return found
@@ -228,7 +254,7 @@ VIEW = View(
     Plot(
         "",
         "",
-        palette=tuple(SHADES),
+        palette=PALETTE,
         equal=True,
         words=True,
         chooses="substructure",

@@ -31,6 +31,8 @@ class Posed:
         drawn, shape (n_nodes, 2).
     is_long
         Whether they are much longer than high, or several: then heights are not to scale.
+    is_strand
+        Whether it is one of helical wires, low beside its length: words stand in one line.
     factor
         On displacements.
     """
@@ -43,6 +45,7 @@ class Posed:
         self.size = max(portrait.size)
         is_stacked = self.described.bodies > 1
         self.is_long = is_stacked or self.length > SLENDER * self.height
+        self.is_strand = len(portrait.seams) > 0
         tilt = self.described.tilt
         self.tilts: Array = np.zeros(1) if tilt is None else tilt
         self._tilt = float(self.now(tilt)) if tilt is not None else 0.0
@@ -109,6 +112,15 @@ class Posed:
         on = np.abs(nodes - ends[0]).max(axis=1) < 1e-4 * self.length
         for moved in self.nodes[on, 0]:
             yield sketch.line([(moved, ends[0, 1]), (moved, ends[1, 1])], [[0.0, -2.0], [0.0, 2.0]])
+
+    def seams(self) -> Array:
+        """Give the lines on the bodies, shape (n, 2), m; none of most."""
+        moved, seams = self._pose.seams, self._portrait.seams
+        return np.asarray(seams if moved is None else seams + np.float32(self.factor) * moved)
+
+    def line_of(self, number: int) -> Array:
+        """Give where an interface lies, by its number, shape (n, 2), m."""
+        return np.asarray(self._contacts()[self._portrait.chains == number])
 
     def contacts(self, names: Sequence[str]) -> dict[str, Array]:
         """Give where interfaces lie on the page, as far as there are several to choose from."""

@@ -71,9 +71,12 @@ class Scene:
 
     @property
     def length(self) -> float:
-        """Length of the bodies, m, or of those of the ghost, if these are longer."""
+        """Length of the bodies, m, or of those of the ghost, if these are longer.
+
+        Of a strand that is bent alike all along, of the wire that is chosen.
+        """
         compared = [self.run, self.before] if self.before and self.ghost else [self.run]
-        return max(one.settings.length for one in compared)
+        return max(one.stand.length or one.settings.length for one in compared)
 
     @property
     def ghost(self) -> tuple[Recording, DrawnFields, int] | None:

@@ -18,6 +18,8 @@ from solver.arrays import Array
 BREAK = np.full((1, 4), np.nan)
 HEAD, LARGEST_HEAD = 0.45, 10.0
 """Of an arrow, as a share of its length, and in pixels at most."""
+BOWED = 0.35
+"""How far a bent arrow goes aside, as a share of its length."""
 DEPTH = 12.0
 """Of a hatch, px."""
 COILS = 4
@@ -45,6 +47,20 @@ def arrow(place: Array, tail: Array, head: Array) -> Array:
     side = 0.5 * np.array([-back[1], back[0]])
     shifts = np.stack([tail, head, head + back + side, head, head + back - side])
     return line(np.tile(place, (5, 1)), shifts)
+
+
+def bow(place: Array, tail: Array, head: Array) -> Array:
+    """Give an arrow that is bent to the right of its upward way, as what bends has it."""
+    along = head - tail
+    length = float(np.hypot(*along))
+    if length == 0.0:
+        return BREAK
+    angle = np.linspace(-1.0, 1.0, 13)[:, None]
+    aside = np.array([abs(along[1]), 0.0])
+    shifts = 0.5 * (tail + head) + 0.5 * np.sin(0.5 * np.pi * angle) * along
+    shifts = shifts + BOWED * np.cos(0.5 * np.pi * angle) * aside
+    end = arrow(place, shifts[-3], shifts[-1])
+    return joined([line(np.tile(place, (13, 1)), shifts), end])
 
 
 def hatched(edge: Array, count: int, behind: float = -1.0) -> Array:

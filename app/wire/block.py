@@ -8,7 +8,7 @@ in it are objects that say where their numbers are:
     {"floats": [at, count]}                     a Float32Array
     {"lines": [[at, count], ...]}               one Float32Array a line
     {"image": [at, rows, columns, "uint8"]}     an image, row by row
-    {"quads": [corners, count, places, count]}  corners put together: {xs, ys}
+    {"quads": [corners, count, places, count, corners of one]}  put together: {xs, ys}
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ Attributes = Mapping[str, Any]
 
 
 class Quads:
-    """Quadrilaterals whose corners the browser puts together.
+    """Quadrilaterals, or other polygons, whose corners the browser puts together.
 
     Parameters
     ----------
     corners
-        Nodes of each, shape (n_quads, 4).
+        Nodes of each, shape (n_quads, 4), or as many as all of them have.
     places
-        Of the nodes, shape (n_nodes, 2).
+        Of the nodes, at most 65 536, shape (n_nodes, 2).
     """
 
     def __init__(self, corners: np.ndarray, places: np.ndarray) -> None:
-        self.corners = np.ascontiguousarray(corners, dtype=np.uint32)
+        self.corners = np.ascontiguousarray(corners, dtype=np.uint16)
         self.places = np.ascontiguousarray(places, dtype=np.float32)
 
 
@@ -78,7 +78,8 @@ class _Part:
     def describe(self, value: Any) -> Any:
         if isinstance(value, Quads):
             corners, places = self._put(value.corners), self._put(value.places)
-            return {"quads": [corners, value.corners.size, places, value.places.size]}
+            sizes = value.corners.size, value.places.size
+            return {"quads": [corners, sizes[0], places, sizes[1], value.corners.shape[1]]}
         if isinstance(value, np.ndarray) and value.ndim == 2:
             kind = "uint8" if value.dtype == np.uint8 else "float32"
             at = self._put(np.asarray(value, kind))

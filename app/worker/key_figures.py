@@ -97,6 +97,8 @@ def thing(run: Recording, frame: Frame) -> dict[str, str]:
     # A moment over a rotation has neither.
     title, unit, along = next((one for one in known if one[1] in ("m", "N")), known[0])
     status = fields.status[:, instant_of(look.phase, fields.status.shape[1])]
+    if frame.strand is not None:
+        status = frame.strand.status
     solution = Solution(frame.iterate, [], run.status or CANCELLED)
     energy = FinishedRun(run.settings, solution, False, frame.sampler.loop).dissipated.sum()
     found = {
@@ -106,7 +108,24 @@ def thing(run: Recording, frame: Frame) -> dict[str, str]:
     }
     if (stress := _stress(frame)) is not None:
         found["Largest stress"] = measured(stress, "Pa", look.units)
+    found |= _of_strand(run, frame)
     return {name: text.replace("-", "−") for name, text in found.items()}
+
+
+def _of_strand(run: Recording, frame: Frame) -> dict[str, str]:
+    """Give how stiff a strand is as it is bent now, and how far stress swings in the last cycle."""
+    strand, field, moment = run.stand.strand, frame.strand, frame.fields.load
+    if strand is None or field is None or moment is None:
+        return {}
+    curvature = frame.fields.end_displacement
+    now = instant_of(frame.look.phase, len(curvature))
+    step = slice(max(now - 1, 0), max(now, 1) + 1)
+    bent = np.ptp(curvature[step])
+    found = {"Stress range": measured(float(field.ranges().max()), "Pa", frame.look.units)}
+    if bent > 0.0:
+        share = float(np.ptp(moment[step]) / bent) / strand.bending.stuck
+        found["Bending stiffness"] = percent(share)
+    return found
 
 
 def _stress(frame: Frame) -> float | None:

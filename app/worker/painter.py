@@ -124,8 +124,9 @@ def parts(view: View, drawing: Drawing, say: Language = ENGLISH) -> dict[str, At
     if view.plot.words:
         found["curves"] = {**found["curves"], **_shifts(drawing.curves)}
         found["words"] = _words(drawing, say)
+        found["handles"] = _handles(drawing)
     if view.plot.is_touched:
-        found["handles"], found["contacts"] = _handles(drawing), _contacts(drawing)
+        found["contacts"] = _contacts(drawing)
     for kind in view.plot.marks:
         found[kind.kind] = _marks(kind, drawing)
     if drawing.image is not None:

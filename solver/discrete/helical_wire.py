@@ -28,7 +28,8 @@ class HelicalWire:
     radius
         Of the helix of its centre line, R, m.
     lay
-        Lay angle alpha between wire and strand, rad, between 0 and pi / 2.
+        Lay angle alpha between wire and strand, rad, above 0 in size and below pi / 2; negative if
+        theta falls along the wire.
     start
         Polar angle theta at the wire's beginning, from the outermost fibre, rad.
     """
@@ -41,7 +42,7 @@ class HelicalWire:
     @property
     def half_pitch(self) -> float:
         """Length of wire over which it goes half round the strand, m."""
-        return float(np.pi * self.radius / np.sin(self.lay))
+        return float(np.pi * self.radius / abs(np.sin(self.lay)))
 
     def angle(self, arc: Array) -> Array:
         """Give theta along the wire, rad, at arc lengths, m."""
@@ -76,28 +77,48 @@ class HelicalWire:
         along = stretch * np.cos(self.angle(arc))
         return np.asarray(along[:, None] * np.atleast_2d(curvature))
 
-    def moment(self, arc: Array, slip: Array, curvature: Array) -> Array:
-        """Give what the wire adds to the strand's moment, its mean along the wire.
-
-        As many wires, evenly laid, have it together at every section of the strand.
+    def force(self, arc: Array, slip: Array, curvature: Array) -> Array:
+        """Give the change of the wire's force as it is bent, in its elements.
 
         Parameters
         ----------
-        arc
-            Arc lengths of the nodes, shape (n_nodes,), m.
+        arc, curvature
+            As in `body_force`.
         slip
             Displacement of the wire on its support, shape (n_nodes, n_instants), m.
-        curvature
-            As in `body_force`.
 
         Returns
         -------
-        Shape (n_instants,), N m.
+        Shape (n_elements, n_instants), N.
         """
         stuck = self.stuck_force(arc, curvature)
-        elements = np.diff(arc)[:, None]
-        force = self.stiffness * np.diff(slip, axis=0) / elements + 0.5 * (stuck[1:] + stuck[:-1])
-        angle = self.angle(arc)
-        lever = np.diff(np.sin(angle))[:, None] * self.radius / np.sin(self.lay)
-        whole = self.radius * np.cos(self.lay) * np.sum(force * lever, axis=0)
-        return np.asarray(whole / (arc[-1] - arc[0]))
+        strain = np.diff(slip, axis=0) / np.diff(arc)[:, None]
+        return np.asarray(self.stiffness * strain + 0.5 * (stuck[1:] + stuck[:-1]))
+
+    def mean_levers(self, arc: Array) -> Array:
+        """Give what a newton in each element adds to the mean moment of the strand, N m.
+
+        As many wires, evenly laid, have that moment together at every section. `arc` as in
+        `body_force`; shape (n_elements,), m.
+        """
+        around = np.diff(np.sin(self.angle(arc))) * self.radius / np.sin(self.lay)
+        return np.asarray(self.radius * np.cos(self.lay) * around / (arc[-1] - arc[0]))
+
+    def levers_at_beginning(self, arc: Array) -> Array:
+        """Give what a newton in each element adds to the moment at the wire's beginning, N m.
+
+        The force there follows from the first two elements, in whose middles it is known. `arc` as
+        in `body_force`; shape (n_elements,), m.
+        """
+        found = np.zeros(len(arc) - 1)
+        shares = np.array([1.5, -0.5])[: len(found)]
+        arm = self.radius * np.cos(self.lay) * np.cos(self.start)
+        found[:2] = arm * shares / shares.sum()
+        return found
+
+    def moment(self, arc: Array, slip: Array, curvature: Array) -> Array:
+        """Give what the wire adds to the strand's moment, its mean along the wire.
+
+        Parameters as in `force`; shape (n_instants,), N m.
+        """
+        return np.asarray(self.mean_levers(arc) @ self.force(arc, slip, curvature))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +84,15 @@ class Checkpoint:
         """Bytes that it keeps, though others may share them."""
         kept = self.course.kept if self.course else None
         return self.outgoing.nbytes * (1 + len(self.history) + len(kept or ()))
+
+
+class Stages(NamedTuple):
+    """Displacements and forces of the local and of the linear stage, (n_rows, n_instants) each."""
+
+    local_displacement: Array
+    local_force: Array
+    displacement: Array
+    force: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,9 +240,22 @@ class Iterate:
 
         Points of all interfaces with friction, one interface after the other.
         """
-        return np.concatenate([self.status_at(law) for law in self.problem.rubbing.values()])
+        stages = self.stages()
+        laws = self.problem.rubbing.values()
+        return np.concatenate([self.status_at(law, stages=stages) for law in laws])
 
-    def status_at(self, law: Contact, creep: float = CREEP) -> NDArray[np.int8]:
+    def stages(self) -> Stages:
+        """Give what a status is read from, for whoever reads it of one interface after another."""
+        return Stages(
+            self.local_displacement,
+            self.boundary_local_force,
+            self.boundary_displacement,
+            self.boundary_force,
+        )
+
+    def status_at(
+        self, law: Contact, creep: float = CREEP, stages: Stages | None = None
+    ) -> NDArray[np.int8]:
         """Read the contact status at one interface, (n_points, n_instants).
 
         A point that comes to rest goes on creeping in the local stage for a hundred iterations: by
@@ -243,9 +265,9 @@ class Iterate:
         Bar of 50 elements at its end, with the paper's options: all statuses are right; with
         rounding alone as the limit 23.5 % are wrong.
         """
-        moved, force = self.local_displacement, self.boundary_local_force
+        moved, force, *linear = self.stages() if stages is None else stages
         slip = law.slip(moved, force)
-        apart = np.abs(slip - law.slip(self.boundary_displacement, self.boundary_force))
+        apart = np.abs(slip - law.slip(*linear))
         far = np.abs(slip)
         if law.normal is not None:
             touches = law.by_point(force[law.normal.component.above]) > 0.0

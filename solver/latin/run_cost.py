@@ -14,13 +14,13 @@ from solver.latin.acceleration.mixing import MOST_VALUES
 from solver.latin.criteria.estimate import WAIT
 from solver.latin.finish.cost import SYSTEMS, costs_of
 from solver.latin.method import Latin
-from solver.reference.choice import is_alone
 from solver.reference.contact import MOST_JUMPS, jumps_in
+from solver.reference.supports import rubs_on_supports
 
 ITERATIONS, MORE = 30, 2.5
-"""That a run takes, and how many more with every interface but the first: the scenes' defaults
-take 4 to 25, 20 and 50 layers 13 and 81, strands of 10, 20 and 40 wires 3 to 7, and 52, 155 and
-more than 300 where no step may end them (measured)."""
+"""That a run takes, and how many more with every contact between bodies but the first: the scenes'
+defaults take 4 to 25, 20 and 50 layers 13 and 81, strands of 10, 20 and 40 wires 3 to 7, and 52,
+155 and more than 300 where no step may end them (measured)."""
 PLAIN = 5.0
 """Times as many without acceleration (measured on the bar)."""
 WATCHED = 2.0
@@ -85,7 +85,7 @@ def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool)
         Whether the incremental reference is found before, where there is one.
     """
     costs, n_jumps = costs_of(problem), jumps_in(problem)
-    has_solver = is_alone(problem) or n_jumps <= MOST_JUMPS
+    has_solver = rubs_on_supports(problem) or n_jumps <= MOST_JUMPS
     incremental = costs.condensing + SYSTEMS * costs.n_instants * costs.system
     iterations = min(_iterations(problem, latin), most)
     is_worth_it = latin.finish is not None and costs.afford(iterations, WAIT)
@@ -98,7 +98,8 @@ def run_cost(problem: Problem, latin: Latin, most: int, *, with_reference: bool)
 
 
 def _iterations(problem: Problem, latin: Latin) -> float:
-    expected = ITERATIONS + MORE * (len(problem.rubbing) - 1)
+    coupled = 0 if rubs_on_supports(problem) else len(problem.rubbing) - 1
+    expected = ITERATIONS + MORE * coupled
     return expected if latin.acceleration else PLAIN * expected
 
 
@@ -110,8 +111,8 @@ def _fields(problem: Problem) -> float:
 
 
 def _dense(problem: Problem, n_jumps: int) -> float:
-    """Give the numbers in the matrices of a condensation; a lone support has a band."""
-    if is_alone(problem):
+    """Give the numbers in the matrices of a condensation; supports have a band."""
+    if rubs_on_supports(problem):
         return 0.0
     return n_jumps * (SQUARES * float(n_jumps) + ANSWERS * problem.n_dofs)
 

@@ -89,13 +89,17 @@ class Contact(Pairs):
 
     @classmethod
     def together(cls, laws: Sequence[Self]) -> list[Self]:
-        """Join all of one law and of known bound between two bodies, without macro bases."""
+        """Join all of one law and of known bound, without macro bases; a lone support stays."""
         apart: list[Self] = []
-        alike: dict[type[Tangential], list[Self]] = {}
+        alike: dict[tuple[type[Tangential], bool], list[Self]] = {}
         for law in laws:
-            joins = not law.opens and not law.is_on_support
-            (alike.setdefault(type(law.tangential), []) if joins else apart).append(law)
-        return [cls._joined(kind, own) for kind, own in alike.items()] + apart
+            kind = type(law.tangential), law.is_on_support
+            (apart if law.opens else alike.setdefault(kind, [])).append(law)
+        joined = [
+            own[0] if on_support and len(own) == 1 else cls._joined(kind, own)
+            for (kind, on_support), own in alike.items()
+        ]
+        return joined + apart
 
     @classmethod
     def _joined(cls, kind: type[Tangential], laws: Sequence[Self]) -> Self:

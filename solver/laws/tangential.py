@@ -132,15 +132,16 @@ class Tangential(ABC):
 
     @classmethod
     def joined(cls, laws: Sequence[Self]) -> Self:
-        """Put the pairs of laws between two bodies one after the other."""
+        """Put the pairs of laws one after the other, of all on supports, or of none."""
         values: dict[str, Any] = {
             name: in_rows([getattr(law, name) for law in laws])
             for name in cls.of_pairs
             if getattr(laws[0], name) is not None
         }
+        below = [law.component.below for law in laws if law.component.below is not None]
         component = Component(
             np.concatenate([law.component.above for law in laws]),
-            np.concatenate([law.component.sides[1] for law in laws]),
+            np.concatenate(below) if below else None,
         )
         return laws[0]._with(component=component, **values)
 

@@ -1,4 +1,4 @@
-"""Rods on a rigid support, assembled: one instant after the other."""
+"""Rods on rigid supports, assembled: one instant after the other."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from solver.reference.band import Band
 from solver.reference.changing_bound import Bounds, bounds_of, least_with_changing_bound
 from solver.reference.search import Minimum, Search
 from solver.reference.solution import States
+from solver.reference.supports import points_dofs
 
 
 class AssembledRods:
     """The assembled structure, and the steps of its load and supports, one row an instant."""
 
     def __init__(self, problem: Problem) -> None:
-        law = problem.friction
-        self.point_dofs = np.zeros(len(law.positions), dtype=np.intp)
-        self.point_dofs[law.points] = problem.row_dofs[law.tangent.above]
+        self.point_dofs = points_dofs(problem)
         self.band = Band(assembled_stiffness(problem))
         self.load_steps = np.diff(external_force(problem).T, axis=0, prepend=0.0)
         self._fixed, prescribed = problem.prescribed

@@ -3,32 +3,62 @@
 from __future__ import annotations
 
 from copy import copy
+from typing import Self
 
 import numpy as np
 from numpy.linalg import LinAlgError
 from scipy import sparse
 from scipy.linalg import blas, lapack
 
-from solver.arrays import Array
+from solver.arrays import Array, Flags, Indices
 
 _LOOSE = "the matrix is not positive definite on the degrees of freedom that are kept"
 
 
 class Band:
-    """A symmetric sparse matrix, solved as a band: upper diagonals by row (LAPACK's form)."""
+    """A symmetric sparse matrix, solved as a band: upper diagonals by row (LAPACK's form).
+
+    Attributes
+    ----------
+    largest_row
+        Largest sum of the sizes of a row.
+    solutions
+        Systems that were solved.
+    """
 
     def __init__(self, matrix: sparse.csr_array) -> None:
-        self._matrix = matrix
         entries = sparse.triu(matrix).tocoo()
         rows, columns = entries.coords
-        self._width = int((columns - rows).max())
-        self._upper = np.zeros((self._width + 1, matrix.shape[0]), order="F")
-        self._upper[self._width - (columns - rows), columns] = entries.data
-        self._diagonal = self._upper[-1].copy()
-        self._beside = self._upper[0, 1:].copy()
-        self.largest_row = float(np.abs(matrix).sum(axis=1).max())
+        width = int((columns - rows).max())
+        upper = np.zeros((width + 1, matrix.shape[0]), order="F")
+        upper[width - (columns - rows), columns] = entries.data
+        self._set(upper)
+
+    def _set(self, upper: Array) -> None:
+        self._upper, self._width = upper, len(upper) - 1
+        self._diagonal = upper[-1].copy()
+        self._beside = upper[0, 1:].copy()
+        sums = np.abs(self._diagonal)
+        for offset in range(1, self._width + 1):
+            one = np.abs(upper[self._width - offset, offset:])
+            sums[offset:] += one
+            sums[: len(sums) - offset] += one
+        self.largest_row = float(sums.max())
         self._added: Array | None = None
         self.solutions = 0
+
+    @classmethod
+    def _of(cls, upper: Array) -> Self:
+        found = cls.__new__(cls)
+        found._set(upper)
+        return found
+
+    def apart(self, movable: Array) -> Indices:
+        """Give the first of every run of degrees of freedom that nothing movable ties to others."""
+        if self._width != 1:
+            return np.zeros(1, dtype=np.intp)
+        tied = self._beside * movable[1:] * movable[:-1] != 0.0
+        return np.concatenate([[0], 1 + np.flatnonzero(~tied)])
 
     def product(self, field: Array) -> Array:
         """Give K v."""
@@ -59,20 +89,50 @@ class Band:
             raise LinAlgError(_LOOSE)
         return np.asarray(solved).reshape(len(force))
 
-    def stiffened(self, diagonal: Array) -> Band:
+    def stiffened(self, diagonal: Array) -> Self:
         """Give it with a diagonal matrix added, which may be negative, where degrees are kept."""
         found = copy(self)
         found._added, found.solutions = diagonal, 0
         return found
 
-    def tied_in_pairs(self, movable: Array, movable_pairs: Array) -> Band:
-        """Give the stiffness of successive pairs of movable degrees of freedom, tied together."""
-        own = np.arange(len(movable))
-        tie, held = sparse.csr_array((movable, (own, own // 2))), 1.0 - movable_pairs
-        found = Band(sparse.csr_array(tie.T @ self._matrix @ tie + sparse.diags_array(held)))
-        return found if self._added is None else found.stiffened(pairs(self._added * movable))
+    def only(self, some: Flags) -> Self:
+        """Give the matrix of some degrees of freedom that nothing movable ties to the others."""
+        places = np.flatnonzero(some)
+        upper = np.asfortranarray(self._upper[:, places])
+        upper[:-1, 1:][:, np.diff(places) > 1] = 0.0
+        found = self._of(upper)
+        return found if self._added is None else found.stiffened(self._added[places])
+
+    def tied(self, group: Indices, movable: Array) -> Self:
+        """Give the stiffness of degrees of freedom, tied together where they are movable.
+
+        Parameters
+        ----------
+        group
+            Number of the one that each becomes, ascending, shape (n,).
+        movable
+            1 or 0, same shape; one without any that is movable has the stiffness 1.
+        """
+        size = int(group[-1]) + 1
+        upper = np.zeros((self._width + 1, size), order="F")
+        np.add.at(upper[-1], group, self._diagonal * movable)
+        upper[-1] += summed(group, movable) == 0.0
+        for offset in range(1, self._width + 1):
+            entries = self._upper[self._width - offset, offset:]
+            entries = entries * movable[offset:] * movable[:-offset]
+            first, second = group[:-offset], group[offset:]
+            # What ties two of one group counts on both sides of the diagonal.
+            np.add.at(
+                upper,
+                (self._width - (second - first), second),
+                entries * np.where(first == second, 2.0, 1.0),
+            )
+        found = self._of(upper)
+        if self._added is None:
+            return found
+        return found.stiffened(summed(group, self._added * movable))
 
 
-def pairs(field: Array) -> Array:
-    """Sum over successive pairs; an odd last one stays alone."""
-    return np.add.reduceat(field, np.arange(0, len(field), 2))
+def summed(group: Indices, values: Array) -> Array:
+    """Sum values by the number of their group, ascending from 0, shape (n_groups,)."""
+    return np.asarray(np.bincount(group, values), dtype=float)

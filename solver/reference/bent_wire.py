@@ -38,7 +38,7 @@ class BentWire:
     def first_slip(self) -> float:
         """Curvature kappa_0 at which the first point slips, 1/m."""
         own = self.wire
-        return float(self.bound / (own.stiffness * np.cos(own.lay) ** 2 * np.sin(own.lay)))
+        return float(self.bound / (own.stiffness * np.cos(own.lay) ** 2 * abs(np.sin(own.lay))))
 
     @property
     def full_slip(self) -> float:
@@ -63,7 +63,7 @@ class BentWire:
             Grown from zero, of any shape, 1/m.
         """
         own = self.wire
-        force = self.bound * own.radius / np.sin(own.lay)
+        force = self.bound * own.radius / abs(np.sin(own.lay))
         share = np.array([self._share(float(one)) for one in np.ravel(curvature)])
         moment = own.radius * np.cos(own.lay) * force * share
         return np.asarray(moment.reshape(np.shape(curvature)))

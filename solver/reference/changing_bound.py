@@ -21,6 +21,7 @@ from solver.discrete.problem import Problem
 from solver.reference.band import Band
 from solver.reference.search import Minimum, Search
 from solver.reference.states import rules_of
+from solver.reference.supports import points_dofs
 
 TRIALS = 50
 """Sets of points that pass the slip length, at most."""
@@ -61,19 +62,16 @@ class Bounds:
 
 
 def bounds_of(problem: Problem) -> list[Bounds]:
-    """Give the bounds of the only interface, which is on a support.
+    """Give the bounds of all interfaces, which are on supports.
 
     Returns
     -------
     Those of every instant, or of all where they stay the same.
     """
-    law, rules = problem.friction, rules_of(problem)
-    rubbing = problem.row_dofs[law.tangent.above]
-    bound = law.tangential.bound
-    first, ratio = np.zeros((problem.n_dofs, bound.shape[1])), np.ones(problem.n_dofs)
+    dofs, rules = points_dofs(problem), rules_of(problem)
+    first, ratio = np.zeros((problem.n_dofs, rules.bound.shape[1])), np.ones(problem.n_dofs)
     length = np.full(problem.n_dofs, np.inf)
-    np.add.at(first, rubbing, bound)
-    ratio[rubbing], length[rubbing] = rules.ratio[law.points], rules.slip_length[law.points]
+    first[dofs], ratio[dofs], length[dofs] = rules.bound, rules.ratio, rules.slip_length
     return [Bounds(own, own * ratio, length) for own in np.ascontiguousarray(first.T)]
 
 

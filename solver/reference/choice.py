@@ -12,6 +12,7 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.contact import IncrementalContact
 from solver.reference.incremental import IncrementalRod
 from solver.reference.solution import Reference, States
+from solver.reference.supports import rubs_on_supports
 
 
 class Incremental(Protocol):
@@ -51,10 +52,4 @@ def incremental_solver(problem: Problem) -> Incremental:
     """
     if any(law.tangential.start is not None for law in problem.rubbing.values()):
         raise NoReferenceError("Incremental solvers begin where nothing has slipped yet.")
-    return IncrementalRod(problem) if is_alone(problem) else IncrementalContact(problem)
-
-
-def is_alone(problem: Problem) -> bool:
-    """Tell whether all friction is of known bound, on one rigid support."""
-    laws = list(problem.rubbing.values())
-    return len(laws) == 1 and laws[0].is_plain
+    return IncrementalRod(problem) if rubs_on_supports(problem) else IncrementalContact(problem)

@@ -23,6 +23,7 @@ from solver.reference.assembled_rods import AssembledRods
 from solver.reference.search import Minimum
 from solver.reference.solution import Interrupted, Reference, States
 from solver.reference.starts import Starts
+from solver.reference.supports import rubs_on_supports
 
 
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
@@ -33,7 +34,7 @@ def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Ref
 
 
 class IncrementalRod:
-    """The incremental solver of rods that rub on a rigid support, ready to march through time.
+    """The incremental solver of rods that rub on rigid supports, ready to march through time.
 
     A point whose displacement is prescribed may rub too. Where it moves, its friction force is
     -r sign(v). Where it stands still, only the sum of friction force and reaction is determinate:
@@ -43,7 +44,7 @@ class IncrementalRod:
     Parameters
     ----------
     problem
-        A structure with one frictional interface of known bound.
+        A structure whose interfaces with friction are supports, of known bound.
 
     Raises
     ------
@@ -53,8 +54,8 @@ class IncrementalRod:
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        if not problem.friction.is_plain:
-            raise ValueError("this solver knows Coulomb's friction of known bound on a support")
+        if not rubs_on_supports(problem):
+            raise ValueError("this solver knows Coulomb's friction of known bound on supports")
         self._structure = AssembledRods(problem)
 
     def march(

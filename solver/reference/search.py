@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.arrays import ROUNDING, Array
-from solver.reference.band import Band, pairs
+from solver.arrays import ROUNDING, Array, Flags, Indices
+from solver.reference.band import Band, summed
 
 NEWTON_LIMIT = 8
 """Steps from one guess of the statuses before a better one is sought."""
@@ -29,10 +29,14 @@ class Minimum:
 
 
 class _Guess(NamedTuple):
-    """Statuses that were sought, with increment and pull if they are those of the minimum."""
+    """Statuses that were sought, with increment and pull if they are those of the minimum.
+
+    Else with the rods on which they still change.
+    """
 
     status: Array
     solved: tuple[Array, Array] | None
+    changing: Flags
 
 
 class Search:
@@ -41,7 +45,8 @@ class Search:
     Newton's method for the statuses takes a few steps from a good guess, but a front then advances
     by one point a step, and the method may cycle. So it gives up early, and starts again from the
     statuses of a mesh twice as coarse, found in the same way. Where that fails too, an active-set
-    method ends in finitely many steps.
+    method ends in finitely many steps. Rods that nothing ties to each other are solved together,
+    but each on its own way: those whose statuses are found wait for the others.
     """
 
     def __init__(self, band: Band, bound: Array, movable: Array) -> None:
@@ -51,17 +56,29 @@ class Search:
         self.rubs = (bound > 0.0) * movable
         self._free = movable - self.rubs  # neither held nor rubbing
         self._limit = np.where(self.rubs > 0.0, bound, np.inf)
+        self._starts = band.apart(movable)
+        sizes = np.diff(self._starts, append=len(movable))
+        self._rod = np.repeat(np.arange(len(sizes)), sizes)
 
     def __call__(self, force: Array, status: Array) -> Minimum:
         """Find the minimum from a guess of the statuses; no force where nothing moves."""
-        status, solved = self._sought(force, status)
-        if solved is None:
-            return self.released(force, status)
-        return self._judged(force, status, *solved)
+        found = self._newton(force, status)
+        if found.solved is not None:
+            return self._judged(force, found.status, *found.solved)
+        rods, settled = found.changing, found.status
+        if 2 * np.count_nonzero(rods) >= len(force):
+            return self._of(force, self._mended(force, status))
+        own = Search(self._band.only(rods), self._bound[rods], self._movable[rods])
+        settled[rods] = own._mended(force[rods], status[rods])
+        self._band.solutions += -(-own._band.solutions * len(own._bound) // len(force))
+        return self._of(force, settled)
 
     def released(self, force: Array, status: Array) -> Minimum:
         """Find the minimum from statuses, releasing or stopping one point after the other."""
-        status = self._descend(force, status)
+        return self._of(force, self._descend(force, status))
+
+    def _of(self, force: Array, status: Array) -> Minimum:
+        """Give the minimum whose statuses these are."""
         increment = self._slip(force, status)
         return self._judged(force, status, increment, force - self._band.product(increment))
 
@@ -72,16 +89,31 @@ class Search:
         relative = violation / float(np.abs(force).sum()) if violation else 0.0
         return Minimum(increment, held, status, violation, relative)
 
-    def _sought(self, force: Array, status: Array) -> _Guess:
-        """Seek the statuses, from a guess, and from that of a coarser mesh if need be."""
+    def _mended(self, force: Array, status: Array) -> Array:
+        """Find the statuses where those of Newton's method do not come to rest."""
+        if len(force) >= COARSEST:
+            found = self._newton(force, self._from_coarser(force, status))
+            if found.solved is not None:
+                return found.status
+            status = found.status
+        return self._descend(force, status)
+
+    def _guessed(self, force: Array, status: Array) -> Array:
+        """Guess the statuses, where need be from those of a mesh that is coarser still."""
         found = self._newton(force, status)
         if found.solved is not None or len(force) < COARSEST:
-            return found
-        coarse = self._coarser._sought(pairs(force), np.sign(pairs(status)))
-        return self._newton(force, self.rubs * np.repeat(coarse.status, 2)[: len(force)])
+            return found.status
+        again = self._from_coarser(force, status)
+        return self._newton(force, np.where(found.changing, again, found.status)).status
+
+    def _from_coarser(self, force: Array, status: Array) -> Array:
+        coarser, group = self._coarser
+        guess = coarser._guessed(summed(group, force), np.sign(summed(group, status)))
+        return np.asarray(self.rubs * guess[group])
 
     def _newton(self, force: Array, status: Array) -> _Guess:
         largest = np.abs(force).max()
+        changing = np.ones(len(status), dtype=bool)
         for _ in range(NEWTON_LIMIT):
             increment = self._slip(force, status)
             pull = force - self._band.product(increment)
@@ -91,17 +123,24 @@ class Search:
                 status * (status * increment > 0.0),
                 np.sign(pull) * (np.abs(pull) > limit),
             )
-            if (corrected == status).all():
-                return _Guess(status, (increment, pull))
+            changing = corrected != status
+            if not changing.any():
+                return _Guess(status, (increment, pull), changing)
             status = corrected
-        return _Guess(status, None)
+        return _Guess(status, None, np.logical_or.reduceat(changing, self._starts)[self._rod])
 
     @cached_property
-    def _coarser(self) -> Search:
-        """The same structure with each two successive degrees of freedom tied together."""
-        movable = np.minimum(pairs(self._movable), 1.0)
-        band = self._band.tied_in_pairs(self._movable, movable)
-        return Search(band, pairs(self._bound), movable)
+    def _coarser(self) -> tuple[Search, Indices]:
+        """The same structure with successive degrees of freedom of a rod tied in pairs.
+
+        With it the number of the pair of each.
+        """
+        places = np.arange(len(self._rod)) - self._starts[self._rod]
+        begins = places % 2 == 0
+        group = np.cumsum(begins) - 1
+        movable = np.minimum(summed(group, self._movable), 1.0)
+        band = self._band.tied(group, self._movable)
+        return Search(band, summed(group, self._bound), movable), group
 
     def _slip(self, force: Array, status: Array) -> Array:
         """Solve for the increment under given statuses; exactly zero where they are zero."""
@@ -115,32 +154,49 @@ class Search:
     def _descend(self, force: Array, status: Array) -> Array:
         """Minimise phi by an active-set method, every step of which lowers phi.
 
-        A step ends where a first point stops, which then sticks; at a minimum over the slipping
-        points, the point pulled most beyond its bound is released, and moves the way it is
+        A step of a rod ends where a first point stops, which then sticks; at a minimum over the
+        slipping points, the point pulled most beyond its bound is released, and moves the way it is
         pulled. So no set of statuses has its minimum reached twice.
         """
+        rod = self._rod
         largest = np.abs(force).max()
         increment = self._slip(force, status)
         status = status * (status * increment > 0.0)
         increment *= self._free + np.abs(status)
-        while True:
+        goes_on = np.ones(len(self._starts), dtype=bool)
+        while goes_on.any():
             target = self._slip(force, status)
-            stops = np.flatnonzero(status * target < 0.0)
-            if len(stops):
-                share = increment[stops] / (increment[stops] - target[stops])
-                first = stops[share.argmin()]
-                if increment[first] == 0.0:  # released a moment ago, within rounding of its bound
-                    status[first] = 0.0
-                    return status
-                increment += share.min() * (target - increment)
-                increment[first] = 0.0
-                status = status * (status * increment > 0.0)
-                increment *= self._free + np.abs(status)
-                continue
-            increment = target
-            pull = force - self._band.product(increment)
-            excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
-            most = int(excess.argmax())
-            if excess[most] <= self._rounding(largest, increment):
-                return status
-            status[most] = np.sign(pull[most])
+            share = np.full(len(force), np.inf)
+            turns = status * target < 0.0
+            share[turns] = increment[turns] / (increment[turns] - target[turns])
+            least = np.minimum.reduceat(share, self._starts)
+            stops = goes_on & np.isfinite(least)
+            first = self._first(share == least[rod], stops)
+            # Those without any increment were released a moment ago, within rounding of the bound.
+            goes_on[rod[first[increment[first] == 0.0]]] = False
+            increment += np.where(stops, least, 1.0)[rod] * (target - increment)
+            increment[first] = status[first] = 0.0
+            status = np.where(stops[rod], status * (status * increment > 0.0), status)
+            increment *= self._free + np.abs(status)
+            goes_on &= stops | self._release(force, increment, status, largest, goes_on & ~stops)
+        return status
+
+    def _release(
+        self, force: Array, increment: Array, status: Array, largest: float, rods: Flags
+    ) -> Flags:
+        """Release the point of each of some rods that is pulled most beyond its bound.
+
+        It is written into the statuses; gives the rods that have one.
+        """
+        pull = force - self._band.product(increment)
+        excess = np.where(status == 0.0, np.abs(pull) - self._limit, -np.inf)
+        most = np.maximum.reduceat(excess, self._starts)
+        found = rods & (most > self._rounding(largest, increment))
+        points = self._first(excess == most[self._rod], found)
+        status[points] = np.sign(pull[points])
+        return found
+
+    def _first(self, is_one: Flags, rods: Flags) -> Indices:
+        """Give the first degree of freedom of each of some rods that is one of these."""
+        places = np.flatnonzero(is_one & rods[self._rod])
+        return places[np.unique(self._rod[places], return_index=True)[1]]

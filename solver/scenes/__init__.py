@@ -16,6 +16,7 @@ from solver.scenes.block import BLOCK
 from solver.scenes.entry import Entry, Kind
 from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
+from solver.scenes.rope import ROPE
 from solver.scenes.strand import STRAND
 from solver.settings import Settings
 
@@ -24,6 +25,7 @@ CATALOGUE: dict[str, Entry[Any]] = {
     "block": BLOCK,
     "incline": INCLINE,
     "layers": LAYERS,
+    "rope": ROPE,
     "strand": STRAND,
 }
 

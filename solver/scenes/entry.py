@@ -13,7 +13,7 @@ from solver.reference.exact_curve import ExactCurve
 from solver.scenes.base import SceneSettings
 
 S = TypeVar("S", bound=SceneSettings)
-Kind = Literal["rod", "wires", "plane"]
+Kind = Literal["rod", "wires", "rope", "plane"]
 
 
 class Emblem(NamedTuple):
@@ -43,7 +43,8 @@ class Entry(Generic[S]):
     settings
         Its settings.
     kind
-        What there is to see: a rod on its support, wires beside each other, or plane bodies.
+        What there is to see: a rod on its support, wires beside each other, wires around a core, or
+        plane bodies.
     structure
         Makes what the scene is made of.
     words

@@ -80,7 +80,7 @@ class FinishedRun:
 
     @cached_property
     def displacement(self) -> Array:
-        """Displacement of the loop that the scene shows, shape (n_instants,), m."""
+        """Displacement of the loop that the scene shows, m, or what it goes over; (n_instants,)."""
         return self._loop.displacement(self.iterate.displacement)
 
     @cached_property

@@ -34,6 +34,7 @@ from scipy import sparse
 from solver.arrays import Array, space_time
 from solver.discrete.problem import Problem
 from solver.reference.assembly import assembled_stiffness, external_force
+from solver.reference.supports import points_dofs
 from solver.study.error_against_time import Peer, PeerError
 
 Solve = Callable[[Array, Array], Array]
@@ -98,16 +99,16 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         Where the solver gives up, or takes longer than `TIME_LIMIT`.
     """
     start = time.perf_counter()
-    law = problem.friction
-    rubbing = problem.row_dofs[law.tangent.above]
-    bound = np.zeros(problem.n_dofs)
-    np.add.at(bound, rubbing, law.tangential.most)
+    bound = np.zeros((problem.n_dofs, problem.n_instants))
+    for law in problem.rubbing.values():
+        np.add.at(bound, problem.row_dofs[law.tangent.above], law.tangential.bound)
     fixed, prescribed = problem.prescribed
     free = np.setdiff1d(np.arange(problem.n_dofs), fixed)
     stiffness, force = assembled_stiffness(problem), external_force(problem)
     unit = float(bound[free].max(initial=0.0)) or float(np.abs(force).max()) or 1.0
     reach = bound[free] / unit
-    solve = public.prepare(sparse.csc_array(stiffness[free][:, free]), reach == 0.0, tolerance)
+    never = np.asarray(~reach.any(axis=1))
+    solve = public.prepare(sparse.csc_array(stiffness[free][:, free]), never, tolerance)
     displacement = space_time(problem.n_dofs, problem.n_instants)
     pull = space_time(problem.n_dofs, problem.n_instants)
     before = np.zeros(problem.n_dofs)
@@ -115,19 +116,16 @@ def solve_by(public: Public, problem: Problem, tolerance: float) -> PublicFields
         after[free], after[fixed] = before[free], prescribed[:, instant]
         left = (force[:, instant] - stiffness @ after)[free] / unit
         try:
-            after[free] += solve(left - reach, left + reach) * unit
+            after[free] += solve(left - reach[:, instant], left + reach[:, instant]) * unit
         except PeerError as trouble:
             raise PeerError(f"gave up at instant {instant + 1}: {trouble}") from None
         pull[:, instant] = force[:, instant] - stiffness @ after
-        pull[fixed, instant] = bound[fixed] * np.sign(after[fixed] - before[fixed])
+        pull[fixed, instant] = bound[fixed, instant] * np.sign(after[fixed] - before[fixed])
         before = after
         if time.perf_counter() - start > TIME_LIMIT:
             raise PeerError(f"stopped after {TIME_LIMIT:g} s, at instant {instant + 1}")
-    dofs = np.zeros(len(law.positions), dtype=np.intp)
-    dofs[law.points] = rubbing
-    return PublicFields(
-        displacement * problem.scales.displacement, -pull[dofs] * problem.scales.force
-    )
+    friction = -pull[points_dofs(problem)]
+    return PublicFields(displacement * problem.scales.displacement, friction * problem.scales.force)
 
 
 def _piqp(stiffness: sparse.csc_array, equal: NDArray[np.bool_], tolerance: float) -> Solve:

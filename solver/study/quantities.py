@@ -18,6 +18,7 @@ from solver.study.clip_measures import OF_CLIPS
 from solver.study.cycle_measures import OF_CYCLES
 from solver.study.finished import FinishedRun
 from solver.study.quantity import WITHIN, Parameter, Quantity
+from solver.study.rope_measures import OF_ROPES
 
 ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
 CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
@@ -222,6 +223,7 @@ _ALL = (
     ),
     Quantity("dissipation", "Energy dissipated", "J", measures.dissipation, CYCLE),
     *OF_CYCLES,
+    *OF_ROPES,
     Quantity(
         "slipped_share", "Share of the points that slip", "", measures.slipped_share, is_share=True
     ),

@@ -11,7 +11,7 @@ import argparse
 import sys
 
 from solver.files import settings_from_command
-from solver.reference.choice import is_alone
+from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
 from solver.study.error_against_time import error_against_time
 from solver.study.public_solvers import PUBLIC, peers
@@ -26,7 +26,7 @@ def main() -> int:
     asked.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
     chosen = asked.parse_args()
     settings = settings_from_command(chosen.scene, chosen.changes)
-    if not is_alone(discretise(settings)):
+    if not rubs_on_supports(discretise(settings)):
         print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
         return 2
     found = error_against_time(settings, chosen.repeats, peers=peers())

@@ -140,7 +140,9 @@ def automatic(problem: Problem, *, sticks: bool = False) -> Array:
     for first, second in problem.cuts:
         k[first] *= around.on_cuts
         k[second] *= around.on_cuts
-    parts = len(laws) / sliding_share(problem)
+    # Rods on supports of their own slide all alike; of those beside each other one slides far.
+    several = 1 if all(law.is_on_support for law in laws) else len(laws)
+    parts = several / sliding_share(problem)
     for law in laws:
         law.around.choose(law, k, parts)
         if sticks:
@@ -159,9 +161,11 @@ def sliding_share(problem: Problem) -> float:
     of one body over one interface, where there are several alike. Where displacements are
     prescribed the load is not known beforehand: on a rigid support all may slide; bodies that rub
     on each other carry no more than what the displacement alone makes of a rod, whose scaled
-    stiffness is 1.
+    stiffness is 1. Bodies on supports of their own are taken to slide all along.
     """
-    first, *_ = problem.rubbing.values()
+    first, *others = problem.rubbing.values()
+    if others and all(law.is_on_support for law in problem.rubbing.values()):
+        return 1.0
     capacity = first.tangential.bound.sum(axis=0)
     smallest = min(2.0 / len(first.positions), 1.0)
     load = np.zeros(problem.n_instants)

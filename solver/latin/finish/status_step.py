@@ -140,8 +140,10 @@ def states_of(iterate: Iterate) -> States:
     components; of normal ones 0 where they are closed; `OPEN` of both where they are not.
     """
     found: list[States] = []
+    stages = iterate.stages()
     for law in iterate.problem.rubbing.values():
-        status = iterate.status_at(law, min(STILL, FRONT / len(law.positions) ** 2))
+        creep = min(STILL, FRONT / len(law.positions) ** 2)
+        status = iterate.status_at(law, creep, stages)
         if law.normal is not None:
             found.append(np.where(status == OPEN, OPEN, 0).astype(np.int8))
         found.append(status)

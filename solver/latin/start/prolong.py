@@ -63,7 +63,7 @@ def prolong(coarse: Problem, displacement: Array, force: Array, fine: Problem, k
 
 def _bodies(problem: Problem) -> Indices:
     """Give the number of the body that every degree of freedom belongs to, from 0 on."""
-    if all(law.is_on_support for law in problem.rubbing.values()):
+    if len(problem.rubbing) == 1 and problem.friction.is_on_support:
         return np.zeros(problem.n_dofs, dtype=np.intp)
     parts, n_dofs = problem.substructures, problem.n_dofs
     dofs = np.concatenate([part.dofs for part in parts])

@@ -28,6 +28,7 @@ ROD = {"elements": (10, 800)}
 BODY = {"elements": (4, 96), "elements_up": (1, 32)}
 MESHES = {
     "strand": {"elements": (10, 400), "wires": (2, 12)},
+    "rope": {"elements": (6, 40), "layers": (1, 2)},
     "layers": {"elements": (4, 96), "elements_up": (1, 4), "layers": (2, 6)},
 }
 """Numbers of a mesh, all sizes alike; a scene without an entry has those of a rod or a body."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
+from solver.scenes.constructions import CONSTRUCTIONS
 from solver.scenes.sides import AT_REST, COMPONENTS, LOADED_SIDES, PRESCRIBED
 
 SMALLEST, LARGEST = 0.03, 10.0
@@ -95,11 +96,23 @@ def layers_loads(values: Values, generator: Generator) -> Sizes:
     return found
 
 
+def rope_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw the tension of the rope, and how far it is bent: by where its outer wires slip first."""
+    section = CONSTRUCTIONS[values["construction"]](values["layers"])
+    tension = section.stiffness * 10.0 ** generator.uniform(-4.0, -2.0)
+    helix = section.helix(len(section.layers) - 1)
+    strain = tension / section.stiffness
+    first = values["friction"] * strain * abs(np.sin(helix.lay)) / helix.radius
+    bent = float(first * _share(generator))
+    return {"tension": tension, "tension_load": tension, "curvature": bent, "load": bent}
+
+
 LOADS: dict[str, Callable[[Values, Generator], Sizes]] = {
     "bar": bar_loads,
     "strand": strand_loads,
     "block": block_loads,
     "layers": layers_loads,
+    "rope": rope_loads,
 }
 """Sizes of loads by name, which depend on the other values; of curves, those of their tables. A
 scene without an entry has its loads drawn by their definitions alone."""

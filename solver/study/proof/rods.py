@@ -1,4 +1,4 @@
-"""Cases of rods: the bar of the paper, a broken wire, a helical wire that is bent."""
+"""Cases of rods: the bar of the paper, a broken wire, a strand of helical wires that is bent."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from solver.arrays import Array
-from solver.discrete.helical_wire import HelicalWire
-from solver.discrete.rods import Rods
-from solver.latin import Accuracy, Auto, Iterations, Latin
-from solver.reference.bent_wire import BentWire
+from solver.discrete.rope import Rope
+from solver.reference.bent_strand import BentStrand
 from solver.reference.changing_friction_bar import pulled_changing_bar
 from solver.reference.compliant_bar import cycled_compliant_bar, pulled_compliant_bar
+from solver.scenes import structure_of
+from solver.scenes.constructions import mooring
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, of_scene
 
 OWN = "solver/README.md, 6: equilibrium of the part that slips"
@@ -27,9 +26,10 @@ PAPAILIOU = (
 PEAK = 910.0
 """N; fronts then stop within elements, not at nodes, where they are exact."""
 CYCLE = [[0.0, 0.0], [0.2, PEAK], [0.6, -PEAK], [1.0, PEAK]]
-WIRE = BentWire(HelicalWire(stiffness=1.5e6, radius=4e-3, lay=float(np.radians(12.0))), 3000.0)
-ELEMENTS, STEPS = 40, 60
-"""Of half a pitch; instants of a quarter of a cycle."""
+LAYERS, TENSION = 2, 120e3
+"""Of the strand of helical wires, and N."""
+STEPS = 60
+"""Instants of a quarter of a cycle."""
 
 
 def _bar(settings: Any) -> tuple[float, float]:
@@ -116,46 +116,31 @@ def _broke(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
     yield KnownNumber("force of the broken wire", "N", exact, float(stiffness * strain))
 
 
-def _path(peak: float) -> Array:
-    legs = (0.0, peak), (peak, -peak), (-peak, peak)
-    parts = [np.linspace(*leg, n * STEPS + 1)[1:] for leg, n in zip(legs, (1, 2, 2), strict=True)]
-    return np.concatenate([[0.0], *parts])
-
-
 def _bent(share: float) -> KnownCase:
-    """Bend a helical wire to and fro; neither end of half a pitch slips, by symmetry."""
-    peak = share * WIRE.first_slip
-    curvature = _path(peak)
-    arc = np.linspace(0.0, WIRE.wire.half_pitch, ELEMENTS + 1)
-    wire = Rods(
-        length=WIRE.wire.half_pitch,
-        stiffness=WIRE.wire.stiffness,
-        elements=ELEMENTS,
-        substructures=4,
-        bound=np.full(ELEMENTS + 1, WIRE.bound),
-        load=np.zeros_like(curvature),
-        instants=np.linspace(0.0, 1.0, len(curvature)),
-        duration=1.0,
-        rigid_grip=True,
-        body_force=WIRE.wire.body_force(arc, curvature),
-    )
+    """Bend a strand to and fro, so many times as far as where its outer layer slips first."""
+    strand = BentStrand(mooring(LAYERS), 0.3, TENSION)
+    peak = share * strand.layers[-1].first_slip
+    changes = {
+        "bending": "uniform",
+        "layers": LAYERS,
+        "tension": TENSION,
+        "curvature": peak,
+        "elements": 40,
+        "instants": 5 * STEPS + 1,
+    }
 
-    def numbers(answer: Answer) -> Iterator[KnownNumber]:
-        moment = WIRE.wire.moment(arc, answer.fields.displacement, curvature)
-        exact = float(WIRE.moment(np.array(peak)))
-        yield KnownNumber("moment of a wire", "N m", exact, float(moment[STEPS]))
-        taken = float(np.trapezoid(moment[STEPS:], curvature[STEPS:]))
-        yield KnownNumber("energy of a cycle, a metre", "J/m", WIRE.energy(peak), taken)
+    def numbers(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
+        rope = structure_of(settings)
+        assert isinstance(rope, Rope)
+        moment = rope.moment()(answer.fields.displacement)
+        yield KnownNumber(
+            "moment", "N m", float(strand.moment(np.array(peak))), float(moment[STEPS])
+        )
+        taken = float(np.trapezoid(moment[STEPS:], rope.curvature[STEPS:]))
+        yield KnownNumber("energy of a cycle, a metre", "J/m", strand.energy(peak), taken)
 
-    return KnownCase(
-        f"helical wire bent to {share:g} kappa_0",
-        PAPAILIOU,
-        f"{ELEMENTS} elements a half pitch, {len(curvature)} instants",
-        0.01,
-        wire.discretise,
-        lambda: Latin(direction=Auto(), stop=Accuracy(0.001) | Iterations(400)),
-        numbers,
-    )
+    title = f"strand of helical wires bent to {share:g} kappa_0"
+    return of_scene(title, PAPAILIOU, 0.01, "rope", changes, numbers)
 
 
 def _pull(peak: float) -> dict[str, Any]:
@@ -201,5 +186,5 @@ def rod_cases() -> Iterator[KnownCase]:
         )
     broken = {"load": [[0.0, 0.0], [1.0, 610.0]], "elements": 200, "instants": 21}
     yield of_scene("broken wire between two others", OWN, 2e-3, "strand", broken, _broke)
-    yield _bent(1.2)
-    yield _bent(1.5)
+    for share in (1.2, 1.5, 6.0):
+        yield _bent(share)

@@ -1,0 +1,180 @@
+"""The cross-section of a strand: a core and layers of helical wires, and what it says alone.
+
+Sections of the strand stay plane and wires are long beside their diameter, so that each of them is
+a bar along its helix (G. A. Costello, Theory of Wire Rope, 2nd ed., Springer 1997, without
+Poisson's effect; K.-O. Papailiou, IEEE Trans. Power Delivery 12, 1997).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.helical_wire import HelicalWire
+from solver.refusal import RefusedError
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Equal round wires, evenly laid.
+
+    Attributes
+    ----------
+    wires
+        Their number.
+    diameter
+        Of a wire, m.
+    young
+        Young's modulus, Pa.
+    lay
+        Lay angle alpha, rad; negative if laid the other way round, 0 of a core alone.
+    """
+
+    wires: int
+    diameter: float
+    young: float
+    lay: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.wires < 1 or self.diameter <= 0.0 or self.young <= 0.0:
+            raise RefusedError(
+                "Layer",
+                [self.wires, self.diameter, self.young],
+                "at least one wire, a diameter and a Young's modulus above 0",
+                "leave the layer out, or give it wires",
+            )
+        if abs(self.lay) >= 0.5 * np.pi:
+            raise RefusedError(
+                "Layer.lay", self.lay, "angles below pi / 2 in size", "give the angle in rad"
+            )
+
+    @property
+    def area(self) -> float:
+        """Of one wire, m^2."""
+        return float(np.pi * self.diameter**2 / 4.0)
+
+    @property
+    def stiffness(self) -> float:
+        """Axial stiffness E A of one wire, N."""
+        return self.young * self.area
+
+    @property
+    def own_bending(self) -> float:
+        """Bending stiffness E I cos(alpha) of all wires, each about its own axis, N m^2."""
+        own = self.young * np.pi * self.diameter**4 / 64.0
+        return float(self.wires * own * np.cos(self.lay))
+
+
+@dataclass(frozen=True)
+class CrossSection:
+    """A core wire, and layers around it from the inside out.
+
+    Attributes
+    ----------
+    core
+        A layer of one wire, without lay.
+    layers
+        At least one, each with a lay.
+    """
+
+    core: Layer
+    layers: tuple[Layer, ...]
+
+    def __post_init__(self) -> None:
+        if self.core.wires != 1 or self.core.lay != 0.0:
+            raise RefusedError(
+                "CrossSection.core", self.core.wires, "one straight wire", "give wires to layers"
+            )
+        if not self.layers or not all(layer.lay for layer in self.layers):
+            raise RefusedError(
+                "CrossSection.layers",
+                [layer.lay for layer in self.layers],
+                "one layer or more, each with a lay angle that is not 0",
+                "lay the wires around the core",
+            )
+
+    @cached_property
+    def radii(self) -> tuple[float, ...]:
+        """Radius of the helix of every layer, m: each lies on what is below."""
+        found, outer = [], 0.5 * self.core.diameter
+        for layer in self.layers:
+            found.append(outer + 0.5 * layer.diameter)
+            outer += layer.diameter
+        return tuple(found)
+
+    @property
+    def diameter(self) -> float:
+        """Of the whole strand, m."""
+        return 2.0 * self.radii[-1] + self.layers[-1].diameter
+
+    @property
+    def wires(self) -> int:
+        """Number of all wires, the core among them."""
+        return 1 + sum(layer.wires for layer in self.layers)
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Axial stiffness of the strand, which does not untwist, N: tension over strain."""
+        laid = (one.wires * one.stiffness * np.cos(one.lay) ** 3 for one in self.layers)
+        return self.core.stiffness + float(sum(laid))
+
+    @cached_property
+    def slipping_bending(self) -> float:
+        """Bending stiffness of wires that all slip, each about its own axis, N m^2."""
+        return self.core.own_bending + sum(layer.own_bending for layer in self.layers)
+
+    @cached_property
+    def stuck_bending(self) -> float:
+        """Bending stiffness while nothing slips, N m^2."""
+        together = (
+            0.5 * one.wires * one.stiffness * radius**2 * np.cos(one.lay) ** 3
+            for one, radius in zip(self.layers, self.radii, strict=True)
+        )
+        return self.slipping_bending + float(sum(together))
+
+    def helix(self, layer: int, wire: int = 0) -> HelicalWire:
+        """Give a wire; the first of each layer begins at the outermost fibre.
+
+        Parameters
+        ----------
+        layer, wire
+            Numbers from 0 on, inside out, and the way that theta grows.
+        """
+        one = self.layers[layer]
+        start = 2.0 * np.pi * wire / one.wires
+        return HelicalWire(one.stiffness, self.radii[layer], one.lay, start)
+
+    def wire_tension(self, layer: int, tension: Array) -> Array:
+        """Give the force in a wire of a layer under a tension of the strand, of its shape, N."""
+        one = self.layers[layer]
+        return np.asarray(one.stiffness * np.cos(one.lay) ** 2 / self.stiffness * tension)
+
+    def line_pressures(self, tension: Array) -> tuple[Array, Array]:
+        """Give what presses the wires of every layer on what is below, and on it from above.
+
+        A wire presses with N sin^2(alpha) / R per length. What a layer and all outside it press is
+        spread over the wires below; each layer passes it on.
+
+        Parameters
+        ----------
+        tension
+            Of the strand, shape (n_instants,), N.
+
+        Returns
+        -------
+        Inner and outer faces, shape (n_layers, n_instants) each, N per metre of wire.
+        """
+        below, above = [], []
+        passed = np.zeros_like(tension)
+        for number in reversed(range(len(self.layers))):
+            layer, radius = self.layers[number], self.radii[number]
+            # Per length of wire, of what acts per length of strand.
+            share = np.cos(layer.lay) / layer.wires
+            above.append(share * passed)
+            own = self.wire_tension(number, tension) * np.sin(layer.lay) ** 2 / radius
+            passed = passed + own / share
+            below.append(share * passed)
+        return np.array(below[::-1]), np.array(above[::-1])

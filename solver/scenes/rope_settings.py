@@ -1,0 +1,219 @@
+"""Settings of a strand of helical wires, stretched and bent (solver/README.md, 6)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+import solver.scenes.shared as shared
+from solver.arrays import Array
+from solver.definitions import SettingError, choice, count, curve, quantity
+from solver.discrete.cross_section import CrossSection
+from solver.loads import PRESETS, PRESSURES, to_and_fro
+from solver.scenes.base import SceneSettings
+from solver.scenes.constructions import CONSTRUCTIONS, MOST_LAYERS
+
+
+class RopeSettings(SceneSettings):
+    """Settings of the strand; by default 37 wires near a clamp, bent up, down and up again."""
+
+    scene = "rope"
+    LOADS: ClassVar = ("curvature",)
+
+    construction = choice(
+        "mooring",
+        list(CONSTRUCTIONS),
+        "mooring: a spiral strand of 5 mm steel wires, 6, 12, 18, ... a layer on a core wire. "
+        "seven-wire: prestressing strand of 15.7 mm. conductor: an overhead conductor of 28 mm, 26 "
+        "aluminium wires on 7 of steel (Drake).",
+        group="Strand",
+        title="Construction",
+    )
+    layers = count(
+        3,
+        (1, MOST_LAYERS),
+        (1, MOST_LAYERS),
+        "Number of layers on the core: 7, 19, 37, 61 or 91 wires.",
+        group="Strand",
+        title="Layers",
+        applies=lambda settings: settings.construction == "mooring",
+    )
+    load = curve(
+        "cycle",
+        PRESETS,
+        "time",
+        "curvature",
+        ("s", "1/m"),
+        "Curvature over time, uniform or at the clamp: a preset, or points (s, 1/m).",
+        group="Load",
+        title="Curvature path",
+    )
+    curvature = quantity(
+        0.1,
+        (-1e3, 1e3),
+        (0.0, 0.5),
+        "Largest curvature that the preset reaches: 1 over the radius to which the strand is bent. "
+        "Sections stay plane, so each wire is stretched and pressed as it goes round.",
+        group="Load",
+        title="Peak curvature",
+        unit="1/m",
+        applies=lambda settings: isinstance(settings.load, str),
+    )
+    cycles = count(
+        1,
+        (1, 1000),
+        (1, 10),
+        "How often the strand is bent down and up again, after it was bent up.",
+        group="Load",
+        title="Cycles",
+        applies=lambda settings: settings.load == "cycle",
+    )
+    tension = quantity(
+        250e3,
+        (0.0, 1e12),
+        (0.0, 1e6),
+        "Tension of the strand, by which wires press on what is below them. About a quarter of "
+        "what they break at: 250 kN of 37 mooring wires, 70 kN seven-wire, 30 kN conductor. It is "
+        "bent without untwisting, and what friction adds to a wire's tension presses no harder.",
+        group="Load",
+        title="Tension",
+        unit="N",
+        applies=lambda settings: isinstance(settings.tension_load, str),
+    )
+    tension_load = curve(
+        "steady",
+        PRESSURES,
+        "time",
+        "tension",
+        ("s", "N"),
+        "Tension over time. loosening: it stays for a quarter of the interval, and falls to a "
+        "fifth. tightening: the other way. shaken: it falls to a fifth and comes back, six times. "
+        "Or points (s, N).",
+        group="Load",
+        title="Tension over time",
+    )
+    seed = shared.seed(lambda settings: settings.load == "random")
+    duration = shared.duration()
+    instants = shared.instants(61)
+    bending = choice(
+        "clamp",
+        ["uniform", "clamp"],
+        "uniform: the same curvature all along; wires of a layer are then alike, and one of each "
+        "stands for all. clamp: the curvature falls away from a clamp, and every wire is there.",
+        group="Strand",
+        title="Where it is bent",
+    )
+    fall_off = quantity(
+        0.0,
+        (0.0, 1e4),
+        (0.0, 1.0),
+        "Distance λ from the clamp at which the curvature is exp(-1) of that at the clamp. 0: "
+        "sqrt(E I / T), of the bending stiffness while nothing slips and the largest tension.",
+        group="Strand",
+        title="Fall-off λ",
+        unit="m",
+        applies=lambda settings: settings.bending == "clamp",
+    )
+    length = quantity(
+        0.6,
+        (1e-3, 1e3),
+        (0.1, 5.0),
+        "Length of strand from the clamp on; beyond it nothing slips. Some three times λ.",
+        group="Strand",
+        title="Length L",
+        unit="m",
+        applies=lambda settings: settings.bending == "clamp",
+        logarithmic=True,
+    )
+    friction = shared.friction("mu of the wires on what they lie on")
+    elements = count(
+        60,
+        (2, 20_000),
+        (10, 400),
+        "Number of linear elements of a wire: of its length, or of half a turn where it is bent "
+        "alike all along.",
+        group="Strand",
+        title="Elements per wire",
+    )
+    substructures = count(
+        10,
+        (1, 20_000),
+        (1, 50),
+        "Number of pieces (substructures) that a wire is cut into, all alike.",
+        group="Decomposition",
+        title="Substructures per wire",
+    )
+
+    @classmethod
+    def chief(cls) -> tuple[str, ...]:
+        """Name what it is about: what is bent, how far, how taut, and how rough."""
+        own = "construction", "layers", "bending", "load", "curvature", "tension", "friction"
+        return (*own, "k_scale")
+
+    @cached_property
+    def section(self) -> CrossSection:
+        """The strand's cross-section."""
+        return CONSTRUCTIONS[self.construction](self.layers)
+
+    @property
+    def is_clamped(self) -> bool:
+        """Whether the curvature falls away from a clamp."""
+        return bool(self.bending == "clamp")
+
+    @property
+    def n_wires(self) -> int:
+        """Number of wires whose slip is sought; the core does not slip."""
+        section = self.section
+        return section.wires - 1 if self.is_clamped else len(section.layers)
+
+    @property
+    def n_substructures(self) -> int:
+        """Number of substructures in all."""
+        return self.n_wires * int(self.substructures)
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of nodes of all wires."""
+        return self.n_wires * int(self.elements + 1)
+
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the loop is over a displacement: it is over the curvature."""
+        return False
+
+    def _candidates(self) -> Mapping[str, str]:
+        return {"right y": "curvature", "right x": "tension"}
+
+    def size_of(self, path: str) -> float:
+        """Give the largest value that a preset of a path over time reaches."""
+        return float(self.tension if path == "tension_load" else self.curvature)
+
+    def _along(self, name: str, instants: Array) -> Array:
+        if name == "load" and self.load == "cycle":
+            return self.curvature * to_and_fro(instants / self.duration, self.cycles)
+        return super()._along(name, instants)
+
+    def check_together(self) -> None:
+        """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
+        super().check_together()
+        path = self.tension_load
+        if not isinstance(path, str) and min(value for _, value in path) < 0.0:
+            raise SettingError(
+                "tension_load", path, "tensions of at least 0 N", "raise the negative tension"
+            )
+        if self.is_clamped and self.fall_off == 0.0 and not self.path("tension_load").any():
+            raise SettingError(
+                "fall_off",
+                self.fall_off,
+                "a distance above 0, where there is no tension to tell it",
+                "give the fall-off, or a tension",
+            )
+
+    def falls_off(self) -> float:
+        """Give the distance over which the curvature falls to exp(-1), m."""
+        if self.fall_off:
+            return float(self.fall_off)
+        return float(np.sqrt(self.section.stuck_bending / self.path("tension_load").max()))

@@ -1,0 +1,34 @@
+"""Strands of helical wires for tests, by their settings."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from solver.arrays import Array
+from solver.discrete.rope import Rope
+from solver.reference.bent_strand import BentStrand
+from solver.reference.incremental import incremental
+from solver.reference.solution import Reference
+from solver.scenes.rope import bent_strand, rope
+from solver.scenes.rope_settings import RopeSettings
+
+STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "substructures": 4}
+
+
+def settings_of(**changes: Any) -> RopeSettings:
+    return RopeSettings.checked({**STRAND, **changes})
+
+
+def solved(settings: RopeSettings) -> tuple[Rope, Reference]:
+    scene = rope(settings)
+    return scene, incremental(scene.discretise())
+
+
+def moment_of(scene: Rope, found: Reference) -> Array:
+    return scene.moment()(found.displacement)
+
+
+def exact_of(settings: RopeSettings) -> BentStrand:
+    found = bent_strand(settings)
+    assert found is not None
+    return found
