@@ -107,11 +107,6 @@ BEGINS = {
 """Share of the interval from which on a preset comes back to where it is, and may be repeated."""
 
 
-def to_and_fro(phase: Array, cycles: int) -> Array:
-    """Go from 0 to 1, and from there to -1 and back so many times, as "cycle" does once."""
-    return _evenly(np.array([0.0, 1.0, *[0.0, -1.0, 0.0, 1.0] * cycles]), phase)
-
-
 def instants_of(duration: float, number: int) -> Array:
     """Spread instants evenly over a time interval, shape (number,), s; a single one ends it."""
     return np.linspace(0.0, duration, number) if number > 1 else np.array([duration])

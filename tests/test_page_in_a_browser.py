@@ -42,7 +42,7 @@ def take(page: Page, scene: str = "bar", **changes: Any) -> None:
     """Have the page open a file of settings."""
     text = saved(CATALOGUE[scene].settings.checked(changes), was_warm=False)
     file = {"name": "settings.toml", "mimeType": "text/plain", "buffer": text.encode()}
-    page.locator("input[type=file]").set_input_files(file)
+    page.get_by_label("Open settings").set_input_files(file)
 
 
 def test_a_run_streams_into_all_views_and_one_can_pause_step_scrub_back_and_reset(
@@ -142,7 +142,7 @@ def test_settings_are_saved_opened_and_brought_back(page: Page, tmp_path: Path) 
     press(page, "Share")
     file = tmp_path / "other.toml"
     file.write_text(text.replace("substructures = 5\n", "substructures = 7\n"))
-    page.locator("input[type=file]").set_input_files(file)
+    page.get_by_label("Open settings").set_input_files(file)
     expect(status(page)).to_contain_text("7 substructures")
     press(page, "Defaults")
     expect(status(page)).to_contain_text("10 substructures")
@@ -150,7 +150,7 @@ def test_settings_are_saved_opened_and_brought_back(page: Page, tmp_path: Path) 
     press(page, "Open mine")
     expect(status(page)).to_contain_text("5 substructures")
     file.write_bytes(b"\xff\xfe\0")
-    page.locator("input[type=file]").set_input_files(file)
+    page.get_by_label("Open settings").set_input_files(file)
     expect(page.get_by_text("The file is not text")).to_be_visible()
 
 

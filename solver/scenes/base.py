@@ -74,7 +74,7 @@ class SceneSettings(Settings):
         "How often what the presets of load paths do, after their beginning, is done in the "
         "interval; a preset that does not come back (ramp, hold, random) stays as it is.",
         group="Load",
-        title="Times over",
+        title="Cycles",
         applies=lambda settings: settings.is_repeatable,
     )
 

@@ -9,10 +9,9 @@ from typing import ClassVar
 import numpy as np
 
 import solver.scenes.shared as shared
-from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.cross_section import CrossSection
-from solver.loads import PRESETS, PRESSURES, to_and_fro
+from solver.loads import PRESETS, PRESSURES
 from solver.scenes.base import SceneSettings
 from solver.scenes.constructions import CONSTRUCTIONS, MOST_LAYERS
 
@@ -61,15 +60,6 @@ class RopeSettings(SceneSettings):
         title="Peak curvature",
         unit="1/m",
         applies=lambda settings: isinstance(settings.load, str),
-    )
-    cycles = count(
-        1,
-        (1, 1000),
-        (1, 10),
-        "How often the strand is bent down and up again, after it was bent up.",
-        group="Load",
-        title="Cycles",
-        applies=lambda settings: settings.load == "cycle",
     )
     tension = quantity(
         250e3,
@@ -190,11 +180,6 @@ class RopeSettings(SceneSettings):
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
         return float(self.tension if path == "tension_load" else self.curvature)
-
-    def _along(self, name: str, instants: Array) -> Array:
-        if name == "load" and self.load == "cycle":
-            return self.curvature * to_and_fro(instants / self.duration, self.cycles)
-        return super()._along(name, instants)
 
     def check_together(self) -> None:
         """Refuse a tension that pushes, and a curvature that no fall-off is known of."""
