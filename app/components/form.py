@@ -41,7 +41,7 @@ h4 { margin: 14px 0 2px; font-size: 12px; font-weight: 400; letter-spacing: 0.08
   text-transform: uppercase; }
 div[title] { margin: 6px 0; }
 label { display: block; }
-.scenes { display: grid; grid-template-columns: repeat(auto-fit, minmax(50px, 1fr)); gap: 4px; }
+.scenes { display: grid; grid-template-columns: repeat(auto-fit, minmax(44px, 1fr)); gap: 2px; }
 .scenes label { position: relative; padding: 2px 1px 1px; text-align: center; font-size: 12px;
   text-transform: capitalize; border: 1px solid transparent; border-radius: 6px; }
 .scenes label:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
@@ -49,7 +49,7 @@ label { display: block; }
   background: color-mix(in srgb, var(--accent) 14%, transparent); }
 .scenes label:has(:focus-visible) { outline: 2px solid var(--accent); outline-offset: 1px; }
 .scenes input { position: absolute; inset: 0; margin: 0; opacity: 0; cursor: pointer; }
-.scenes svg { display: block; width: 48px; height: 32px; margin: auto; fill: none;
+.scenes svg { display: block; width: 100%; max-width: 48px; height: 32px; margin: auto; fill: none;
   stroke: currentColor; stroke-width: 1.6; stroke-linejoin: round; stroke-linecap: round; }
 .scenes .body { fill: color-mix(in srgb, var(--accent) 40%, transparent); }
 .scenes .ground { opacity: 0.65; }
