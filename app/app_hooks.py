@@ -10,6 +10,8 @@ from typing import Any
 from tornado.ioloop import IOLoop
 
 ROOT = str(Path(__file__).resolve().parents[1])
+LONGEST = 24 * 3600
+"""Seconds for which a page may lose its network and go on; a lesson, or a day's work."""
 
 
 def on_server_loaded(_server_context: Any) -> None:
@@ -21,6 +23,7 @@ def on_server_loaded(_server_context: Any) -> None:
         alive_with,
         answer_heads,
         ignore_the_lost,
+        let_come_back,
         open_in_turn,
         send_by,
         stay_on_loop,
@@ -33,6 +36,7 @@ def on_server_loaded(_server_context: Any) -> None:
     alive_with(facts)
     answer_heads(NAMES.__contains__)
     send_by(Packed)
+    let_come_back(LONGEST)
     open_in_turn()
     stay_on_loop()
     ignore_the_lost()

@@ -18,8 +18,9 @@ PAGES = """Bokeh.documents.filter((one) => one.roots().some(({type}) => type !==
 """Documents that are no figure's."""
 SMALL = "scene=strand&wires=5&elements=12&instants=11&plots=Scene&pace=1"
 """Its search goes on while the network is cut."""
-KEPT = ("--unused-session-lifetime", "600000")
-"""However long a busy machine takes to mend the network, the server still knows the page."""
+KEPT = "--unused-session-lifetime", "600000", "--session-token-expiration", "1"
+"""However long a busy machine takes to mend the network, the server still knows the page; and one
+that has been open for longer than a second may come back too."""
 
 
 class Network:

@@ -22,6 +22,7 @@ from bokeh.server.connection import ServerConnection
 from bokeh.server.contexts import ApplicationContext
 from bokeh.server.protocol_handler import ProtocolHandler
 from bokeh.server.session import ServerSession
+from bokeh.server.tornado import BokehTornado
 from panel.io.server import DocHandler
 from panel.models.esm import DataEvent, ESMEvent
 from panel.util import edit_readonly
@@ -34,6 +35,7 @@ from app.components.innards import (
     answer_heads,
     ignore_business,
     ignore_the_lost,
+    let_come_back,
     open_in_turn,
     stay_on_loop,
 )
@@ -56,6 +58,19 @@ def test_a_busy_server_changes_nothing_on_the_page() -> None:
         pn.state.busy = True
         pn.state.busy = False
     assert not changes
+
+
+def test_a_page_may_come_back_for_as_long_as_the_server_says_and_no_less(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told = BokehTornado.session_token_expiration
+    monkeypatch.setattr(BokehTornado, "session_token_expiration", told)
+    let_come_back(100)
+    server = BokehTornado({}, session_token_expiration=1)
+    assert server.session_token_expiration == 100
+    let_come_back(10)
+    assert server.session_token_expiration == 100
+    assert BokehTornado({}, session_token_expiration=300).session_token_expiration == 300
 
 
 def test_pages_are_opened_one_after_the_other(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from bokeh.document import Document
 from bokeh.server import session as bokeh_session
 from bokeh.server.contexts import ApplicationContext
 from bokeh.server.protocol_handler import ProtocolHandler
+from bokeh.server.tornado import BokehTornado
 from bokeh.server.util import check_allowlist
 from panel.custom import JSComponent
 from panel.io.liveness import LivenessHandler
@@ -113,6 +114,19 @@ def send_by(transform: type[OutputTransform]) -> None:
         await prepare(handler)
 
     DocHandler.prepare = prepare_all  # type: ignore[assignment,method-assign]
+
+
+def let_come_back(seconds: int) -> None:
+    """Have the socket of a page opened again so long after the page was asked for, s.
+
+    Bokeh refuses that after five minutes, unless told otherwise, and the page has to be made anew.
+    """
+    told: Any = BokehTornado.session_token_expiration
+
+    def longest(server: BokehTornado) -> int:
+        return max(seconds, int(told.fget(server)))
+
+    BokehTornado.session_token_expiration = property(longest)  # type: ignore[assignment,method-assign]
 
 
 def open_in_turn() -> None:
