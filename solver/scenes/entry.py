@@ -14,7 +14,7 @@ from solver.reference.closed_form import ClosedForm
 from solver.scenes.base import SceneSettings
 
 S = TypeVar("S", bound=SceneSettings)
-Kind = Literal["rod", "wires", "rope", "plane"]
+Kind = Literal["rod", "wires", "helices", "plane"]
 
 
 class Emblem(NamedTuple):
