@@ -35,7 +35,7 @@ def test_every_view_of_a_scene_stands_on_one_of_as_many_cards_as_the_window_hold
 ) -> None:
     cards = [tuple(beside(view, settings)) for view in drawn(settings, None)]
     # Below the band of a strand's picture there is a card more: its cross-section.
-    assert len(cards) == (7 if kind_of(settings) == "rope" else 6)
+    assert len(cards) == (7 if kind_of(settings) == "helices" else 6)
     assert sorted(view.name for card in cards for view in card) == sorted(
         view.name for view in fitting(settings)
     )

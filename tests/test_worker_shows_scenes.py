@@ -93,7 +93,7 @@ def test_what_few_views_show_is_computed_when_one_looks(
     assert (frame.mesh is not None) == (scene in ("block", "layers", "incline"))
     assert (frame.axial is not None) == (scene == "strand")
     assert (frame.fields.load is None) == (scene in ("bar", "strand"))
-    monkeypatch.setattr("app.picture.sampler.friction_spectra", asked.append)
+    monkeypatch.setattr("app.picture.spectra.friction_spectra", asked.append)
     monkeypatch.setattr(Sampler, "axial", lambda *given: asked.append(given))
     monkeypatch.setattr(Sampler, "mesh_field", lambda *given: asked.append(given))
     told(scene, look=Look(views=("Stick and slip", "Convergence")))

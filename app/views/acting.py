@@ -19,6 +19,8 @@ ARROW, BESIDE = 38.0, 8.0
 """Length of an arrow at the largest value, and its distance from the side that it points along."""
 LEAST = 0.02
 """Share of its largest value below which an arrow is not drawn."""
+NOTHING = 1e-6
+"""Share of its largest value below which one is told as zero."""
 GAP = 4.0
 """Pixels between what is drawn and what is said."""
 BETWEEN = "\u2003"
@@ -138,6 +140,8 @@ def _value(posed: Posed, act: Act, units: str) -> str:
     """Say what acts now; what varies along a side, at both of its ends."""
     unit, name = scale_of(float(np.abs(act.values).max()), act.unit, units)
     now = np.atleast_1d(posed.now(act.values)) / unit
+    # Instants are rounded as they are sent: what passes zero is not quite there.
+    now = np.where(np.abs(now) < NOTHING * float(np.abs(act.values).max()) / unit, 0.0, now)
     values = [sketch.plain(float(one)) for one in now]
     value = values[0] if len(values) == 1 else Phrase("{} to {}", *values)
     return Phrase("{} = {} {}", act.symbol, value, name)

@@ -91,5 +91,5 @@ VIEW = View(
     "Force in the wires",
     Plot(POSITION, "Axial force"),
     draw,
-    lambda settings: kind_of(settings) in ("wires", "rope"),
+    lambda settings: kind_of(settings) in ("wires", "helices"),
 )

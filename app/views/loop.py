@@ -45,7 +45,7 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     if run.reference is not None:
         keys.append(Key(ORANGE, "line", "reference"))
     if begun.strand is not None:
-        curves += _stiffness(begun.strand.bending, x)
+        curves += _stiffness(begun.strand.bending, x, y)
         keys += STIFFNESS
     if ghost is not None:
         curves.append(Curve(*ghost, GHOST, 2))
@@ -62,13 +62,13 @@ def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:
     return Drawing(x, y, curves, (point,), keys=[*keys, *more], kept=limits)
 
 
-def _stiffness(bending: Stiffness, x: Axis) -> list[Curve]:
+def _stiffness(bending: Stiffness, x: Axis, y: Axis) -> list[Curve]:
     """Give lines as steep as a strand is stiff while nothing slips, and once all does."""
-    ends = np.array([x.low, x.high])
-    return [
-        Curve(ends, value * ends, key.color, 1.5, key.mark)
-        for key, value in zip(STIFFNESS, bending, strict=True)
-    ]
+    found = []
+    for key, value in zip(STIFFNESS, bending, strict=True):
+        ends = np.clip([x.low, x.high], y.low / value, y.high / value)
+        found.append(Curve(ends, value * ends, key.color, 1.5, key.mark))
+    return found
 
 
 def _limits(

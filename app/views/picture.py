@@ -16,7 +16,6 @@ from app.views.colors import (
     BACKWARD,
     FORCE,
     FORWARD,
-    FRONT,
     GHOST,
     GIVEN,
     GREY,
@@ -194,7 +193,7 @@ def _values(scene: Scene) -> NDArray[np.float32]:
 
 def _lines(posed: Posed) -> list[Curve]:
     """Give the lines between the wires of a strand."""
-    return [posed.curve(posed.seams(), FRONT, 1)]
+    return [posed.curve(posed.seams(), GREY, 1)]
 
 
 def _bands(posed: Posed) -> list[Curve]:

@@ -30,7 +30,7 @@ WIDEST, ALL_BARS = 16.0, 150.0
 
 def is_bent(settings: Settings) -> bool:
     """Tell whether there is a strand of helical wires."""
-    return kind_of(settings) == "rope"
+    return kind_of(settings) == "helices"
 
 
 def draw(scene: Scene, _kept: None) -> Drawing | None:
@@ -65,7 +65,7 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
         contacts=_contacts(scene, field),
         keys=(
             Key(GREY, "bare", f"x = {measured(field.place, 'm', scene.look.units)}"),
-            *(Key(color, "line", name) for _, color, name in WAYS),
+            *(Key(color, "square", name) for _, color, name in WAYS),
         ),
     )
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.views.colors import BACKWARD, FORWARD, FRONT, STICK, VERMILION
+from app.views.colors import BACKWARD, FORWARD, GREY, STICK, VERMILION
 from app.views.drawing import Axis, Drawing, Image, Plot, View
 from app.views.legend import Key
 from app.views.scales import across, along, spanned, upright
@@ -37,7 +37,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing | None:
     )
     chosen = stand.interfaces.index(stand.interface) + 0.5
     curves = [
-        across(list(np.flatnonzero(np.diff(strand.layers)) + 1.5), x, color=FRONT, width=1),
+        across(list(np.flatnonzero(np.diff(strand.layers)) + 1.5), x, color=GREY, width=1.5),
         across([chosen, chosen + 1.0], x, color=VERMILION, width=2),
     ]
     if scene.look.place is not None and strand.is_clamped:

@@ -13,7 +13,7 @@ from solver.reference.exact_curve import ExactCurve
 from solver.scenes.base import SceneSettings
 
 S = TypeVar("S", bound=SceneSettings)
-Kind = Literal["rod", "wires", "rope", "plane"]
+Kind = Literal["rod", "wires", "helices", "plane"]
 
 
 class Emblem(NamedTuple):

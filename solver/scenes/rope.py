@@ -127,7 +127,7 @@ ROPE = Entry(
         load="M44 28C46 24 46 20 45 16M41 19L45 15L48 19",
     ),
     settings=RopeSettings,
-    kind="rope",
+    kind="helices",
     structure=rope,
     words=_words,
     sizes={**shared.ROD_SIZES, "layers": (1, 2, 3, 4, 5)},

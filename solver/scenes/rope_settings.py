@@ -118,7 +118,9 @@ class RopeSettings(SceneSettings):
         applies=lambda settings: settings.bending == "clamp",
         logarithmic=True,
     )
-    friction = shared.friction("mu of the wires on what they lie on")
+    friction = shared.friction(
+        "mu of the wires on what they lie on; those beside each other do not rub"
+    )
     elements = count(
         60,
         (2, 20_000),

@@ -20,8 +20,11 @@ LOADED = "right x"
 
 
 def can_be_clipped(settings: Settings) -> bool:
-    """Tell whether friction bounds are known: on rods."""
-    return kind_of(settings) != "plane"
+    """Tell whether friction bounds are known, and what is pulled drives all slip: on rods.
+
+    Wires of a strand that is bent slip as its curvature has them, which is no force at an end.
+    """
+    return kind_of(settings) in ("rod", "wires")
 
 
 def clips_in(settings: Settings, iterate: Iterate) -> Clips:

@@ -20,7 +20,7 @@ CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
 
 def is_rope(settings: Settings) -> bool:
     """Tell whether there are wires around a core."""
-    return kind_of(settings) == "rope"
+    return kind_of(settings) == "helices"
 
 
 def is_bent_alike(settings: Settings) -> bool:
