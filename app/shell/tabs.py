@@ -23,13 +23,14 @@ IN_HEADER = {
         "textTransform": "none",
         "whiteSpace": "nowrap",
         "padding": "3px 6px",
-        "fontSize": "15px",
+        "fontSize": "14px",
+        "letterSpacing": 0,
     },
     "& button.Mui-selected, & button.Mui-selected:hover": {
         "color": "#0b3d66",
         "backgroundColor": "#fff",
     },
-    "@media (max-width: 899px)": {"& button": {"padding": "3px 8px"}},
+    "@media (max-width: 899px)": {"& button": {"padding": "3px 4px"}},
 }
 """White on the blue of the header, in both themes."""
 BELOW = {"& button": {"textTransform": "none", "padding": "4px 0", "flex": "1 1 0"}}
@@ -74,7 +75,7 @@ class Tabs:
             options={session.say(tab): tab for tab in TABS},
             value=TABS[0],
             size="small",
-            margin=(0, 12),
+            margin=(0, 6),
             sx=IN_HEADER,
         )
         self.bar.param.watch(lambda event: session.param.update(tab=event.new), "value")
