@@ -9,7 +9,7 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.arrays import Array
-from solver.definitions import Pairs, SettingError, choice, curve, quantity, redefined
+from solver.definitions import Pairs, SettingError, choice, count, curve, quantity, redefined
 from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
@@ -55,6 +55,14 @@ class BlockSettings(SideSettings):
         unit="m",
         logarithmic=True,
         applies=lambda settings: settings.gap == "parabola",
+    )
+    elements = count(
+        48,
+        (1, 5000),
+        (8, 192),
+        "Number of elements along a body, equal in size.",
+        group="Body",
+        title="Elements along",
     )
     length = shared.size(0.1, (0.01, 1.0), "Length", "Length of the body.", "Body")
     height = shared.size(

@@ -51,7 +51,7 @@ class PlaneSettings(SceneSettings):
     )
     elements = count(
         48,
-        (1, 5000),
+        (2, 5000),
         (8, 192),
         "Number of elements along a body, equal in size.",
         group="Body",
