@@ -96,7 +96,7 @@ def _around(corners: np.ndarray) -> Curve:
 
 VIEW = View(
     "Plane of slips",
-    Plot("Slip at the left", "Slip at the right", marks=(POINT,)),
+    Plot("Left slip", "Right slip", marks=(POINT,)),
     draw,
     applies,
 )
