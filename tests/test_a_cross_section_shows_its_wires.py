@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from ropes import exact_of, settings_of, solved
 
-from solver.discrete.rope_section import stress_ranges, wires_at
+from solver.arrays import Array
+from solver.discrete.rope import Rope
+from solver.discrete.rope_forces import CutWires, WireForces, cut_at, stress_ranges
 from solver.scenes import CATALOGUE, structure_of
 from solver.study.finished import FinishedRun, finished_run
 from solver.study.quantities import QUANTITIES, reading
@@ -22,6 +24,13 @@ def taken(name: str, run: FinishedRun) -> float:
     return float(reading(name)(run))
 
 
+def section_of(
+    scene: Rope, displacement: Array, instant: int, place: float
+) -> tuple[CutWires, Array]:
+    cut, forces = cut_at(scene, place), WireForces(scene)
+    return cut, forces.stress_at(cut, forces(displacement, slice(instant, instant + 1)))[:, 0]
+
+
 @pytest.mark.parametrize("place", PLACES)
 def test_under_a_uniform_curvature_the_wires_of_every_section_carry_the_moment(
     place: float,
@@ -30,40 +39,48 @@ def test_under_a_uniform_curvature_the_wires_of_every_section_carry_the_moment(
     settings = settings_of(elements=160, layers=3)
     scene, found = solved(settings)
     instant = 30
-    seen = wires_at(scene, found.displacement, instant, place)
-    assert len(seen.stress) == settings.section.wires == 37
-    areas = np.pi * seen.diameters**2 / 4.0
-    lay = np.array([0.0, *(one.lay for one in settings.section.layers)])[seen.layer + 1]
-    share = seen.stress * areas * np.cos(lay)
-    moment = float(np.sum(share * seen.centres[:, 1]))
-    own = settings.section.slipping_bending * scene.curvature[instant]
+    cut, stress = section_of(scene, found.displacement, instant, place)
+    section = settings.section
+    assert len(stress) == section.wires - 1 == 36
+    areas, lay = (
+        np.array([getattr(one, name) for one in section.layers])[cut.layer]
+        for name in ("area", "lay")
+    )
+    share = stress * areas * np.cos(lay)
+    moment = float(np.sum(share * cut.centres[:, 1]))
+    own = section.slipping_bending * scene.curvature[instant]
     whole = float(scene.moment()(found.displacement)[instant])
     assert moment + own == pytest.approx(whole, rel=0.02)
-    assert float(np.sum(share)) == pytest.approx(settings.tension, rel=1e-6)
-    assert float(np.sum(share * seen.centres[:, 0])) == pytest.approx(0.0, abs=0.02 * abs(whole))
+    core = settings.tension * section.core.stiffness / section.stiffness
+    assert float(np.sum(share)) + core == pytest.approx(settings.tension, rel=1e-6)
+    assert float(np.sum(share * cut.centres[:, 0])) == pytest.approx(0.0, abs=0.02 * abs(whole))
 
 
 def test_near_a_clamp_each_wire_is_seen_where_it_is() -> None:
     scene, found = solved(settings_of(**CLAMPED))
-    seen = wires_at(scene, found.displacement, 20, 0.1)
-    size = scene.elements + 1
-    for place, wire in enumerate(scene.wires):
-        angle = float(wire.helix.angle(np.array(0.1 / np.cos(wire.helix.lay))))
-        radius = wire.helix.radius
-        centre = radius * np.array([np.sin(angle), np.cos(angle)])
-        np.testing.assert_allclose(seen.centres[1 + place], centre, atol=1e-12)
-        own = found.displacement[place * size : (place + 1) * size, 20]
-        at = np.interp(0.1, wire.along, own)
-        assert seen.slip[1 + place] == pytest.approx(at, abs=1e-15)
-    assert (seen.layer[0], seen.slip[0]) == (-1, 0.0)
+    element = 16
+    place = (element + 0.5) * scene.wires[0].along[1]
+    cut, stress = section_of(scene, found.displacement, 20, place)
+    assert cut.wire.tolist() == list(range(len(scene.wires)))
+    forces = WireForces(scene)(found.displacement, slice(20, 21))
+    for wire, centre, arc, force, own in zip(
+        scene.wires, cut.centres, cut.arc, forces, stress, strict=True
+    ):
+        assert arc == pytest.approx(place / np.cos(wire.helix.lay))
+        angle = float(wire.helix.angle(np.array(arc)))
+        expected = wire.helix.radius * np.array([np.sin(angle), np.cos(angle)])
+        np.testing.assert_allclose(centre, expected, atol=1e-12)
+        assert own == pytest.approx(float(force[element, 0]) / wire.area)
 
 
 def test_no_wires_of_a_section_overlap() -> None:
-    scene, found = solved(settings_of(**CLAMPED))
+    scene, _ = solved(settings_of(**CLAMPED))
     for place in (0.0, 0.07, 0.29):
-        seen = wires_at(scene, found.displacement, 0, place)
-        apart = np.linalg.norm(seen.centres[:, None] - seen.centres, axis=-1)
-        needed = 0.5 * (seen.diameters[:, None] + seen.diameters)
+        cut = cut_at(scene, place)
+        centres = np.vstack([[0.0, 0.0], cut.centres])
+        diameters = [scene.section.core.diameter, *(scene.wires[n].diameter for n in cut.wire)]
+        apart = np.linalg.norm(centres[:, None] - centres, axis=-1)
+        needed = 0.5 * np.add.outer(diameters, diameters)
         np.fill_diagonal(apart, np.inf)
         assert (apart / needed).min() > 0.97
 

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from app.picture.shown import Bytes, Floats, floats, thinned
 from solver.arrays import Array
 from solver.discrete.rope import Rope
-from solver.discrete.rope_forces import CutWires, WireForces, cut_at
-from solver.discrete.rope_section import stress_ranges
+from solver.discrete.rope_forces import CutWires, WireForces, cut_at, stress_ranges
 from solver.latin import Iterate
 from solver.scenes import structure_of
 from solver.settings import Settings
@@ -163,8 +162,6 @@ class ShownStrand:
         cut = cut_at(self._rope, place)
         status = iterate.status[:, column].reshape(-1, self._points)
         wires = [self._rope.wires[number] for number in cut.wire]
-        radius = np.array([wire.helix.radius for wire in wires])
-        around = np.stack([np.sin(cut.angle), -np.cos(cut.angle)], axis=1)
         force = self._forces(iterate.displacement, slice(column, column + 1))
         number = list(self._names).index(interface)
         return StrandField(
@@ -172,7 +169,7 @@ class ShownStrand:
             place=place,
             wires=cut.wire,
             layers=cut.layer,
-            centres=floats(radius[:, None] * around),
+            centres=floats(cut.centres * (1.0, -1.0)),
             radii=floats(np.array([0.5 * wire.diameter for wire in wires])),
             stress=floats(self._forces.stress_at(cut, force)[:, 0]),
             slips=self._slips(cut, status),

@@ -1,4 +1,4 @@
-"""Forces in the wires of a strand that is bent, and the wires that one of its sections cuts."""
+"""Forces and stresses in the wires of a strand that is bent, and what one of its sections cuts."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class CutWires:
     ----------
     layer, wire
         The layer of each, and the place in `RopeData.wires` of the one that stands for it.
-    angle
-        Polar angle at which it is cut, from the outermost fibre, rad.
+    centres
+        Sideways and towards the outermost fibre, shape (n_cut, 2), m.
     arc
         Where that is along the wire that stands for it, m.
     side
@@ -28,7 +28,7 @@ class CutWires:
 
     layer: Indices
     wire: Indices
-    angle: Array
+    centres: Array
     arc: Array
     side: Array
 
@@ -55,7 +55,9 @@ def cut_at(rope: RopeData, place: float) -> CutWires:
         whole = np.full(len(angles), number)
         found.append((np.full(len(angles), wire.layer), whole, angles, arcs, sides))
     layer, which, angle, arc, side = (np.concatenate(one) for one in zip(*found, strict=True))
-    return CutWires(layer, which, angle, arc, side)
+    radius = np.array([wire.helix.radius for wire in rope.wires])[which]
+    centres = radius[:, None] * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    return CutWires(layer, which, centres, arc, side)
 
 
 class WireForces:
@@ -118,3 +120,17 @@ class WireForces:
         share = (at - first)[:, None]
         low, high = force[cut.wire, first], force[cut.wire, first + 1]
         return np.asarray(((1.0 - share) * low + share * high) / self.areas[cut.wire, None])
+
+
+def stress_ranges(rope: RopeData, displacement: Array, some: slice) -> Array:
+    """Give how far the stress of every wire swings where it swings most, shape (n_wires,), Pa.
+
+    At the fibre of the wire where its bending about its own axis adds to it; over some instants.
+    """
+    forces = WireForces(rope)
+    axial = forces(displacement, some) / forces.areas[:, None, None]
+    curvature = np.stack([wire.curvature[:, some] for wire in rope.wires])
+    outer = np.array([0.5 * wire.young * wire.diameter for wire in rope.wires])
+    bent = outer[:, None, None] * 0.5 * (curvature[:, 1:] + curvature[:, :-1])
+    swings = [np.ptp(axial + way * bent, axis=2).max(axis=1) for way in (-1.0, 1.0)]
+    return np.asarray(np.maximum(*swings))

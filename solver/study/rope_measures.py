@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from solver.discrete.rope import Rope
-from solver.discrete.rope_section import stress_ranges
+from solver.discrete.rope_forces import stress_ranges
 from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
 from solver.study.cycles import ends_of
