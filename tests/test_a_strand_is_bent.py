@@ -12,7 +12,7 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import Rods, solve
 from solver.definitions import SettingError
-from solver.discrete.cross_section import CrossSection, Layer
+from solver.discrete.cross_section import CrossSection, WireLayer
 from solver.discrete.rope import Rope
 from solver.files import result_arrays
 from solver.latin import Accuracy, Auto, Iterations, Latin
@@ -272,13 +272,13 @@ def test_without_friction_only_the_wires_themselves_are_bent() -> None:
 def test_what_is_no_strand_is_refused() -> None:
     section = seven_wire()
     with pytest.raises(RefusedError, match="lay angle"):
-        CrossSection(section.core, (Layer(6, 5e-3, 2e11),))
+        CrossSection(section.core, (WireLayer(6, 5e-3, 2e11),))
     with pytest.raises(RefusedError, match="one straight wire"):
         CrossSection(section.layers[0], section.layers)
     with pytest.raises(RefusedError, match="pi / 2"):
-        Layer(6, 5e-3, 2e11, 1.6)
+        WireLayer(6, 5e-3, 2e11, 1.6)
     with pytest.raises(RefusedError, match="at least one wire"):
-        Layer(0, 5e-3, 2e11, 0.3)
+        WireLayer(0, 5e-3, 2e11, 0.3)
     scene = rope(settings_of(**CLAMPED))
     short = replace(scene.wires[0], curvature=scene.wires[0].curvature[1:])
     with pytest.raises(RefusedError, match="same number of nodes"):

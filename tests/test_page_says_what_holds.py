@@ -47,7 +47,7 @@ DESK = "Mozilla/5.0 (X11; Linux x86_64) AppleWebKit/537.36 Chrome/130.0 Safari/5
         ("?scene=strand&broken=6&wires=9", {"broken": 6, "wires": 9}, []),
         ("?scene=strand&broken=6&wires=9&grip=x", {"broken": 6, "wires": 9}, ["Grip cannot be"]),
         ("?scene=strand&broken=99&peak=500", {"peak": 500.0}, ["(broken) cannot be 99"]),
-        ("?scene=rope&seed=2", {}, ["scene"]),
+        ("?scene=cable&seed=2", {}, ["scene"]),
     ],
 )
 def test_what_is_valid_holds_and_all_that_is_not_is_named(

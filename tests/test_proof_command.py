@@ -22,7 +22,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import block
 from solver.study.error_against_time import PeerError
 from solver.study.proof import by_getfem, others, published, report
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart
 
 CASES = list(report.cases())
 CLOSED_FORMS = {
@@ -76,8 +76,8 @@ def test_the_page_has_every_row_and_loads_nothing(folder: Path) -> None:
     numbers = {(row["case"], row["quantity"]) for row in rows}
     assert page.count("<tr>") == len(numbers) + len(CASES) + len(parts)
     assert page.count(">holds</td>") == len(numbers)
-    assert re.findall("<h2>(.*)</h2>", page) == [part.value for part in Part]
-    assert parts >= {Part.CLOSED_FORMS.value, Part.PUBLISHED.value}
+    assert re.findall("<h2>(.*)</h2>", page) == [part.value for part in ProofPart]
+    assert parts >= {ProofPart.CLOSED_FORMS.value, ProofPart.PUBLISHED.value}
     assert not re.search(r"<(script|link|img|iframe)", page)
 
 

@@ -22,9 +22,9 @@ LINES = {one.lower(): line for spellings, line in TERMS.items() for one in spell
 TERM = re.compile(r'<abbr tabindex="0">(.*?)</abbr>')
 PLAIN = re.compile(
     r"A|B|pressure p|friction|thickness not to scale|von Mises|chosen|now|\d.*|.*, [\d.]+ \S+|"
-    r"(xx|yy|xy)|\S+ (on|off|\d\S*).*"
+    r"(xx|yy|xy)|x = .*|\S+ (on|off|\d\S*).*"
 )
-"""Names in legends that say all: letters of runs, quantities with their value, numbers of wires."""
+"""Names in legends that say all: letters of runs, quantities with their value, places, wires."""
 
 
 def legends(scene: str, **changes: Any) -> set[str]:

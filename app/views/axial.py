@@ -66,7 +66,7 @@ def _of_one(scene: Scene, kept: Limits | None) -> Drawing | None:
         ],
         keys=(
             Key(BLUE, "line", called(stand.interface, stand.interfaces)),
-            Key(GREY, "dashed", "if nothing slipped"),
+            Key(GREY, "dashed", "all stick"),
         ),
         kept=limits,
     )

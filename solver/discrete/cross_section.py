@@ -18,7 +18,7 @@ from solver.refusal import RefusedError
 
 
 @dataclass(frozen=True)
-class Layer:
+class WireLayer:
     """Equal round wires, evenly laid.
 
     Attributes
@@ -41,14 +41,14 @@ class Layer:
     def __post_init__(self) -> None:
         if self.wires < 1 or self.diameter <= 0.0 or self.young <= 0.0:
             raise RefusedError(
-                "Layer",
+                "WireLayer",
                 [self.wires, self.diameter, self.young],
                 "at least one wire, a diameter and a Young's modulus above 0",
                 "leave the layer out, or give it wires",
             )
         if abs(self.lay) >= 0.5 * np.pi:
             raise RefusedError(
-                "Layer.lay", self.lay, "angles below pi / 2 in size", "give the angle in rad"
+                "WireLayer.lay", self.lay, "angles below pi / 2 in size", "give the angle in rad"
             )
 
     @property
@@ -80,8 +80,8 @@ class CrossSection:
         At least one, each with a lay.
     """
 
-    core: Layer
-    layers: tuple[Layer, ...]
+    core: WireLayer
+    layers: tuple[WireLayer, ...]
 
     def __post_init__(self) -> None:
         if self.core.wires != 1 or self.core.lay != 0.0:

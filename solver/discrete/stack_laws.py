@@ -73,12 +73,10 @@ def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str,
         node = np.concatenate([own[span] for own, span in zip(places, spans, strict=True)])
         found, points = np.unique(node, return_inverse=True)
         support = scene.support if body == 0 else None
-        if support is not None:
-            friction, gap = support.friction, support.gap[node] / scene.length
-        else:
-            friction, gap = scene.friction, np.zeros(len(node))
+        gap = np.zeros(len(node)) if support is None else support.gap[node] / scene.length
         upper = np.concatenate([part.rows["bottom"] for part in above])
         lower = None if under is None else np.concatenate([part.rows["top"] for part in under])
+        below = np.inf if under is None else scene.modulus(body - 1)
         # Of dense blocks SciPy 1.18 makes a matrix with a warning, and later versions an array.
         bases = [sparse.coo_array(_macro_basis(scene, part, "bottom")) for part in above]
         along, *across = (
@@ -88,11 +86,12 @@ def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str,
         areas = scene.length * np.concatenate(
             [own[span] for own, span in zip(weights, spans, strict=True)]
         )
-        if support is None or support.bound is None:
-            sliders = Sliders.of_contact(along, np.full(len(node), friction))
-        else:
+        if support is not None and support.bound is not None:
             scaled = support.bound[node] / (scene.young * scene.length)
             sliders = Sliders.of_known_bound(along, scaled * areas[:, None])
+        else:
+            friction = scene.friction if support is None else support.friction
+            sliders = Sliders.of_contact(along, np.full(len(node), friction))
         yield (
             "support" if body == 0 else f"contact {body}-{body + 1}",
             Contact(
@@ -101,13 +100,7 @@ def _contacts(scene: StackData, parts: dict[Place, Part]) -> Iterable[tuple[str,
                 points=points,
                 positions=x[found],
                 weights=areas,
-                around=Bodies(
-                    moduli=(
-                        scene.modulus(body),
-                        np.inf if lower is None else scene.modulus(body - 1),
-                    ),
-                    depth=scene.height,
-                ),
+                around=Bodies(moduli=(scene.modulus(body), below), depth=scene.height),
                 macro=None if lower is None else sparse.csr_array(sparse.block_diag(bases)),
             ),
         )

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from solver.discrete.cross_section import CrossSection, Layer
+from solver.discrete.cross_section import CrossSection, WireLayer
 
 STEEL, ALUMINIUM = 200e9, 69e9
 """Young's moduli of wires, Pa."""
@@ -22,7 +22,9 @@ def seven_wire() -> CrossSection:
     """
     diameter, radius = 15.7e-3, 5.3e-3
     lay = float(np.arctan(2.0 * np.pi * radius / (16.0 * diameter)))
-    return CrossSection(Layer(1, 5.4e-3, PRESTRESSING), (Layer(6, 5.2e-3, PRESTRESSING, lay),))
+    return CrossSection(
+        WireLayer(1, 5.4e-3, PRESTRESSING), (WireLayer(6, 5.2e-3, PRESTRESSING, lay),)
+    )
 
 
 def mooring(layers: int) -> CrossSection:
@@ -34,9 +36,9 @@ def mooring(layers: int) -> CrossSection:
     """
     lay = np.radians(17.0)
     return CrossSection(
-        Layer(1, 5.3e-3, STEEL),
+        WireLayer(1, 5.3e-3, STEEL),
         tuple(
-            Layer(6 * (number + 1), 5e-3, STEEL, float(lay * (-1) ** number))
+            WireLayer(6 * (number + 1), 5e-3, STEEL, float(lay * (-1) ** number))
             for number in range(layers)
         ),
     )
@@ -54,11 +56,11 @@ def conductor() -> CrossSection:
     lays = np.arctan(2.0 * np.pi * radii / (np.array([25.0, 13.0, 11.0]) * over))
     first, second, third = (float(lay) for lay in lays)
     return CrossSection(
-        Layer(1, steel, STEEL),
+        WireLayer(1, steel, STEEL),
         (
-            Layer(6, steel, STEEL, first),
-            Layer(10, aluminium, ALUMINIUM, -second),
-            Layer(16, aluminium, ALUMINIUM, third),
+            WireLayer(6, steel, STEEL, first),
+            WireLayer(10, aluminium, ALUMINIUM, -second),
+            WireLayer(16, aluminium, ALUMINIUM, third),
         ),
     )
 

@@ -31,7 +31,7 @@ class Installed(NamedTuple):
     version: str
 
 
-class Found(NamedTuple):
+class GetfemFields(NamedTuple):
     """What it finds at the nodes of the support, shape (n_nodes, n_instants) each, SI."""
 
     normal_force: Array
@@ -51,7 +51,7 @@ def installed() -> Installed | None:
     return None
 
 
-def solve_block(body: Stack, python: str) -> Found:
+def solve_block(body: Stack, python: str) -> GetfemFields:
     """Have it solve a body of bilinear elements on a support, moved at its top alone.
 
     What it does not find is no number.
@@ -69,13 +69,13 @@ def solve_block(body: Stack, python: str) -> Found:
     said = _run([python, str(PROGRAM)], json.dumps(asked))
     if said is None:
         nothing = np.full((len(body.support.gap), len(body.instants)), np.nan)
-        return Found(nothing, nothing, nothing)
+        return GetfemFields(nothing, nothing, nothing)
     answer: dict[str, Any] = json.loads(said)
     normal, tangential, moved = (
         np.array(answer[name]).T for name in ("normal", "tangential", "moved")
     )
     force = body.young * body.length
-    return Found(force * normal, force * tangential, body.length * moved)
+    return GetfemFields(force * normal, force * tangential, body.length * moved)
 
 
 def _run(command: list[str], given: str = "") -> str | None:

@@ -19,7 +19,7 @@ from solver.scenes.method import method_of
 LATIN, INCREMENTAL = "LATIN", "incremental"
 
 
-class Part(Enum):
+class ProofPart(Enum):
     """Where what is known is from."""
 
     CLOSED_FORMS = "Closed forms"
@@ -81,7 +81,7 @@ class KnownCase:
     method: Callable[[], Latin]
     numbers: Callable[[Answer], Iterable[KnownNumber]]
     address: str = ""
-    part: Part = Part.CLOSED_FORMS
+    part: ProofPart = ProofPart.CLOSED_FORMS
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def of_scene(
     scene: str,
     values: Mapping[str, Any],
     numbers: Callable[[Any, Answer], Iterable[KnownNumber]],
-    part: Part = Part.CLOSED_FORMS,
+    part: ProofPart = ProofPart.CLOSED_FORMS,
 ) -> KnownCase:
     """Make a case of a scene of the catalogue; `numbers` is given its settings too."""
     settings = CATALOGUE[scene].settings.checked(dict(values))

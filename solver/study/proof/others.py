@@ -14,7 +14,7 @@ from solver.scenes import discretise
 from solver.scenes.block import block
 from solver.study.error_against_time import PeerError
 from solver.study.proof import by_getfem
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part, of_scene
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_scene
 from solver.study.public_solvers import PUBLIC, Public, PublicFields, solve_by
 
 ABSENT = "Not installed: {}."
@@ -72,7 +72,7 @@ def _quadratic(public: Public) -> KnownCase:
         "bar",
         PULLED,
         numbers,
-        part=Part.OTHERS,
+        part=ProofPart.OTHERS,
     )
 
 
@@ -80,7 +80,7 @@ def _block(there: by_getfem.Installed) -> KnownCase:
     """Have GetFEM press a block on a rough parabola, and shear it to and fro."""
 
     @cache
-    def solved(settings: Any) -> by_getfem.Found:
+    def solved(settings: Any) -> by_getfem.GetfemFields:
         return by_getfem.solve_block(block(settings), there.python)
 
     def numbers(settings: Any, answer: Answer) -> Iterator[KnownNumber]:
@@ -107,7 +107,7 @@ def _block(there: by_getfem.Installed) -> KnownCase:
         "block",
         SHEARED,
         numbers,
-        part=Part.OTHERS,
+        part=ProofPart.OTHERS,
     )
 
 

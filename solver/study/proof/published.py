@@ -13,7 +13,7 @@ from solver.discrete.stack_data import Given, Side, Spring, Support
 from solver.latin import Accuracy, Auto, Iterations, Latin
 from solver.laws.contact import NO_SLIP
 from solver.reference.slip_front import front_over_diffusion, slip_under_growing_strength
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, Part
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart
 
 SHOE = (
     "code_aster, V6.04.503: SSNV503, Patin glissant sur un plan rigide, section 2 (reference "
@@ -61,7 +61,7 @@ def _case(
 ) -> KnownCase:
     """Make a case of a structure that no scene shows."""
     return KnownCase(
-        title, source, mesh, allowed, body.discretise, _method, numbers, part=Part.PUBLISHED
+        title, source, mesh, allowed, body.discretise, _method, numbers, part=ProofPart.PUBLISHED
     )
 
 

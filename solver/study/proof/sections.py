@@ -7,7 +7,7 @@ from html import escape
 from itertools import groupby
 
 from solver.study.page import table
-from solver.study.proof.case import INCREMENTAL, LATIN, HeldNumber, KnownCase, Part
+from solver.study.proof.case import INCREMENTAL, LATIN, HeldNumber, KnownCase, ProofPart
 from solver.study.proof.others import absent
 
 WORDS = (
@@ -30,9 +30,9 @@ def proof_sections(rows: Sequence[HeldNumber], page: str) -> list[str]:
         What the addresses of runs follow.
     """
     sections = [f"{WORDS}<p>{summary(rows)}</p>"]
-    for part in Part:
+    for part in ProofPart:
         own = [row for row in rows if row.case.part is part]
-        note = absent() if part is Part.OTHERS else ""
+        note = absent() if part is ProofPart.OTHERS else ""
         if own or note:
             words = f"<p>{escape(note)}</p>" if note else ""
             found = table(HEADS, list(_lines(own, page))) if own else ""
