@@ -84,7 +84,7 @@ def test_the_server_makes_no_figure_for_a_page_and_sends_little_of_any() -> None
             assert len(dashboard._gallery.shown) == 6
             assert not list(document.select({"type": Plot}))
             # Without `defs`, which are of every model that this process has imported so far.
-            assert len(json.dumps(document.to_json(deferred=False)["roots"])) < 621_000
+            assert len(json.dumps(document.to_json(deferred=False)["roots"])) < 580_000
             forget(document)
 
 
