@@ -182,6 +182,19 @@ def test_a_block_pressed_without_friction_has_one_pressure_stress_and_width() ->
     assert all(math.isnan(taken(name, bar)) for name in ("peak_pressure", "peak_stress"))
 
 
+def test_the_largest_stress_below_a_contact_is_where_hertz_has_it() -> None:
+    """Johnson, Contact Mechanics, 4.2: below the middle, at 0.70 of the half-width for nu = 0.3."""
+    total = 2e7
+    pressed = {"gap": "parabola", "radius": 1.0, "length": 0.1, "height": 0.05, "friction": 0.0}
+    loaded = {"top": "traction", "top_normal_traction": -total / 0.1, "instants": 1}
+    run = ran("block", elements=80, elements_up=40, poisson=0.3, **pressed, **loaded)
+    half_width = 0.5 * taken("contact_width", run)
+    assert 0.008 < half_width < 0.02
+    assert taken("peak_stress_x", run) == pytest.approx(0.05, abs=0.1 / 80)
+    assert taken("peak_stress_y", run) == pytest.approx(0.7 * half_width, abs=1.5 * 0.05 / 40)
+    assert math.isnan(taken("peak_stress_x", ran("bar", **SMALL)))
+
+
 def test_the_spring_carries_a_weight_that_nothing_else_holds() -> None:
     run = ran("incline", friction=0.0, elements=6, elements_up=4, instants=9, substructures=1)
     assert taken("spring_force", run) == pytest.approx(1000.0 * math.sin(math.radians(40.0)))

@@ -10,8 +10,11 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.discrete.elements import von_mises
 from solver.laws import OPEN
+from solver.scenes import kind_of
+from solver.settings import Settings
 from solver.study.finished import FinishedRun
 from solver.study.measures import largest_load
+from solver.study.quantity import Quantity
 
 
 def peak_pressure(run: FinishedRun, at: float | None) -> float:
@@ -47,15 +50,34 @@ def stuck_share_at(run: FinishedRun, instant: int) -> float:
 
 def peak_stress(run: FinishedRun, at: float | None) -> float:
     """Give the largest von Mises stress at the centre of an element at any instant, Pa; or NaN."""
+    return _peak_stress(run)[0]
+
+
+def peak_stress_x(run: FinishedRun, at: float | None) -> float:
+    """Give where that is along the body, m; NaN without stress."""
+    return float(_peak_stress(run)[1][0])
+
+
+def peak_stress_y(run: FinishedRun, at: float | None) -> float:
+    """Give how high above the lowest side that is, m; NaN without stress."""
+    return float(_peak_stress(run)[1][1])
+
+
+def _peak_stress(run: FinishedRun) -> tuple[float, Array]:
+    """Give the largest von Mises stress, Pa, and the centre of the element that has it first, m."""
     inside, values = run.problem.inside, run.settings.values()
+    nowhere = np.full(2, np.nan)
     if inside is None:
-        return math.nan
-    largest = 0.0
+        return math.nan, nowhere
+    largest, place = 0.0, nowhere
     for instant in range(run.problem.n_instants):
         moved = inside.displacement(run.iterate.displacement, [instant])[:, :, 0]
         stress = von_mises(inside.stress(moved), values["poisson"], values["plane"])
-        largest = max(largest, float(stress.max()))
-    return largest
+        element = int(stress.argmax())
+        if stress[element] > largest:
+            largest = float(stress[element])
+            place = inside.nodes[inside.elements[element]].mean(axis=0)
+    return largest, place
 
 
 def spring_force(run: FinishedRun, at: float | None) -> float:
@@ -82,3 +104,14 @@ def _touching(run: FinishedRun, instant: int) -> tuple[Array, NDArray[np.int8]]:
     lengths = _extended(run)
     status = [run.iterate.contact(name).status[:, instant] for name in lengths]
     return np.concatenate(list(lengths.values())), np.concatenate(status)
+
+
+def _has_stress(settings: Settings) -> bool:
+    return kind_of(settings) == "plane"
+
+
+OF_STRESS = (
+    Quantity("peak_stress", "Largest von Mises stress", "Pa", peak_stress, applies=_has_stress),
+    Quantity("peak_stress_x", "x of the largest stress", "m", peak_stress_x, applies=_has_stress),
+    Quantity("peak_stress_y", "y of the largest stress", "m", peak_stress_y, applies=_has_stress),
+)

@@ -15,6 +15,7 @@ from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study import contact_measures, measures
 from solver.study.clip_measures import OF_CLIPS
+from solver.study.contact_measures import OF_STRESS
 from solver.study.cycle_measures import OF_CYCLES
 from solver.study.finished import FinishedRun
 from solver.study.quantity import WITHIN, Parameter, Quantity
@@ -184,13 +185,7 @@ _ALL = (
         contact_measures.contact_width,
         applies=_in_the_plane,
     ),
-    Quantity(
-        "peak_stress",
-        "Largest von Mises stress",
-        "Pa",
-        contact_measures.peak_stress,
-        applies=_in_the_plane,
-    ),
+    *OF_STRESS,
     Quantity(
         "spring_force",
         "Largest force in the spring",
