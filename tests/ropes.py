@@ -12,6 +12,7 @@ from solver.reference.solution import Reference
 from solver.scenes.rope import bent_strand, rope
 from solver.scenes.rope_settings import RopeSettings
 
+SMALL_ROPE: dict[str, Any] = {"layers": 1, "length": 0.15, "tension": 4e4, "substructures": 2}
 STRAND: dict[str, Any] = {"bending": "uniform", "elements": 40, "substructures": 4}
 
 

@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from typing import Any
 
+from ropes import SMALL_ROPE
 from unpacking import unpack
 
 from app.picture.recording import Recording
@@ -27,14 +28,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 2, "instants": 13},
     "incline": {"elements": 12, "elements_up": 6, "instants": 13},
-    "rope": {
-        "elements": 10,
-        "layers": 1,
-        "length": 0.15,
-        "tension": 4e4,
-        "substructures": 2,
-        "instants": 13,
-    },
+    "rope": {**SMALL_ROPE, "elements": 10, "instants": 13},
 }
 """Settings of every scene with which a run takes next to no time."""
 Models = dict[str, dict[str, Any]]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ropes import SMALL_ROPE
 
 from app.worker.rivals import KeptReferences
 from solver.discrete import Problem
@@ -24,14 +25,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
     "layers": {"elements": 12, "layers": 3, "instants": 11},
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
-    "rope": {
-        "elements": 8,
-        "layers": 1,
-        "length": 0.15,
-        "tension": 4e4,
-        "substructures": 2,
-        "instants": 11,
-    },
+    "rope": {**SMALL_ROPE, "elements": 8, "instants": 11},
 }
 OF_THE_METHOD = {"k_scale": 3.0, "multiscale": False, "tolerance": 1e-3, "linear_stage": "pgd"}
 OF_THE_PHYSICS: dict[str, dict[str, Any]] = {

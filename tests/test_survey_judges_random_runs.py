@@ -9,6 +9,7 @@ import shlex
 from types import SimpleNamespace
 
 import pytest
+from ropes import SMALL_ROPE
 
 from solver.cli import main
 from solver.files import settings_from_command
@@ -28,14 +29,7 @@ SMALL = {
     "block": {"elements": 12, "elements_up": 6, "instants": 9},
     "layers": {"elements": 12, "elements_up": 1, "instants": 9},
     "incline": {"elements": 12, "elements_up": 6, "instants": 9},
-    "rope": {
-        "elements": 10,
-        "layers": 1,
-        "length": 0.15,
-        "tension": 4e4,
-        "substructures": 2,
-        "instants": 9,
-    },
+    "rope": {**SMALL_ROPE, "elements": 10, "instants": 9},
 }
 GOOD = Outcome(Ending.CONVERGED, "It is.", error_displacement=1e-3, error_force=5e-3)
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ropes import SMALL_ROPE
 from shown_pages import ALL, Shown
 
 from app.picture.frames import DrawnFields
@@ -25,14 +26,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 3, "instants": 13},
     "incline": {"elements": 12, "elements_up": 6, "instants": 13},
-    "rope": {
-        "elements": 10,
-        "layers": 1,
-        "length": 0.15,
-        "tension": 4e4,
-        "substructures": 2,
-        "instants": 13,
-    },
+    "rope": {**SMALL_ROPE, "elements": 10, "instants": 13},
 }
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import param
+from ropes import SMALL_ROPE
 
 from app.controls.refusals import last_that_holds
 from solver.definitions import CurveParameter, Parameter, SettingError
@@ -19,14 +20,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "block": {"elements": 8, "elements_up": 3, "instants": 6},
     "layers": {"elements": 12, "instants": 11, "layers": 2, "substructures": 2},
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
-    "rope": {
-        "elements": 8,
-        "layers": 1,
-        "length": 0.15,
-        "tension": 4e4,
-        "substructures": 2,
-        "instants": 11,
-    },
+    "rope": {**SMALL_ROPE, "elements": 8, "instants": 11},
 }
 """Of every scene, so small that hundreds of runs take seconds."""
 NEVER = {scene: {"start"} for scene in ("block", "layers", "incline")}
