@@ -9,8 +9,8 @@ import pytest
 from ropes import exact_of, settings_of, solved
 
 from solver.arrays import Array
-from solver.discrete.rope import Rope
-from solver.discrete.rope_forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.rope.forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.rope.rope import Rope
 from solver.scenes import CATALOGUE, structure_of
 from solver.study.finished import FinishedRun, finished_run
 from solver.study.quantities import QUANTITIES, reading

@@ -7,10 +7,10 @@ import pytest
 
 from solver import Latin, Rods, solve
 from solver.arrays import Array
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.rope.helical_wire import HelicalWire
 from solver.latin import Accuracy, Auto, Iterations
-from solver.reference.bent_wire import BentWire
 from solver.reference.choice import incremental_solver
+from solver.reference.closed_forms.bent_wire import BentWire
 from solver.reference.incremental import incremental
 from solver.refusal import RefusedError
 

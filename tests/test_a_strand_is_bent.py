@@ -12,8 +12,8 @@ from ropes import exact_of, moment_of, settings_of, solved
 
 from solver import Rods, solve
 from solver.definitions import SettingError
-from solver.discrete.cross_section import CrossSection, WireLayer
-from solver.discrete.rope import Rope
+from solver.discrete.rope.cross_section import CrossSection, WireLayer
+from solver.discrete.rope.rope import Rope
 from solver.files import result_arrays
 from solver.latin import Accuracy, Auto, Iterations, Latin
 from solver.reference.choice import incremental_solver, reference_of

@@ -16,8 +16,8 @@ from app.views.drawing import Drawing
 from app.views.scene import Scene
 from app.worker.key_figures import thing
 from app.worker.telling import told
-from solver.discrete.rope import Rope
-from solver.discrete.rope_forces import WireForces, cut_at
+from solver.discrete.rope.forces import WireForces, cut_at
+from solver.discrete.rope.rope import Rope
 from solver.scenes import CATALOGUE, structure_of
 
 WAYS = [

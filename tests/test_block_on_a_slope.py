@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver.definitions import SettingError
-from solver.discrete.rest import rigid_slide
-from solver.discrete.stack_data import Spring
+from solver.discrete.stack.data import Spring
+from solver.discrete.stack.rest import rigid_slide
 from solver.latin import Ending, iterations, solve
 from solver.laws import Component, Contact, Frictionless, SlackSpring
 from solver.reference.choice import reference_of

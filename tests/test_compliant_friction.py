@@ -13,7 +13,7 @@ from shown_pages import SMALL
 from solver.latin import Ending, iterations, solve
 from solver.laws import Compliant, Component, Contact, Sliders, Unilateral
 from solver.reference.choice import reference_of
-from solver.reference.compliant_bar import pulled_compliant_bar
+from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from contact_problems import block
 
-from solver.discrete.stack_data import Given, Side
+from solver.discrete.stack.data import Given, Side
 from solver.latin import Ending, iterations, solve
 from solver.laws import OPEN
 from solver.reference.choice import reference_of

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from solver.reference.choice import reference_of
+from solver.reference.closed_forms.half_plane import HalfPlane
 from solver.reference.glued import jumps
-from solver.reference.half_plane import HalfPlane
 from solver.scenes import discretise
 from solver.scenes.block import BlockSettings
 

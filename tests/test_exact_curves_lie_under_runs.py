@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from app.shell.address import settings_from_query
-from solver.discrete.rods import Rods
+from solver.discrete.rods.rods import Rods
 from solver.reference.choice import reference_of
-from solver.reference.closed_form import closed_form
-from solver.reference.half_plane import HalfPlane
-from solver.reference.masing import masing
+from solver.reference.closed_forms.half_plane import HalfPlane
+from solver.reference.closed_forms.masing import masing
+from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.scenes import CATALOGUE, discretise, exact_of, loop_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.block import BlockSettings

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.discrete.rods import Rods
+from solver.discrete.rods.rods import Rods
 from solver.latin import Ending, Latin, solve
 from solver.laws import Component, Contact, Sliders, Unilateral
 from solver.laws.slip_dependent import SlipDependent

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from plane import lengths, solved
 
-from solver.reference.half_plane import HalfPlane
+from solver.reference.closed_forms.half_plane import HalfPlane
 
 RADIUS, FRICTION, MESHES = 10.0, 0.3, [40, 80, 160]
 

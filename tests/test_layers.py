@@ -146,7 +146,18 @@ def test_no_module_of_the_solver_imports_itself_by_detours():
     assert set(order) == set(SOLVER)
 
 
-@pytest.mark.parametrize("package", ["solver", "solver.latin", "solver.study", "app", "app.worker"])
+@pytest.mark.parametrize(
+    "package",
+    [
+        "solver",
+        "solver.discrete",
+        "solver.reference",
+        "solver.latin",
+        "solver.study",
+        "app",
+        "app.worker",
+    ],
+)
 def test_no_folder_imports_itself_by_detours(package):
     """A sub-folder counts as one place, and so does a file that stands beside it."""
     inside = {name: path for name, path in EVERY.items() if name.startswith(f"{package}.")}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved
 
-from solver.reference.cantilever import cantilever
+from solver.reference.closed_forms.cantilever import cantilever
 
 YOUNG, POISSON, LENGTH, THICKNESS, DEFLECTION = 210e9, 0.3, 0.5, 0.01, 1e-4
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from plane import lengths, reaction, solved, stress
 
-from solver.discrete.equilibrium import wrench
-from solver.discrete.rest import rigid_rest
+from solver.discrete.stack.equilibrium import wrench
+from solver.discrete.stack.rest import rigid_rest
 from solver.latin import Ending, solve
 from solver.reference.choice import reference_of
 from solver.scenes import discretise

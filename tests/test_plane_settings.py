@@ -11,7 +11,7 @@ from plane import solved
 
 from solver.cli import main
 from solver.definitions import SettingError
-from solver.discrete.equilibrium import wrench
+from solver.discrete.stack.equilibrium import wrench
 from solver.latin import iterations
 from solver.loads import PRESETS, PULLS, load_path
 from solver.refusal import RefusedError

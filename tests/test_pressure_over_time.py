@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solver import Latin, solve
-from solver.discrete.rods import Rods
+from solver.discrete.rods.rods import Rods
 from solver.latin import Accuracy, Iterations, Paper
-from solver.reference.broken_wire import broken_wire
 from solver.reference.choice import reference_of
-from solver.reference.closed_form import ClosedForm, closed_form
+from solver.reference.closed_forms.broken_wire import broken_wire
+from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.contact import IncrementalContact
 from solver.reference.distance import distance_to
 from solver.refusal import RefusedError

@@ -12,7 +12,7 @@ from solver.discrete import Problem
 from solver.discrete.elements import von_mises
 from solver.discrete.probes import AxialForce, end_rotation, reaction, side_mean
 from solver.latin import Iterate, iterations
-from solver.reference.broken_wire import broken_wire
+from solver.reference.closed_forms.broken_wire import broken_wire
 from solver.scenes import CATALOGUE, discretise, loop_of
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand

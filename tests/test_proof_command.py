@@ -14,7 +14,7 @@ from urllib.parse import parse_qsl
 import numpy as np
 import pytest
 
-import solver.reference
+import solver.reference.closed_forms as closed_forms
 from app.shell.address import settings_from_query
 from solver.cli import main
 from solver.reference.choice import reference_of
@@ -125,10 +125,10 @@ def test_every_closed_form_that_has_a_file_of_its_own_is_used() -> None:
     sources = [
         file.read_text(encoding="utf-8") for file in Path(report.__file__).parent.glob("*.py")
     ]
-    there = {file.stem for file in Path(solver.reference.__file__).parent.glob("*.py")}
+    there = {file.stem for file in Path(closed_forms.__file__).parent.glob("*.py")}
     assert there >= CLOSED_FORMS
     for name in CLOSED_FORMS:
-        assert any(f"solver.reference.{name}" in source for source in sources), name
+        assert any(f"{closed_forms.__name__}.{name}" in source for source in sources), name
 
 
 def test_a_program_that_is_not_installed_is_said_to_be_absent(

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solver.discrete.rods import Rods
-from solver.reference.closed_form import ClosedForm, closed_form
+from solver.discrete.rods.rods import Rods
+from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 from solver.reference.incremental import incremental
 from solver.scenes.bar import BarSettings, bar
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import get_args, get_type_hints
 
-from solver.discrete.stack_data import SIDES
+from solver.discrete.stack.data import SIDES
 from solver.discrete.structure import Hold
 from solver.scenes import CATALOGUE, discretise, loads_of
 

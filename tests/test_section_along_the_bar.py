@@ -8,7 +8,7 @@ import pytest
 from solver.definitions import SettingError
 from solver.latin import solve
 from solver.reference.assembly import assembled_stiffness
-from solver.reference.closed_form import closed_form
+from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from solver.reference.condensation import NoReferenceError
-from solver.reference.melan import ShakedownLimit, shakedown_limit
+from solver.reference.shakedown.melan import ShakedownLimit, shakedown_limit
 from solver.scenes import CATALOGUE, discretise
 from solver.study.cycles import cycles_of, ends_of
 from solver.study.finished import finished_run

@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from solver.discrete.stack import Stack
-from solver.discrete.stack_data import Given, Side, Support
+from solver.discrete.stack.data import Given, Side, Support
+from solver.discrete.stack.stack import Stack
 from solver.latin import Accuracy, Auto, Ending, Iterations, Latin, solve
 from solver.reference.choice import reference_of
-from solver.reference.slip_front import front_over_diffusion, slip_under_growing_strength
+from solver.reference.closed_forms.slip_front import (
+    front_over_diffusion,
+    slip_under_growing_strength,
+)
 
 VIESCA = {0.1: 3.6405, 0.3: 1.3474, 0.5: 0.79161, 0.7: 0.43513, 0.9: 0.13981}
 """lambda over T: the condition of Viesca, J. Fluid Mech. 928, A29, 2021, evaluated elsewhere."""

@@ -19,7 +19,7 @@ from solver.reduction.svd import (
     friction_spectra,
     front_decay,
 )
-from solver.reference.closed_form import closed_form
+from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings, bar
 from solver.scenes.method import method_of

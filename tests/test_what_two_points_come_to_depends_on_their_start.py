@@ -14,8 +14,8 @@ import pytest
 
 from solver.discrete.problem import Problem
 from solver.reference.condensation import NoReferenceError
-from solver.reference.melan import shakedown_limit
-from solver.reference.slip_space import SlipSpace, largest_swing, room_of_two, slip_space
+from solver.reference.shakedown.melan import shakedown_limit
+from solver.reference.shakedown.slip_space import SlipSpace, largest_swing, room_of_two, slip_space
 from solver.scenes import CATALOGUE, discretise
 from solver.study.cycles import cycles_of, ends_of
 from solver.study.finished import FinishedRun, finished_run

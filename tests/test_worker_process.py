@@ -22,7 +22,7 @@ from app.wire.orders import Seek
 from app.worker import run
 from solver import latin
 from solver.latin import Ending, Iterate, Record
-from solver.reference.closed_form import closed_form
+from solver.reference.closed_forms.pulled_bar import closed_form
 from solver.scenes.bar import BarSettings, bar
 
 SLOW_TO_SET_UP = {"elements": 5000, "instants": 2001, "substructures": 500}

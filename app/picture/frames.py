@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from app.picture.portrait import Portrait
 from app.picture.shown import Axes, Bytes, Floats, Mesh, Wires
 from app.picture.strands import Strand
-from solver.reference.exact_curve import ExactCurve, Of
+from solver.reference.closed_forms.exact_curve import ExactCurve, Of
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from app.picture.portrait import Portrait, Pose
 from app.picture.shown import Bytes, Floats, Mesh, MeshField, floats
 from solver.arrays import Array
-from solver.discrete.rope import Rope
+from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 
 A_TURN, FEWEST, MOST = 28, 48, 200

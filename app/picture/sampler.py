@@ -33,11 +33,11 @@ from app.picture.wires import ShownWires
 from solver.discrete import Problem
 from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import LoopFields
-from solver.discrete.rope import Rope
+from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.latin.status_changes import status_changes
-from solver.reference.exact_curve import ExactCurve
-from solver.reference.slip_space import SlipSpace
+from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.shakedown.slip_space import SlipSpace
 from solver.reference.solution import Reference
 from solver.scenes import exact_of, kind_of, loop_of, structure_of, words_of
 from solver.settings import Settings

@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.discrete import Problem
 from solver.latin import Iterate
 from solver.reference.condensation import NoReferenceError
-from solver.reference.slip_space import SlipSpace, room_of_two, slip_space
+from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
 from solver.settings import Settings
 from solver.study.cycles import ends_of
 from solver.study.slips import slips_of

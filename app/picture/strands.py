@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from app.picture.shown import Bytes, Floats, floats, thinned
 from solver.arrays import Array
-from solver.discrete.rope import Rope
-from solver.discrete.rope_forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.rope.forces import CutWires, WireForces, cut_at, stress_ranges
+from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.scenes import structure_of
 from solver.settings import Settings

@@ -10,14 +10,14 @@ import numpy as np
 import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, curve, quantity, redefined
-from solver.discrete.equilibrium import loss_of_equilibrium
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Stack
-from solver.discrete.stack_data import Support
+from solver.discrete.stack.data import Support
+from solver.discrete.stack.equilibrium import loss_of_equilibrium
+from solver.discrete.stack.stack import Stack
 from solver.loads import PRESETS, interpolate
 from solver.phrases import Phrase, Sentence, plain
-from solver.reference.exact_curve import ExactCurve
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_bodies import exact_parabola

@@ -9,11 +9,11 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.stack import Stack
+from solver.discrete.stack.stack import Stack
 from solver.laws import Coulomb
-from solver.reference.cantilever import cantilever
-from solver.reference.exact_curve import ExactCurve
-from solver.reference.half_plane import HalfPlane
+from solver.reference.closed_forms.cantilever import cantilever
+from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms.half_plane import HalfPlane
 
 SMALL = 0.12
 """Largest half-width of a contact, over the length and the height of its body, that is still that

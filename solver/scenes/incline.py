@@ -13,9 +13,9 @@ import numpy as np
 
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, curve, quantity, redefined
-from solver.discrete.equilibrium import loss_of_equilibrium
-from solver.discrete.stack import Stack
-from solver.discrete.stack_data import Spring, Support
+from solver.discrete.stack.data import Spring, Support
+from solver.discrete.stack.equilibrium import loss_of_equilibrium
+from solver.discrete.stack.stack import Stack
 from solver.loads import PULLS
 from solver.phrases import Phrase, Sentence, plain
 from solver.scenes.entry import Emblem, Entry

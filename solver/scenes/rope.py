@@ -10,11 +10,11 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.rope import Rope
-from solver.discrete.rope_data import RopeWire
+from solver.discrete.rope.data import RopeWire
+from solver.discrete.rope.rope import Rope
 from solver.phrases import Phrase, Sentence
-from solver.reference.bent_strand import BentStrand
-from solver.reference.exact_curve import ExactCurve
+from solver.reference.closed_forms.bent_strand import BentStrand
+from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.rope_settings import RopeSettings
 from solver.scenes.words import acting, counted

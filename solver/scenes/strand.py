@@ -11,8 +11,8 @@ import solver.scenes.shared as shared
 from solver.arrays import Array
 from solver.definitions import SettingError, choice, count, curve, quantity
 from solver.discrete.problem import Problem
-from solver.discrete.rods import Rods
-from solver.discrete.rods_data import COARSEST, neighbours
+from solver.discrete.rods.data import COARSEST, neighbours
+from solver.discrete.rods.rods import Rods
 from solver.loads import PULLS
 from solver.phrases import Amount, Phrase, Sentence
 from solver.scenes.base import SceneSettings

@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
-from solver.reference.melan import shakedown_limit
+from solver.reference.shakedown.melan import shakedown_limit
 from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study.cycles import cycles_in, cycles_of, ends_of

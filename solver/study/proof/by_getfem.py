@@ -15,7 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.discrete.elements import elastic_matrix
-from solver.discrete.stack import Stack
+from solver.discrete.stack.stack import Stack
 
 NAME = "GetFEM"
 PROGRAM = Path(__file__).with_name("getfem_block.py")

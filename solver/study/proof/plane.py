@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from solver.reference.cantilever import cantilever
-from solver.reference.half_plane import HalfPlane
+from solver.reference.closed_forms.cantilever import cantilever
+from solver.reference.closed_forms.half_plane import HalfPlane
 from solver.scenes import loop_of
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, of_scene
 

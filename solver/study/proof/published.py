@@ -8,11 +8,14 @@ import numpy as np
 from scipy.special import erfc
 
 from solver.arrays import Array
-from solver.discrete.stack import Stack
-from solver.discrete.stack_data import Given, Side, Spring, Support
+from solver.discrete.stack.data import Given, Side, Spring, Support
+from solver.discrete.stack.stack import Stack
 from solver.latin import Accuracy, Auto, Iterations, Latin
 from solver.laws.contact import NO_SLIP
-from solver.reference.slip_front import front_over_diffusion, slip_under_growing_strength
+from solver.reference.closed_forms.slip_front import (
+    front_over_diffusion,
+    slip_under_growing_strength,
+)
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart
 
 SHOE = (

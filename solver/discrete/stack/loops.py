@@ -8,7 +8,7 @@ from solver.arrays import Array
 from solver.discrete.loops import Loop
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
-from solver.discrete.stack_data import Side, StackData
+from solver.discrete.stack.data import Side, StackData
 
 DRIVEN = "top", "left", "right"
 """Sides of a body on a support, in the order in which one looks for what drives it."""

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.rope.helical_wire import HelicalWire
 from solver.refusal import RefusedError
 
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from solver.discrete.loops import Loop
 from solver.discrete.problem import Problem
-from solver.discrete.stack_data import Given, Side, StackData
-from solver.discrete.stack_loops import loop_of_stack
-from solver.discrete.stack_problem import discretise_stack
+from solver.discrete.stack.data import Given, Side, StackData
+from solver.discrete.stack.loops import loop_of_stack
+from solver.discrete.stack.problem import discretise_stack
 from solver.discrete.structure import OUTWARD, Act, Description, Hold, ends_of
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from solver.discrete.loops import Loop
 from solver.discrete.probes import Probe, constant
 from solver.discrete.problem import Problem
-from solver.discrete.rope_data import RopeData
-from solver.discrete.rope_problem import discretise_rope
+from solver.discrete.rope.data import RopeData
+from solver.discrete.rope.problem import discretise_rope
 from solver.discrete.structure import OUTWARD, Act, Description, Hold
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.motions import rigid_motions
 from solver.discrete.problem import Problem, Scales
-from solver.discrete.rest import rigid_rest, rigid_slide
-from solver.discrete.sides import neighbour
-from solver.discrete.stack_data import StackData
-from solver.discrete.stack_inside import StackInside
-from solver.discrete.stack_laws import interfaces_of
-from solver.discrete.stack_parts import Grid, Part, parts_of
+from solver.discrete.stack.data import StackData
+from solver.discrete.stack.inside import StackInside
+from solver.discrete.stack.laws import interfaces_of
+from solver.discrete.stack.parts import Grid, Part, parts_of
+from solver.discrete.stack.rest import rigid_rest, rigid_slide
+from solver.discrete.stack.sides import neighbour
 from solver.discrete.substructure import Elasticity, Substructure
 
 

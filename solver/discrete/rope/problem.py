@@ -13,7 +13,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rod import rod_stiffness, substructure_sizes, tributary
-from solver.discrete.rope_data import RopeData, RopeWire
+from solver.discrete.rope.data import RopeData, RopeWire
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import Component, Contact, Dirichlet, Interface, Perfect, Rod, Sliders
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.stack_data import StackData
-from solver.discrete.stack_parts import Grid, Part
+from solver.discrete.stack.data import StackData
+from solver.discrete.stack.parts import Grid, Part
 
 
 class StackInside:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.equilibrium import is_held_up, is_upright, wrench
-from solver.discrete.stack_data import Spring, StackData
+from solver.discrete.stack.data import Spring, StackData
+from solver.discrete.stack.equilibrium import is_held_up, is_upright, wrench
 
 BEDDING = 7.0
 """Stiffness of the support per area, times the body's length over E: that of the contact itself,

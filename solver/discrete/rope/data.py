@@ -9,8 +9,8 @@ from typing import Self
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection
-from solver.discrete.helical_wire import HelicalWire
+from solver.discrete.rope.cross_section import CrossSection
+from solver.discrete.rope.helical_wire import HelicalWire
 from solver.laws import Coulomb, FrictionLaw
 from solver.refusal import RefusedError
 

@@ -8,8 +8,8 @@ from scipy import sparse
 from solver.arrays import Array, Indices
 from solver.discrete.problem import Problem, Scales
 from solver.discrete.rod import rod_stiffness, tributary
-from solver.discrete.rod_pieces import NO_ROW, Pieces
-from solver.discrete.rods_data import RodsData
+from solver.discrete.rods.data import RodsData
+from solver.discrete.rods.pieces import NO_ROW, Pieces
 from solver.discrete.substructure import Elasticity, Substructure
 from solver.laws import Component, Contact, Dirichlet, Interface, Neumann, Perfect, Rod, Sliders
 

@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.cross_section import CrossSection
-from solver.reference.bent_wire import BentWire
+from solver.discrete.rope.cross_section import CrossSection
+from solver.reference.closed_forms.bent_wire import BentWire
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.stack_data import Given, StackData
+from solver.discrete.stack.data import Given, StackData
 
 SLACK = 1e-9
 """Share of the loads that rounding may add to them."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.discrete.rods_data import RodsData
+from solver.discrete.rods.data import RodsData
 from solver.laws import Coulomb
-from solver.reference.closed_form import ClosedForm, closed_form
+from solver.reference.closed_forms.pulled_bar import ClosedForm, closed_form
 
 STEPS = 100
 PRECISION = 1e-13

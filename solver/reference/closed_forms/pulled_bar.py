@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import ROUNDING, Array
-from solver.discrete.rods_data import RodsData
+from solver.discrete.rods.data import RodsData
 from solver.laws import Coulomb
 from solver.laws.play import play
 

@@ -9,9 +9,9 @@ from scipy import sparse
 
 from solver.arrays import Array
 from solver.discrete.macro import side_basis
-from solver.discrete.sides import Place, along, neighbour
-from solver.discrete.stack_data import Side, Spring, StackData
-from solver.discrete.stack_parts import Part
+from solver.discrete.stack.data import Side, Spring, StackData
+from solver.discrete.stack.parts import Part
+from solver.discrete.stack.sides import Place, along, neighbour
 from solver.laws import (
     Bodies,
     Component,

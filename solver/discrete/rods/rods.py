@@ -8,8 +8,8 @@ import numpy as np
 
 from solver.discrete.loops import Loop, loop_of_ends
 from solver.discrete.problem import Problem
-from solver.discrete.rods_data import RodsData
-from solver.discrete.rods_problem import discretise_rods
+from solver.discrete.rods.data import RodsData
+from solver.discrete.rods.problem import discretise_rods
 from solver.discrete.structure import OUTWARD, Act, Description, Hold
 
 ACTED = np.array([0.1, 0.3, 0.5, 0.7, 0.9])

@@ -7,7 +7,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.elements import edge_mass
 from solver.discrete.plane import Rectangle
-from solver.discrete.stack_data import Given, StackData
+from solver.discrete.stack.data import Given, StackData
 
 Place = tuple[int, int, int]
 """Column and row of a substructure in its body, and the body."""

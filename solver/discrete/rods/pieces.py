@@ -6,7 +6,7 @@ import numpy as np
 
 from solver.arrays import Indices
 from solver.discrete.rod import substructure_sizes
-from solver.discrete.rods_data import RodsData
+from solver.discrete.rods.data import RodsData
 
 NO_ROW = -1
 

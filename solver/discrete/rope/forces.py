@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array, Indices
-from solver.discrete.rope_data import RopeData
+from solver.discrete.rope.data import RopeData
 
 
 @dataclass(frozen=True, eq=False)

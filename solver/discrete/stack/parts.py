@@ -10,8 +10,8 @@ from solver.arrays import Array, Indices
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.plane import Condensed, Kept, Rectangle, both
 from solver.discrete.rod import substructure_sizes
-from solver.discrete.sides import Corner, Place, neighbour, nodal_force
-from solver.discrete.stack_data import StackData
+from solver.discrete.stack.data import StackData
+from solver.discrete.stack.sides import Corner, Place, neighbour, nodal_force
 
 
 @dataclass(frozen=True)

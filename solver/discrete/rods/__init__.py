@@ -1,0 +1,1 @@
+"""Parallel rods that rub on a support, or on each other."""

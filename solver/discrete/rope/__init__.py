@@ -1,0 +1,1 @@
+"""Strands of helical wires that are bent."""

@@ -1,0 +1,1 @@
+"""Rectangular bodies in the plane, one or several on each other."""

@@ -1,0 +1,1 @@
+"""The largest load under which slip ceases, as linear programs."""
