@@ -18,11 +18,10 @@ from solver.study.clip_measures import OF_CLIPS
 from solver.study.contact_measures import OF_STRESS
 from solver.study.cycle_measures import OF_CYCLES
 from solver.study.finished import FinishedRun
-from solver.study.quantity import WITHIN, Parameter, Quantity
+from solver.study.quantity import CYCLE, WITHIN, Parameter, Quantity
 from solver.study.rope_measures import OF_ROPES
 
 ITERATION = Parameter(" at iteration {:g}", (1, 1_000_000), whole=True)
-CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
 SHARE = Parameter(" of a share {:g} of the points", (0.0, 1.0))
 
 

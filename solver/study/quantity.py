@@ -32,6 +32,7 @@ class Parameter:
     needed: bool = False
 
 
+CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
 WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
 """An error that is to be reached."""
 

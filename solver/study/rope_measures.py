@@ -12,10 +12,8 @@ from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
 from solver.study.cycles import ends_of
 from solver.study.finished import FinishedRun
-from solver.study.quantity import Parameter, Quantity
+from solver.study.quantity import CYCLE, Quantity
 from solver.study.slips import slips_of
-
-CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
 
 
 def is_rope(settings: Settings) -> bool:
