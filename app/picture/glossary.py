@@ -55,6 +55,9 @@ TERMS: dict[tuple[str, ...], str] = {
     "choose one.",
     ("changed status",): "Another of stick, slip and open than in the iterate before; the status "
     "line says how many points and instants, and why.",
+    ("bending stiffness",): "How much moment a little more curvature takes now, as a share of what "
+    "it takes while nothing slips. Near a clamp it may be above 100 %: what slips farther along "
+    "pulls too.",
     ("stick",): "The friction force is below its bound: the point does not slide.",
     ("slip −", "slip +", "slip"): "The friction force has reached its bound: the point slides, "
     "+ to the right, − to the left.",
