@@ -13,8 +13,8 @@ from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.prepared import prepared
 from solver.scenes.method import method_of
-from solver.study.beside import Beside
-from solver.study.brought import CAN, FEWEST, FRICTION, read_brought
+from solver.study.other_programs.beside import Beside
+from solver.study.other_programs.brought import CAN, FEWEST, FRICTION, read_brought
 
 
 def add_compare(commands: Any) -> None:

@@ -13,7 +13,7 @@ from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.prepared import prepared
 from solver.scenes.method import method_of
-from solver.study.fclib import (
+from solver.study.other_programs.fclib import (
     check_writer,
     contacts_of,
     instant_at,

@@ -13,7 +13,7 @@ from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.mesh import Refinement, answer, decides, meshes_around, size_of, value_on
-from solver.study.quantities import reading
+from solver.study.quantities.quantities import reading
 
 
 def add_mesh(commands: Any) -> None:

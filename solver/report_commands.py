@@ -23,16 +23,16 @@ from solver.study.benchmarks.ahead_table import print_ahead, write_ahead
 from solver.study.benchmarks.cycles_report import measured, write_cycles
 from solver.study.benchmarks.iteration_cost import print_iteration_cost, print_overheads
 from solver.study.benchmarks.whole_cost import print_whole_cost
-from solver.study.crossover import crossover
-from solver.study.crossover_report import crossover_notes, crossover_table
-from solver.study.error_against_time import error_against_time
-from solver.study.figure_page import write_figures
-from solver.study.growth import growth
-from solver.study.paper_figures import paper_figures
+from solver.study.figures.figure_page import write_figures
+from solver.study.figures.paper_figures import paper_figures
 from solver.study.proof import report as proof
 from solver.study.proof.sections import summary
-from solver.study.study_page import write_study
-from solver.study.study_report import aligned, conditions, growth_table, table, winners
+from solver.study.speed.crossover import crossover
+from solver.study.speed.crossover_report import crossover_notes, crossover_table
+from solver.study.speed.error_against_time import error_against_time
+from solver.study.speed.growth import growth
+from solver.study.speed.study_page import write_study
+from solver.study.speed.study_report import aligned, conditions, growth_table, table, winners
 
 REFUSED = 2
 """Exit code of refused input."""

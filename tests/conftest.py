@@ -25,7 +25,7 @@ from worker_line import Line
 
 from app.session.report_executor import ReportExecutor
 from app.session.report_job import ReportJob
-from solver.study.paper_runs import PaperRuns
+from solver.study.figures.paper_runs import PaperRuns
 
 LONGEST_FIRST = (
     "test_page_fits_its_window",

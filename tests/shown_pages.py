@@ -13,7 +13,7 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look
 from app.views.catalogue import VIEWS
-from app.views.drawing import Drawing
+from app.views.drawing.drawing import Drawing
 from app.views.scene import Scene
 from app.wire.orders import Order, Ready, Run, Watch
 from app.wire.reports import File, Picture

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from shown_pages import SMALL, Shown
 
-from app.views import convergence
+from app.views.convergence import convergence
 from app.whatif.ready import over_k
 
 SEARCH = {**SMALL["bar"], "finish": "accuracy"}

@@ -12,9 +12,9 @@ from solver.arrays import Array
 from solver.discrete.rope.forces import CutWires, WireForces, cut_at, stress_ranges
 from solver.discrete.rope.rope import Rope
 from solver.scenes import CATALOGUE, structure_of
-from solver.study.finished import FinishedRun, finished_run
-from solver.study.quantities import QUANTITIES, reading
-from solver.study.rope_measures import OF_ROPES
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities.rope_measures import OF_ROPES
 
 PLACES = (0.0, 0.013, 0.21)
 CLAMPED = {"bending": "clamp", "layers": 2, "elements": 48, "instants": 31, "length": 0.3}

@@ -20,9 +20,9 @@ from solver.scenes import discretise, structure_of
 from solver.scenes.bar import BarSettings
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.clip_measures import clips_in, products_in
-from solver.study.finished import finished_run
-from solver.study.quantities import reading
+from solver.study.quantities.clip_measures import clips_in, products_in
+from solver.study.quantities.finished import finished_run
+from solver.study.quantities.quantities import reading
 
 EXACT = 1e-12
 

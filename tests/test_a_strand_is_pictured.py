@@ -10,9 +10,11 @@ import pytest
 from shown_pages import SMALL, Shown
 
 from app.picture.helices import HelixGeometry
-from app.views import axial, loop, picture, section, unrolled
+from app.views.bodies import axial, picture, section
 from app.views.catalogue import fitting
-from app.views.drawing import Drawing
+from app.views.drawing.drawing import Drawing
+from app.views.interface import unrolled
+from app.views.load import loop
 from app.views.scene import Scene
 from app.worker.key_figures import thing
 from app.worker.telling import told

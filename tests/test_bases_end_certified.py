@@ -16,7 +16,7 @@ from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.finished import finished_run
+from solver.study.quantities.finished import finished_run
 
 SMALL = {"elements": 12, "instants": 21}
 

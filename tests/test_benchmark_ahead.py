@@ -16,9 +16,9 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study import timed
 from solver.study.benchmarks import ahead
 from solver.study.benchmarks.ahead_problems import GROUPS, PROBLEMS, AheadProblem, chosen_problems
+from solver.study.speed import timed
 
 TINY = {"elements": 24, "instants": 21, "substructures": 3}
 ASKED: dict[str, Any] = {"scene": "bar", "changes": TINY, "repeats": 2}

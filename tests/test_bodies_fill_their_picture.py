@@ -10,8 +10,8 @@ import pytest
 from test_the_scene_is_pictured import pictured
 from test_views_say_what_they_draw import looked_at
 
-from app.views.drawing import Curve, Drawing, Word
-from app.views.figures import LINE
+from app.views.drawing.drawing import Curve, Drawing, Word
+from app.views.drawing.figures import LINE
 from solver.arrays import Array
 from solver.scenes import CATALOGUE
 
@@ -20,7 +20,7 @@ LETTER = 7.6
 
 
 class Page:
-    """A drawing on a page of so many pixels, laid out as `app.views.figures.FIT` does it."""
+    """A drawing on a page of so many pixels, laid out as `FIT` of the figures does it."""
 
     def __init__(self, drawing: Drawing, wide: float, tall: float) -> None:
         assert drawing.bodies is not None

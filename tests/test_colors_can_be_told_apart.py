@@ -7,7 +7,7 @@ import pytest
 from test_views_say_what_they_draw import looked_at
 
 from app.views.catalogue import fitting
-from app.views.colors import BACKWARD, BLUE, GHOST, GREY, SKY
+from app.views.drawing.colors import BACKWARD, BLUE, GHOST, GREY, SKY
 
 LIGHT, DARK = "#ffffff", "#121212"
 """What is behind plots, as the themes of the page have it."""

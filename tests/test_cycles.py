@@ -14,10 +14,10 @@ import pytest
 from solver.definitions import SettingError
 from solver.loads import BEGINS, PRESETS, PRESSURES, PULLS
 from solver.scenes import CATALOGUE
-from solver.study.cycles import LoadCycles, cycles_in, cycles_of, ends_of, turning_points
-from solver.study.finished import FinishedRun, finished_run
-from solver.study.quantities import QUANTITIES, reading
-from solver.study.shakedown import fate_of
+from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, ends_of, turning_points
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities.shakedown import fate_of
 
 STIFFNESS, BOUND = 210e9 * 3.14e-6, 1500.0
 TIMES = {"load": "cycles", "instants": 161}

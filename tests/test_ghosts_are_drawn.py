@@ -10,11 +10,13 @@ import pytest
 from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.portrait import rims
-from app.views import convergence, deformed, picture, status_map
+from app.views.bodies import deformed, picture
 from app.views.catalogue import fitting
-from app.views.colors import FRONT, GHOST
-from app.views.drawing import Drawing
-from app.views.earlier_runs import THIN
+from app.views.convergence import convergence
+from app.views.convergence.earlier_runs import THIN
+from app.views.drawing.colors import FRONT, GHOST
+from app.views.drawing.drawing import Drawing
+from app.views.interface import status_map
 from app.wire.orders import Seek, Watch
 from solver.scenes import CATALOGUE
 

@@ -15,8 +15,8 @@ from solver.reference.choice import reference_of
 from solver.reference.condensation import Condensation
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, discretise
-from solver.study import fclib
-from solver.study.fclib import contacts_of, local_problem, save_fclib
+from solver.study.other_programs import fclib
+from solver.study.other_programs.fclib import contacts_of, local_problem, save_fclib
 
 SMALL = {
     "block": {"elements": 16, "elements_up": 6, "instants": 21},

@@ -156,6 +156,7 @@ def test_no_module_of_the_solver_imports_itself_by_detours():
         "solver.study",
         "app",
         "app.worker",
+        "app.views",
     ],
 )
 def test_no_folder_imports_itself_by_detours(package):

@@ -22,8 +22,8 @@ from app.shell.dashboard import Dashboard
 from app.teaching.teaching import CHOICE
 from app.wire.orders import Run, Seek
 from solver.lessons.lesson import Lesson
-from solver.study.finished import finished_run
-from solver.study.quantities import reading
+from solver.study.quantities.finished import finished_run
+from solver.study.quantities.quantities import reading
 
 SMALL: dict[str, Any] = {"elements": 20, "instants": 21, "method": "paper", "max_iterations": 12}
 each = pytest.mark.parametrize("lesson", LESSONS.values(), ids=list(LESSONS))

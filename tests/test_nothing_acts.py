@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from shown_pages import Shown
 
-from app.views import deformed, loop
+from app.views.bodies import deformed
+from app.views.load import loop
 from solver.discrete.idle import nothing_acts
 from solver.scenes import CATALOGUE, discretise
 

@@ -41,7 +41,7 @@ from app.components.innards import (
 )
 from app.components.pulse import pulse
 from app.views.catalogue import VIEWS
-from app.views.figures import make_figure
+from app.views.drawing.figures import make_figure
 
 
 def test_sockets_can_be_told_to_send_at_once() -> None:

@@ -20,9 +20,9 @@ from solver.cli import main
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import block
-from solver.study.error_against_time import PeerError
 from solver.study.proof import by_getfem, others, published, report
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart
+from solver.study.speed.error_against_time import PeerError
 
 CASES = list(report.cases())
 CLOSED_FORMS = {

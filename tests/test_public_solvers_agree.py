@@ -10,9 +10,9 @@ from solver.reference.distance import distance_to
 from solver.reference.incremental import incremental
 from solver.scenes import discretise
 from solver.scenes.bar import BarSettings
-from solver.study import public_solvers
-from solver.study.error_against_time import Peer, PeerError, error_against_time
-from solver.study.public_solvers import PUBLIC, solve_by
+from solver.study.other_programs import public_solvers
+from solver.study.other_programs.public_solvers import PUBLIC, solve_by
+from solver.study.speed.error_against_time import Peer, PeerError, error_against_time
 
 WHAT_THEY_REACH = {"PIQP": 1e-6, "OSQP": 1e-7, "DAQP": 1e-9, "Clarabel": 1e-5}
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from solver.scenes import CATALOGUE
-from solver.study.cycles import turning_points
-from solver.study.finished import FinishedRun, finished_run
-from solver.study.quantities import QUANTITIES, reading
+from solver.study.quantities.cycles import turning_points
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantities import QUANTITIES, reading
 
 STIFFNESS, BOUND = 210e9 * 3.14e-6, 1500.0
 SMALL = {"elements": 20, "instants": 21, "substructures": 2}

@@ -17,8 +17,8 @@ from solver.reference.distance import determinate_forces
 from solver.reference.solution import Reference
 from solver.scenes import CATALOGUE, discretise, exact_of
 from solver.settings import Settings
-from solver.study.beside import Beside, weights_of
-from solver.study.brought import Brought, read_brought
+from solver.study.other_programs.beside import Beside, weights_of
+from solver.study.other_programs.brought import Brought, read_brought
 
 HEAD = "x,t,friction force\n"
 ROWS = "0.1,0,1\n0.2,0.5,2\n0.3,0.5,3\n0.4,1,4\n"

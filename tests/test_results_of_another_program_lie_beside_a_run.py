@@ -15,13 +15,14 @@ from shown_pages import ALL, SMALL, Shown, keys
 from app.session.pages import Pages
 from app.session.report_executor import ReportExecutor
 from app.session.session import Session
-from app.views import friction, loop, tractions
-from app.views.colors import VERMILION
-from app.views.drawing import Drawing
+from app.views.drawing.colors import VERMILION
+from app.views.drawing.drawing import Drawing
+from app.views.interface import friction, tractions
+from app.views.load import loop
 from app.wire.orders import Bring, Seek, Tabulate, Watch
 from app.worker import saving
 from solver.scenes import CATALOGUE
-from solver.study.brought import Brought
+from solver.study.other_programs.brought import Brought
 
 LATIN = {"method": "paper", "max_iterations": 12, "finish": "none"}
 PLACES, TIMES = (one.ravel() for one in np.meshgrid([0.1, 0.2, 0.4, 0.6], [0.25, 0.5, 0.75]))

@@ -13,7 +13,7 @@ from solver.latin import run_cost as costs
 from solver.latin.run_cost import LARGE, LONG, RunCost, run_cost
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
-from solver.study import fclib
+from solver.study.other_programs import fclib
 
 LONG_ONES: dict[str, dict[str, Any]] = {
     "strand": {"wires": 200},

@@ -16,8 +16,8 @@ SCENES = "solver/scenes/"
 EXPERIMENTS = (
     "solver/study/audit/",
     "solver/study/benchmarks/",
-    "solver/study/memory.py",
-    "solver/study/paper_runs.py",
+    "solver/study/quantities/memory.py",
+    "solver/study/figures/paper_runs.py",
     "solver/study/proof/",
 )
 """They measure scenes of their choice."""

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from shown_pages import SMALL
 from test_views_say_what_they_draw import looked_at
 
-from app.views import picture
+from app.views.bodies import picture
 from app.views.catalogue import VIEWS
-from app.views.colors import BACKWARD, FORWARD, SLIP
-from app.views.legend import card_title
+from app.views.drawing.colors import BACKWARD, FORWARD, SLIP
+from app.views.drawing.legend import card_title
 from app.worker.telling import told
 from solver.scenes import CATALOGUE, words_of
 from solver.scenes.words import acting, counted

@@ -10,9 +10,9 @@ import pytest
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.melan import ShakedownLimit, shakedown_limit
 from solver.scenes import CATALOGUE, discretise
-from solver.study.cycles import cycles_of, ends_of
-from solver.study.finished import finished_run
-from solver.study.quantities import reading
+from solver.study.quantities.cycles import cycles_of, ends_of
+from solver.study.quantities.finished import finished_run
+from solver.study.quantities.quantities import reading
 
 BOUND, LENGTH = 1500.0, 1.0
 SMALL = {"elements": 20, "instants": 161, "substructures": 2, "load": "cycles"}

@@ -36,8 +36,8 @@ from solver.study.audit.plane_cases import PRESSED
 from solver.study.audit.report import COLOURS
 from solver.study.audit.stability import COLUMNS, cases_of, stability_report, trials_of
 from solver.study.audit.units import SAME_UP_TO, invariance, is_same
-from solver.study.finished import BROKEN
-from solver.study.finished import REFUSED as REFUSED_RUN
+from solver.study.quantities.finished import BROKEN
+from solver.study.quantities.finished import REFUSED as REFUSED_RUN
 
 GOOD = Outcome(
     ending=Ending.CONVERGED,

@@ -18,7 +18,7 @@ from solver.scenes.block import BlockSettings
 from solver.scenes.layers import LayersSettings
 from solver.scenes.method import method_of
 from solver.scenes.strand import StrandSettings, strand
-from solver.study.error_against_time import FORMS, GOAL, INCREMENTAL, error_against_time
+from solver.study.speed.error_against_time import FORMS, GOAL, INCREMENTAL, error_against_time
 
 SMALL = {"elements": 24, "substructures": 4, "instants": 21, "break_position": 0.375}
 FAST = {"finish": "none"}

@@ -20,7 +20,8 @@ from solver.running.machine import LIMITS
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.study.chart import HUES
-from solver.study.error_against_time import (
+from solver.study.page import NO_CHARTS
+from solver.study.speed.error_against_time import (
     FORMS,
     INCREMENTAL,
     LEVELS,
@@ -28,10 +29,9 @@ from solver.study.error_against_time import (
     Study,
     error_against_time,
 )
-from solver.study.growth import MEASURED, Growth, Size, growth
-from solver.study.page import NO_CHARTS
-from solver.study.study_panels import error_panels
-from solver.study.study_report import growth_table, table, winners
+from solver.study.speed.growth import MEASURED, Growth, Size, growth
+from solver.study.speed.study_panels import error_panels
+from solver.study.speed.study_report import growth_table, table, winners
 
 TINY = ["study", "bar", "--set", "elements=12", "--set", "instants=11", "--set", "substructures=3"]
 TINY += ["--repeats", "1", "--no-growth"]
@@ -114,7 +114,7 @@ def test_accelerated_forms_end_below_a_millionth(measured):
 def test_one_clock_bills_all_methods(monkeypatch):
     seconds = map(float, count())
     monkeypatch.setattr(time, "perf_counter", lambda: next(seconds))
-    monkeypatch.setattr("solver.study.growth.MEASURED", MEASURED[:1])
+    monkeypatch.setattr("solver.study.speed.growth.MEASURED", MEASURED[:1])
     settings = BarSettings.checked({"elements": 6, "instants": 6, "substructures": 3})
     for one in error_against_time(settings, 1).courses:
         assert (one.seconds >= 1.0).all()

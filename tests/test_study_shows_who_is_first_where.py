@@ -11,9 +11,9 @@ import pytest
 from app.charts.layers import layers
 from solver.reference.condensation import NoReferenceError
 from solver.scenes import CATALOGUE
-from solver.study import crossover as measuring
-from solver.study.crossover import FACTORS, LARGE, Crossover, Duel, crossover, equal_at
-from solver.study.crossover_report import crossover_map, crossover_notes, crossover_table
+from solver.study.speed import crossover as measuring
+from solver.study.speed.crossover import FACTORS, LARGE, Crossover, Duel, crossover, equal_at
+from solver.study.speed.crossover_report import crossover_map, crossover_notes, crossover_table
 
 TINY: dict[str, dict[str, Any]] = {
     "bar": {"elements": 12, "instants": 11, "substructures": 3},

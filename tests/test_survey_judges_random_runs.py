@@ -21,7 +21,7 @@ from solver.study.audit.draws import KEPT, LARGEST_FIELD, draw, is_foolish
 from solver.study.audit.outcome import AT_ROUNDING, Outcome
 from solver.study.audit.residual import kkt_residual
 from solver.study.audit.survey import drawn, survey_report, table_of_missed
-from solver.study.finished import BROKEN, REFUSED
+from solver.study.quantities.finished import BROKEN, REFUSED
 
 SMALL = {
     "bar": {"elements": 20, "substructures": 4, "instants": 11},

@@ -26,7 +26,7 @@ from solver.running.executors import Processes, opened
 from solver.running.pool import EndedError, OverdueError
 from solver.running.processes import start_process
 from solver.scenes import CATALOGUE, discretise
-from solver.study.finished import finished_run
+from solver.study.quantities.finished import finished_run
 from solver.study.sweep import VersionsDifferError, sweep
 from solver.study.sweep import point as points
 from solver.study.sweep.nearest import KEPT, Nearest
@@ -116,7 +116,7 @@ def test_a_run_that_fits_no_other_starts_alone() -> None:
 def test_a_step_that_costs_more_than_a_run_is_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     plan = tiny(["friction=0.45:0.47:3"], ["peak_displacement"])
     dear = Costs(condensing=1e3, system=1e-3, iteration=1e-3, n_instants=21)
-    monkeypatch.setattr("solver.study.finished.costs_of", lambda problem, moving: dear)
+    monkeypatch.setattr("solver.study.quantities.finished.costs_of", lambda problem, moving: dear)
     assert not any(row.was_warm for row in rows_of(plan))
 
 

@@ -19,7 +19,7 @@ from app.session.report_job import Found
 from app.session.session import Session
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
-from solver.study.error_against_time import PLAIN, acting, forms_of
+from solver.study.speed.error_against_time import PLAIN, acting, forms_of
 
 BAR = BarSettings.checked({"elements": 8, "substructures": 2, "instants": 5})
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from shown_pages import Shown, keys
 
-from app.views import slip_plane
 from app.views.catalogue import fitting
+from app.views.interface import slip_plane
 from app.views.scene import Scene
 from solver.scenes import CATALOGUE
 

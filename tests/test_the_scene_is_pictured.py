@@ -11,10 +11,12 @@ import pytest
 from shown_pages import ALL, SMALL, Shown
 from test_views_say_what_they_draw import looked_at
 
-from app.views import load_path, picture, sketch
-from app.views.acting import ARROW
-from app.views.colors import BACKWARD, FORCE, FORWARD, GIVEN
-from app.views.drawing import Curve, Drawing
+from app.views.bodies import picture
+from app.views.bodies.acting import ARROW
+from app.views.drawing import sketch
+from app.views.drawing.colors import BACKWARD, FORCE, FORWARD, GIVEN
+from app.views.drawing.drawing import Curve, Drawing
+from app.views.load import load_path
 from app.views.scene import Scene
 from solver.scenes import CATALOGUE, structure_of
 from solver.scenes.bar import BarSettings

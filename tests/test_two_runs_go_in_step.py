@@ -15,7 +15,9 @@ from unpacking import unpack
 
 from app.controls.comparing import PRESETS, pair
 from app.picture.sampler import Sampler
-from app.views import convergence, error_time, friction, loop, tractions
+from app.views.convergence import convergence, error_time
+from app.views.interface import friction, tractions
+from app.views.load import loop
 from app.wire.orders import Pace, Seek, Step, Watch
 from app.worker.key_figures import NONE_YET
 from solver.files import scene_settings

@@ -16,7 +16,7 @@ from app.picture.labels import changes_of, label_of
 from app.picture.units import BY_SIZE, MM, SI, SYSTEMS, measured, scale_of, steps
 from app.shell.address import Sight, query_of, sight_from_query
 from app.views.catalogue import fitting
-from app.views.in_units import in_units
+from app.views.drawing.in_units import in_units
 from app.worker.tables import table
 from solver.definitions import about
 from solver.scenes import CATALOGUE

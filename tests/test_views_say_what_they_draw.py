@@ -12,12 +12,16 @@ from shown_pages import ALL, SMALL, Shown, keys
 
 from app.picture.recording import COLUMNS
 from app.picture.units import MM
-from app.views import clips, convergence, cycles, deformed, error_time, friction, load_path, loop
+from app.views.bodies import deformed
 from app.views.catalogue import VIEWS, fitting
-from app.views.colors import BLUE, GREEN, ORANGE, VERMILION
-from app.views.drawing import POSITION, Curve
-from app.views.in_units import in_units
-from app.views.scales import decades
+from app.views.convergence import convergence, error_time
+from app.views.drawing.colors import BLUE, GREEN, ORANGE, VERMILION
+from app.views.drawing.drawing import POSITION, Curve
+from app.views.drawing.in_units import in_units
+from app.views.drawing.scales import decades
+from app.views.interface import friction
+from app.views.load import cycles, load_path, loop
+from app.views.reduction import clips
 from app.views.scene import Scene
 from app.worker.telling import told
 from solver.scenes import CATALOGUE

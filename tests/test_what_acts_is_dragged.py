@@ -12,10 +12,10 @@ from test_views_say_what_they_draw import looked_at
 
 from app.picture.units import BY_SIZE
 from app.shell.gallery import gallery
-from app.views import picture
+from app.views.bodies import picture
 from app.views.catalogue import fitting
-from app.views.colors import FORCE, GIVEN
-from app.views.drawing import POSITION
+from app.views.drawing.colors import FORCE, GIVEN
+from app.views.drawing.drawing import POSITION
 from app.worker.painter import marked
 from solver.definitions import SettingError
 from solver.discrete.structure import Act

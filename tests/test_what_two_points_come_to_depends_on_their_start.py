@@ -17,10 +17,10 @@ from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.melan import shakedown_limit
 from solver.reference.shakedown.slip_space import SlipSpace, largest_swing, room_of_two, slip_space
 from solver.scenes import CATALOGUE, discretise
-from solver.study.cycles import cycles_of, ends_of
-from solver.study.finished import FinishedRun, finished_run
-from solver.study.shakedown import Fate, fate_of
-from solver.study.slips import slips_of
+from solver.study.quantities.cycles import cycles_of, ends_of
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.shakedown import Fate, fate_of
+from solver.study.quantities.slips import slips_of
 
 LESSON = Path(__file__).parents[1] / "app/lessons/two-points.toml"
 GIVEN = tomllib.loads(LESSON.read_text(encoding="utf-8"))["settings"]

@@ -14,8 +14,8 @@ from app.picture.frames import DrawnFields
 from app.picture.meshes import MOST_QUADS, Thinned
 from app.picture.sampler import Sampler
 from app.picture.shown import STATUS_OPEN, Look, Mesh, has_reference
-from app.views.deformed import fitting
-from app.views.scales import held
+from app.views.bodies.deformed import fitting
+from app.views.drawing.scales import held
 from app.wire.orders import Watch
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.plane import PlaneSettings

@@ -159,6 +159,6 @@ def test_checkpoints_count_their_bases_as_memory() -> None:
 
 
 def test_the_map_of_basis_sizes_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.views.basis_size.MOST_COLUMNS", 20)
+    monkeypatch.setattr("app.views.reduction.basis_size.MOST_COLUMNS", 20)
     image = told(SMALL).page["pgd-basis-size.image"]["image"]
     assert image.shape == (4, 20)

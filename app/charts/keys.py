@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from app.charts.layers import COLORS
-from app.views.legend import Key, card_title
+from app.views.drawing.legend import Key, card_title
 from solver.study.chart import Chart, Panel
 
 MARKS = {"solid": "line", "points": "dot"}

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from app.views.colors import FORCE, GREY, shaded
+from app.views.drawing.colors import FORCE, GREY, shaded
 from solver.arrays import Array, Flags, Indices
 from solver.study.chart import HUES, Chart, Map, Panel, PanelCurve, Runs
 

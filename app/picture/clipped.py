@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from solver.latin import Iterate
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.settings import Settings
-from solver.study.clip_measures import clips_in, products_in
+from solver.study.quantities.clip_measures import clips_in, products_in
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,8 @@ from app.picture.shown import Floats, floats
 from solver.arrays import Array
 from solver.latin import Iterate
 from solver.settings import Settings
-from solver.study.cycles import cycles_of
-from solver.study.shakedown import Fate, fate_of
+from solver.study.quantities.cycles import cycles_of
+from solver.study.quantities.shakedown import Fate, fate_of
 
 
 @dataclass(frozen=True)

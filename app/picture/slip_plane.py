@@ -14,8 +14,8 @@ from solver.latin import Iterate
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
 from solver.settings import Settings
-from solver.study.cycles import ends_of
-from solver.study.slips import slips_of
+from solver.study.quantities.cycles import ends_of
+from solver.study.quantities.slips import slips_of
 
 POINTS = 2
 

@@ -17,7 +17,7 @@ from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.scenes import structure_of
 from solver.settings import Settings
-from solver.study.cycles import ends_of
+from solver.study.quantities.cycles import ends_of
 
 MOST_PLACES = 200
 """Places along the strand at which wires are shown."""

@@ -9,8 +9,9 @@ from app.components.links import Links
 from app.reports.report import Report
 from app.session.session import Session
 from app.session.studies import proof_of
-from app.views import axial, loop
+from app.views.bodies import axial
 from app.views.catalogue import beside, drawn
+from app.views.load import loop
 
 EXACT = axial.VIEW, loop.VIEW
 """Views that show closed forms, and are not the first on their cards."""

@@ -20,7 +20,7 @@ from app.session.session import Session
 from app.session.studies import figures_of_the_paper, stability_of, study_of
 from solver.scenes import entry_of
 from solver.settings import Settings
-from solver.study.error_against_time import acting
+from solver.study.speed.error_against_time import acting
 
 COMPUTED: list[Found] = []
 """The paper's figures, once a page of this server has had them made: they depend on no setting."""

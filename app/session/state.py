@@ -18,7 +18,7 @@ from app.wire.orders import WHOLE, Rate
 from app.wire.reports import Facts
 from solver.lessons.lesson import Lesson
 from solver.settings import Settings
-from solver.study.brought import Brought
+from solver.study.other_programs.brought import Brought
 
 WHAT_IF = "What if"
 TABS = ("Live", WHAT_IF, "Figures", "Study", "Stability", "Proof")

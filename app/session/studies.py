@@ -13,20 +13,20 @@ from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, audit
 from solver.study.audit.stability import cases_of, stability_report, trials_of
 from solver.study.audit.units import invariance
-from solver.study.crossover import crossover
-from solver.study.error_against_time import error_against_time
-from solver.study.figure_page import figure_sections
-from solver.study.growth import growth
+from solver.study.figures.figure_page import figure_sections
+from solver.study.figures.paper_figures import MAKERS
+from solver.study.figures.paper_runs import PaperRuns
 from solver.study.mesh import Refinement, answer, meshes_around, size_of, value_on
 from solver.study.page import Section
-from solver.study.paper_figures import MAKERS
-from solver.study.paper_runs import PaperRuns
 from solver.study.progress import Tell
 from solver.study.proof.case import HeldNumber, rows_of
 from solver.study.proof.report import cases, write_proof
 from solver.study.proof.sections import proof_sections
-from solver.study.quantities import reading
-from solver.study.study_page import study_sections, write_study
+from solver.study.quantities.quantities import reading
+from solver.study.speed.crossover import crossover
+from solver.study.speed.error_against_time import error_against_time
+from solver.study.speed.growth import growth
+from solver.study.speed.study_page import study_sections, write_study
 
 PARTS = {"curves": 1.0, "growth": 4.0, "map": 1.0}
 """Of a study, and how long each takes beside the others, roughly."""

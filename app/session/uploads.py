@@ -8,7 +8,7 @@ from solver.checked import dump
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables
 from solver.settings import Settings
-from solver.study.brought import CAN, Brought, read_brought
+from solver.study.other_programs.brought import CAN, Brought, read_brought
 from solver.tables import heads_of, read_table
 
 WARM_NOTE = """\

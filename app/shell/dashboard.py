@@ -34,7 +34,7 @@ from app.shell.tabs import Tabs
 from app.shell.transport import Transport
 from app.takeaway.takeaway import Saver
 from app.teaching.teaching import Teaching, name_of
-from app.views import deformed
+from app.views.bodies import deformed
 from app.views.catalogue import drawn
 from app.whatif.ready import over_k
 from app.whatif.whatif import WhatIf

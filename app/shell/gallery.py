@@ -22,8 +22,8 @@ from app.picture.glossary import ENGLISH
 from app.picture.units import steps
 from app.shell.layout import layout
 from app.views.catalogue import VIEWS, beside
-from app.views.drawing import View
-from app.views.figures import make_figure
+from app.views.drawing.drawing import View
+from app.views.drawing.figures import make_figure
 from app.worker.painter import PLOTS
 from solver.scenes import behind
 from solver.settings import Settings

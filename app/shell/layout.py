@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.picture.portrait import size_of
-from app.views import deformed, picture
-from app.views.drawing import View
+from app.views.bodies import deformed, picture
+from app.views.drawing.drawing import View
 from solver.scenes import structure_of
 from solver.settings import Settings
 

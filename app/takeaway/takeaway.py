@@ -15,12 +15,12 @@ from app.components.panes import script
 from app.picture.shown import thinned
 from app.session.session import Session
 from app.takeaway.snippet import snippet
-from app.views.drawing import View
+from app.views.drawing.drawing import View
 from app.wire.orders import Tabulate
 from app.wire.reports import Facts
 from app.worker.painter import TAKE_AWAY
 from app.worker.tables import TABLES
-from solver.study.fclib import can_write
+from solver.study.other_programs.fclib import can_write
 
 MOST_PICTURES = 60
 """Of an animation."""

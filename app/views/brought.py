@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.shown import Floats, floats
-from app.views.colors import VERMILION
-from app.views.drawing import Curve
-from app.views.legend import Key
+from app.views.drawing.colors import VERMILION
+from app.views.drawing.drawing import Curve
+from app.views.drawing.legend import Key
 from app.views.scene import Scene
 from solver.phrases import Phrase
-from solver.study.brought import DISPLACEMENT, FRICTION
+from solver.study.other_programs.brought import DISPLACEMENT, FRICTION
 
 SHORT = 0.01
 """Share of the body's length that a point alone is drawn as."""

@@ -4,27 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from app.views import (
-    axial,
-    basis_size,
-    clips,
-    convergence,
-    cycles,
-    deformed,
-    error_time,
-    friction,
-    load_path,
-    loop,
-    picture,
-    section,
-    slip_plane,
-    spectra,
-    status_map,
-    tractions,
-    unrolled,
-)
-from app.views.drawing import View
-from app.views.modes import SPACE_MODES, TIME_FUNCTIONS
+from app.views.bodies import axial, deformed, picture, section
+from app.views.convergence import convergence, error_time
+from app.views.drawing.drawing import View
+from app.views.interface import friction, slip_plane, status_map, tractions, unrolled
+from app.views.load import cycles, load_path, loop
+from app.views.reduction import basis_size, clips, spectra
+from app.views.reduction.modes import SPACE_MODES, TIME_FUNCTIONS
 from solver.settings import Settings
 
 CARDS: tuple[tuple[View, ...], ...] = (

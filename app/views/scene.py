@@ -11,7 +11,7 @@ from app.picture.recording import Recording
 from app.picture.sampler import Frame
 from app.picture.shown import Look, instant_of
 from solver.phrases import Phrase
-from solver.study.beside import Beside
+from solver.study.other_programs.beside import Beside
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from app.whatif.question import Question, Span, askable, names_of, offered
 from app.whatif.ready import READY
 from solver.definitions import about
 from solver.settings import Settings
-from solver.study.quantities import QUANTITIES
+from solver.study.quantities.quantities import QUANTITIES
 
 NO_SECOND = Span()
 VALUES = "low", "high", "listed"

@@ -17,8 +17,8 @@ from app.picture.units import BY_SIZE
 from app.picture.usual import WATCH, hurried
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.settings import Settings
-from solver.study.quantities import QUANTITIES, reading
-from solver.study.quantity import Quantity
+from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities.quantity import Quantity
 from solver.study.sweep import Plan, plan_of
 from solver.study.sweep.plan import axis_of
 

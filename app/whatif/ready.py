@@ -19,7 +19,7 @@ from app.whatif.question import (
 from solver.definitions import SettingError
 from solver.scenes import behind, loads_of
 from solver.settings import Settings
-from solver.study.cycle_measures import has_cycles
+from solver.study.quantities.cycle_measures import has_cycles
 
 COARSE = 10
 """Values along each side of a map."""

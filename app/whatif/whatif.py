@@ -25,7 +25,7 @@ from solver.definitions import SettingError
 from solver.settings import Settings
 from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
-from solver.study.quantities import reading
+from solver.study.quantities.quantities import reading
 from solver.study.sweep import Plan, Row
 from solver.study.sweep.columns import columns
 from solver.study.sweep.report import counts

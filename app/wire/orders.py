@@ -7,7 +7,7 @@ from typing import Literal
 
 from app.picture.shown import Look
 from solver.settings import Settings
-from solver.study.brought import Brought
+from solver.study.other_programs.brought import Brought
 
 WHOLE: Literal["whole"] = "whole"
 """The pace at which a search lasts three seconds, however many iterations it takes."""

@@ -23,7 +23,7 @@ from app.worker.words import UNKNOWN, number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED
 from solver.phrases import Phrase
-from solver.study.finished import FinishedRun
+from solver.study.quantities.finished import FinishedRun
 
 NONE_YET = "no iteration done by then"
 ERRORS = ("Displacement error", "Friction force error", "Iterations to 1 %")

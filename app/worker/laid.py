@@ -5,8 +5,8 @@ from __future__ import annotations
 from app.picture.sampler import Frame
 from solver.discrete.problem import Problem
 from solver.settings import Settings
-from solver.study.beside import Beside
-from solver.study.brought import Brought
+from solver.study.other_programs.beside import Beside
+from solver.study.other_programs.brought import Brought
 
 
 class Laid:

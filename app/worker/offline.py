@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 
 from app.languages.language import Language
-from app.views.drawing import View
+from app.views.drawing.drawing import View
 from app.views.scene import Scene
 from app.worker.painter import Painter, caption, seen
 from app.worker.tables import TABLES, table
@@ -82,7 +82,7 @@ def offline_page(
     from bokeh.embed import components
     from bokeh.resources import Resources
 
-    from app.views.figures import make_figure
+    from app.views.drawing.figures import make_figure
 
     settings, look, say = looked_at.run.settings, looked_at.look, looked_at.look.say
     views = seen(settings, look)

@@ -14,11 +14,11 @@ from app.picture.glossary import ENGLISH
 from app.picture.shown import Look
 from app.picture.units import titled
 from app.views.catalogue import fitting
-from app.views.colors import VERMILION
-from app.views.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
-from app.views.in_units import in_units
-from app.views.legend import card_title
-from app.views.scales import upright
+from app.views.drawing.colors import VERMILION
+from app.views.drawing.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
+from app.views.drawing.in_units import in_units
+from app.views.drawing.legend import card_title
+from app.views.drawing.scales import upright
 from app.views.scene import Scene
 from app.wire.block import Attributes, Packer, Quads
 from app.wire.reports import Facts

@@ -10,9 +10,9 @@ from app.worker.words import number, percent
 from solver.latin import Solution
 from solver.latin.criteria.status import CANCELLED
 from solver.phrases import Phrase
-from solver.study.finished import FinishedRun
-from solver.study.quantities import reading
-from solver.study.quantity import Quantity
+from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.quantities import reading
+from solver.study.quantities.quantity import Quantity
 
 OPEN = "…"
 """What only the rest of the run will tell."""

@@ -11,7 +11,7 @@ from app.views.scene import Scene
 from app.worker.offline import OFFLINE
 from app.worker.tables import TABLES, table
 from solver.refusal import RefusedError
-from solver.study.fclib import contacts_of, instant_at, local_problem, write_fclib
+from solver.study.other_programs.fclib import contacts_of, instant_at, local_problem, write_fclib
 
 FCLIB = "fclib"
 KINDS = *TABLES, OFFLINE, FCLIB

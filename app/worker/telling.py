@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.units import rounded, titled
-from app.views.drawing import Axis, Curve, Drawing, View
-from app.views.legend import Key
+from app.views.drawing.drawing import Axis, Curve, Drawing, View
+from app.views.drawing.legend import Key
 from solver.arrays import Array
 from solver.phrases import Phrase, joined
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from solver.checked import dump
 from solver.lessons.lesson import Claim, EndingClaim, Lesson
-from solver.study.finished import FinishedRun, finished_run
+from solver.study.quantities.finished import FinishedRun, finished_run
 
 
 @dataclass(frozen=True, eq=False)

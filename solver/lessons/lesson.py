@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from solver.settings import Settings
-from solver.study.quantities import Reading, reading
+from solver.study.quantities.quantities import Reading, reading
 
 SUBJECTS = "mechanics", "method"
 PLACEHOLDER = re.compile(r"\{(.*?)\}")

@@ -22,7 +22,7 @@ from solver.lessons.lesson import (
     kind_of_place,
 )
 from solver.settings import Settings
-from solver.study.quantities import reading
+from solver.study.quantities.quantities import reading
 
 KEYS = {
     "title": str,

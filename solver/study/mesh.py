@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from solver.definitions import SettingError
 from solver.scenes import mesh_of
 from solver.settings import Settings
-from solver.study.finished import finished_run
-from solver.study.quantities import Reading
+from solver.study.quantities.finished import finished_run
+from solver.study.quantities.quantities import Reading
 
 SAFETY = 1.25
 """Roache's factor on what is still missing, for three meshes."""

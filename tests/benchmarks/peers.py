@@ -2,7 +2,7 @@
 
 `python tests/benchmarks/peers.py bar --set elements=100`
 
-How they are given the problem: `solver/study/public_solvers.py`.
+How they are given the problem: `solver/study/other_programs/public_solvers.py`.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import sys
 from solver.files import settings_from_command
 from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
-from solver.study.error_against_time import error_against_time
-from solver.study.public_solvers import PUBLIC, peers
-from solver.study.study_report import aligned, conditions, table, winners
+from solver.study.other_programs.public_solvers import PUBLIC, peers
+from solver.study.speed.error_against_time import error_against_time
+from solver.study.speed.study_report import aligned, conditions, table, winners
 
 
 def main() -> int:

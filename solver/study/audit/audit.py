@@ -9,7 +9,7 @@ from enum import StrEnum
 
 from solver.latin import Ending
 from solver.study.audit.outcome import AT_ROUNDING, Outcome, run
-from solver.study.finished import BROKEN, REFUSED
+from solver.study.quantities.finished import BROKEN, REFUSED
 
 
 class Verdict(StrEnum):

@@ -21,7 +21,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.study.audit.conditioning import condition_of_structure, condition_of_substructures
 from solver.study.audit.residual import kkt_residual
-from solver.study.finished import BROKEN, REFUSED
+from solver.study.quantities.finished import BROKEN, REFUSED
 
 AT_ROUNDING = 1e-8
 """Residual of a certified solution, at most, by the equations alone."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from solver.disk import check_place, whole_file
 from solver.study.audit.audit import MEANING, Audited, Verdict
 from solver.study.page import bullets, plain_table, table, write_page
-from solver.study.study_report import aligned
+from solver.study.speed.study_report import aligned
 
 COLOURS: dict[str, str] = {
     Verdict.RIGHT: "#0072B2",

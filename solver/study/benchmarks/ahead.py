@@ -22,7 +22,7 @@ from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.benchmarks.ahead_problems import AheadProblem
-from solver.study.timed import by_increments, by_latin, latins, seconds_of
+from solver.study.speed.timed import by_increments, by_latin, latins, seconds_of
 
 GOAL = 0.01
 """Error of the contact force that LATIN's own way is to reach."""

@@ -29,7 +29,7 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.study.benchmarks.ahead import GOAL, MOST
 from solver.study.benchmarks.cycles_problems import INSTANTS, CyclesProblem
-from solver.study.timed import seconds_of
+from solver.study.speed.timed import seconds_of
 
 LONGEST = 60.0
 """Seconds of the processor after which a way is given up."""

@@ -11,8 +11,8 @@ from solver.running.machine import machine
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.finished import finished_run
-from solver.study.memory import memory_of, settle
+from solver.study.quantities.finished import finished_run
+from solver.study.quantities.memory import memory_of, settle
 
 SIZES: tuple[tuple[str, dict[str, Any]], ...] = (
     *((scene, {}) for scene in CATALOGUE),

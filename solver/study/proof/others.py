@@ -12,10 +12,10 @@ from solver.arrays import Array
 from solver.discrete.problem import Problem
 from solver.scenes import discretise
 from solver.scenes.block import block
-from solver.study.error_against_time import PeerError
+from solver.study.other_programs.public_solvers import PUBLIC, Public, PublicFields, solve_by
 from solver.study.proof import by_getfem
 from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_scene
-from solver.study.public_solvers import PUBLIC, Public, PublicFields, solve_by
+from solver.study.speed.error_against_time import PeerError
 
 ABSENT = "Not installed: {}."
 SHEARED: dict[str, Any] = {"elements": 24, "elements_up": 12, "instants": 17}

@@ -25,7 +25,7 @@ from solver.definitions import (
 )
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.study.quantities import Reading, reading
+from solver.study.quantities.quantities import Reading, reading
 
 MOST_POINTS = 20_000
 """Runs that one sweep may ask for: more fill no chart, and nobody waits for them."""
@@ -155,7 +155,7 @@ def plan_of(settings: Settings, vary: Sequence[str], of: Sequence[str]) -> Plan:
     vary
         One or two of `NAME=LOW:HIGH:COUNT`, the same with `:log`, or `NAME=VALUE,VALUE,...`.
     of
-        Quantities of a run, as `solver.study.quantities.reading` takes them.
+        Quantities of a run, as `solver.study.quantities.quantities.reading` takes them.
 
     Raises
     ------

@@ -16,8 +16,8 @@ import numpy as np
 from solver.files import save_result
 from solver.latin import Ending
 from solver.refusal import RefusedError
-from solver.study.finished import BROKEN, REFUSED, FinishedRun, finished_run
-from solver.study.memory import settle
+from solver.study.quantities.finished import BROKEN, REFUSED, FinishedRun, finished_run
+from solver.study.quantities.memory import settle
 from solver.study.sweep.nearest import Nearest
 from solver.study.sweep.plan import Plan, plan_from_plain
 

@@ -1,0 +1,1 @@
+"""Views of how far a run is, over iterations and over time."""

@@ -1,0 +1,1 @@
+"""Views of interfaces: pressure, friction, and where they slip."""

@@ -1,0 +1,1 @@
+"""Views of the load: what acts over time, its loop, its cycles."""

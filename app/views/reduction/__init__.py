@@ -1,0 +1,1 @@
+"""Views of reduced bases: modes, singular values, fronts as clips."""

@@ -1,0 +1,1 @@
+"""Results and problems that go to other programs, or come from them."""

@@ -1,0 +1,1 @@
+"""What a run is asked for: each quantity once, and what it is taken from."""

@@ -1,0 +1,112 @@
+"""What sweeps ask of a run whose load repeats itself; NaN with fewer cycles than that takes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solver.laws import OPEN
+from solver.reference.condensation import NoReferenceError
+from solver.reference.shakedown.melan import shakedown_limit
+from solver.scenes import kind_of
+from solver.settings import Settings
+from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of
+from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.quantity import Quantity
+
+NO_ENERGY = 1e-12
+"""Share of all energy that rounding makes."""
+
+
+def has_cycles(settings: Settings) -> bool:
+    """Tell whether a load has a cycle."""
+    return cycles_in(settings) > 0
+
+
+def has_several(settings: Settings) -> bool:
+    """Tell whether a load has a second cycle, to compare others with."""
+    return cycles_in(settings) > 1
+
+
+def has_a_limit(settings: Settings) -> bool:
+    """Tell whether the theorem holds: where bounds are known, and no slip changes them."""
+    return (
+        has_cycles(settings)
+        and kind_of(settings) != "plane"
+        and not settings.applies("friction_ratio")
+    )
+
+
+def energy_ratio(run: FinishedRun, at: float | None) -> float:
+    """Give the energy of the last cycle over that of the second; NaN where that took none."""
+    energy = cycles_of(run.settings, run.iterate).energy
+    if len(energy) < 2 or energy[1] <= NO_ENERGY * np.abs(run.dissipated).sum():
+        return math.nan
+    return float(energy[-1] / energy[1])
+
+
+def ratchet(run: FinishedRun, at: float | None) -> float:
+    """Give the slip that the last cycle leaves, at the point where it leaves most, m."""
+    net = cycles_of(run.settings, run.iterate).net
+    return float(np.abs(net[:, -1]).max()) if net.size else math.nan
+
+
+def sliding_share(run: FinishedRun, at: float | None) -> float:
+    """Give the largest share of the contact that slips at once in the last cycle, by length.
+
+    0 is stick, 1 gross slip, anything between partial slip (O. Vingsbo, S. Söderberg, On fretting
+    maps, Wear 126, 1988). A point that a clamp holds never slips, and is left out.
+    """
+    ends = ends_of(run.settings)
+    if len(ends) < 2:
+        return math.nan
+    last, held = slice(ends[-2] + 1, ends[-1] + 1), run.problem.is_held
+    lengths = [
+        law.by_point(law.weights * ~np.all([held[rows] for rows in law.tangent.sides], axis=0))
+        for law in run.problem.rubbing.values()
+    ]
+    length, status = np.concatenate(lengths)[:, None], run.iterate.status[:, last]
+    touching = (length * (status != OPEN)).sum(axis=0)
+    slipping = (length * (np.abs(status) == 1)).sum(axis=0)
+    shares = slipping[touching > 0.0] / touching[touching > 0.0]
+    return float(shares.max(initial=0.0))
+
+
+def shakedown_factor(run: FinishedRun, at: float | None) -> float:
+    """Give the largest factor on the loads under which slip ceases; NaN where none is known."""
+    ends = ends_of(run.settings)
+    if len(ends) < 2 or not has_a_limit(run.settings):
+        return math.nan
+    try:
+        return shakedown_limit(run.problem, slice(ends[0], ends[-1] + 1)).factor
+    except NoReferenceError:
+        return math.nan
+
+
+OF_CYCLES = (
+    Quantity(
+        "cycle_energy_ratio",
+        "Energy of the last cycle over the second",
+        "",
+        energy_ratio,
+        applies=has_several,
+    ),
+    Quantity("ratchet", "Slip that the last cycle leaves", "m", ratchet, applies=has_cycles),
+    Quantity(
+        "sliding_share",
+        "Share of the contact that slips at once in the last cycle",
+        "",
+        sliding_share,
+        is_share=True,
+        applies=has_cycles,
+    ),
+    Quantity(
+        "shakedown_factor",
+        "Shakedown factor on the load",
+        "",
+        shakedown_factor,
+        applies=has_a_limit,
+    ),
+)
+"""Quantities of cycles."""

@@ -1,0 +1,183 @@
+"""A run that has ended, with what its quantities are taken from."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.loops import Loop
+from solver.discrete.problem import Problem
+from solver.latin import Iterate, Solution, record, solve
+from solver.latin.finish.certified import finished
+from solver.latin.finish.cost import costs_of, moving_share
+from solver.latin.finish.status_step import StatusSolver, states_of
+from solver.latin.stop import proven
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NoReferenceError
+from solver.reference.distance import distance_to
+from solver.reference.solution import States
+from solver.scenes import discretise, loop_of
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.quantities.slips import slips_of
+
+REFUSED, BROKEN = "refused", "broken"
+"""How a run ends that never was one: by refused settings, by a fault of the engine."""
+ALONE = 60
+"""Iterations that take as long as a run of its own, with all beside them. A status step from a
+neighbour may take a third of that, which is 4 systems an instant on 50 elements and 13 on 1600; it
+takes 1 to 3 and 3 to 9 (measured)."""
+
+
+@dataclass(frozen=True, eq=False)
+class FinishedRun:
+    """A run from its settings to its end.
+
+    Attributes
+    ----------
+    has_errors
+        Whether its records hold distances to a reference.
+    loop
+        As the scene shows it, where that is at hand: in the plane it takes a solution to make one.
+    was_warm
+        Whether it started from another run.
+    """
+
+    settings: Settings
+    solution: Solution
+    has_errors: bool
+    loop: Loop | None = None
+    was_warm: bool = False
+
+    @property
+    def iterate(self) -> Iterate:
+        """Its last good iterate."""
+        return self.solution.iterate
+
+    @property
+    def problem(self) -> Problem:
+        """What it solves."""
+        return self.iterate.problem
+
+    @cached_property
+    def _loop(self) -> Loop:
+        return self.loop or loop_of(self.settings, self.problem)
+
+    @property
+    def measures_displacement(self) -> bool:
+        """Whether its loop goes over a displacement, not over an angle."""
+        return self._loop.across[1] == "m"
+
+    @property
+    def states(self) -> States:
+        """What sticks, slips and is open, from which a run of like settings may start."""
+        return states_of(self.iterate)
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Displacement of the loop that the scene shows, m, or what it goes over; (n_instants,)."""
+        return self._loop.displacement(self.iterate.displacement)
+
+    @cached_property
+    def force(self) -> Array:
+        """Force of that loop, shape (n_instants,), N."""
+        force = self._loop.force
+        return force if isinstance(force, np.ndarray) else force(self.iterate)
+
+    @cached_property
+    def dissipated(self) -> Array:
+        """Energy that friction takes between each instant and the one before, (n_instants,), J."""
+        works = (work.sum(axis=0) for _, _, work in slips_of(self.iterate))
+        return np.asarray(sum(works, np.zeros(self.problem.n_instants)))
+
+
+def finished_run(
+    settings: Settings,
+    *,
+    errors: bool = True,
+    indicators: bool = True,
+    cancelled: Callable[[], bool] = lambda: False,
+    before: States | None = None,
+) -> FinishedRun:
+    """Run a scene to its stop rule.
+
+    Parameters
+    ----------
+    settings
+        Of the run.
+    errors
+        Whether the distance to a reference is wanted, which takes its time; where there is none,
+        the run is made without.
+    indicators
+        Whether the indicators of every iteration are wanted, which take theirs.
+    cancelled
+        As for `solve`.
+    before
+        What stuck, slipped and opened in a run of like settings, to start from where that holds.
+    """
+    began = time.perf_counter()
+    problem = discretise(settings)
+    spent = time.perf_counter() - began
+    distance = None
+    if errors:
+        try:
+            reference = reference_of(problem)
+        except NoReferenceError:
+            reference = None
+        if reference is not None and reference.converged.all():
+            distance = distance_to(reference, problem)
+    if before is not None and (near := neighbour(problem, settings, before)) is not None:
+        return FinishedRun(settings, near, has_errors=False, was_warm=True)
+    solution = solve(
+        problem,
+        method_of(settings),
+        distance=distance,
+        watch=indicators,
+        spent=spent,
+        cancelled=cancelled,
+    )
+    return FinishedRun(settings, solution, distance is not None)
+
+
+def neighbour(problem: Problem, settings: Settings, states: States) -> Solution | None:
+    """Try a status step from what stuck, slipped and opened in a run of like settings.
+
+    It counts only if it finds the one solution of the discrete problem, which does not depend on
+    the start. Iterations of the method in between better no states that are as near as these
+    (solver/study/README.md, 7). A run on separated bases is its own, as it is asked for these too.
+
+    Parameters
+    ----------
+    problem, settings
+        What to solve, and the options of the method.
+    states
+        As `solver.latin.finish.status_step.states_of` gives them.
+
+    Returns
+    -------
+    That solution; None where it is not found soon.
+    """
+    began = time.perf_counter()
+    fits = states.shape == (problem.sum_of_contact.shape[0], problem.n_instants)
+    if settings.finish != "at-once" or settings.linear_stage == "pgd" or not fits:
+        return None
+    costs = costs_of(problem, moving_share(states))
+    if not costs.afford(ALONE):
+        return None
+    try:
+        certificate = StatusSolver(problem)(states, costs.systems(ALONE))
+    except NoReferenceError:
+        return None
+    if certificate is None or certificate.residual > settings.accuracy:
+        return None
+    k = method_of(settings).direction.of(problem)
+    k.flags.writeable = False
+    finish = finished(problem, k, certificate)
+    verdict = proven(finish, certificate, time.perf_counter() - began)
+    assert verdict.status is not None
+    return Solution(finish, [record(finish, verdict, None, watch=False)], verdict.status)

@@ -1,0 +1,58 @@
+"""The memory of a run: by how much the resident memory of a process of its own grows at most.
+
+Allocations that Python counts would leave out what sparse factorisations take. So a run is made in
+a fresh process, after tiny ones that bring in the code; what the operating system says of its
+resident memory then is subtracted from the highest value at the end.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from solver.running.alone import alone
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+from solver.study.quantities.finished import finished_run
+
+STATUS = Path("/proc/self/status")
+TINY: dict[str, dict[str, object]] = {
+    "bar": {"elements": 4, "substructures": 2, "instants": 3},
+    "block": {"elements": 4, "elements_up": 2, "substructures": 2, "instants": 3},
+}
+"""Runs that go before: to bring in code is no part of a run's memory, nor of its time."""
+
+
+def memory_of(settings: Settings) -> float:
+    """Run a scene once more for the memory that it takes, B; NaN where none is told (not Linux)."""
+    if not STATUS.exists():
+        return math.nan
+    asked = {"scene": settings.scene, "changed": settings.changed()}
+    return float(alone(__name__, asked))
+
+
+@cache
+def settle() -> None:
+    """Make tiny runs, once in a process, after which a run brings in no code any more."""
+    for scene, tiny in TINY.items():
+        finished_run(CATALOGUE[scene].settings.checked(tiny))
+
+
+def answer(asked: dict[str, Any]) -> int:
+    """Run what is asked for, and give the memory that it took, B."""
+    settings = CATALOGUE[asked["scene"]].settings.checked(asked["changed"])
+    settle()
+    before = resident("VmRSS")
+    finished_run(settings, errors=False, indicators=False)
+    return resident("VmHWM") - before
+
+
+def resident(name: str) -> int:
+    """Read a line of what the operating system says of this process, B."""
+    found = re.search(rf"^{name}:\s+(\d+) kB$", STATUS.read_text(encoding="ascii"), re.MULTILINE)
+    if found is None:
+        raise LookupError(name)
+    return 1024 * int(found[1])

@@ -1,0 +1,78 @@
+"""What a quantity of a run is, and the number that it may be asked with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from solver.settings import Settings
+from solver.study.quantities.finished import FinishedRun
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """The number that a quantity may be asked with.
+
+    Attributes
+    ----------
+    words
+        What it adds to the title, with a place for the number.
+    bounds
+        Smallest and largest.
+    whole
+        Whether only whole numbers have a meaning.
+    needed
+        Whether the quantity has no meaning without it.
+    """
+
+    words: str
+    bounds: tuple[float, float]
+    whole: bool = False
+    needed: bool = False
+
+
+CYCLE = Parameter(" in cycle {:g}", (1, 10_000), whole=True)
+WITHIN = Parameter(" {:g}", (1e-12, 1.0), needed=True)
+"""An error that is to be reached."""
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """A number that a finished run has.
+
+    Attributes
+    ----------
+    title
+        What it is called, in words.
+    unit
+        SI unit, empty for a pure number.
+    of
+        Gives it, with the parameter or None: NaN where the run has none, infinity where what is
+        waited for never comes.
+    parameter
+        What it may be asked with.
+    reads
+        What the records must hold for it, which takes its time: distances to a reference, or the
+        indicators of every iteration.
+    is_share
+        Whether it is a share of a whole, which is told in per cent.
+    is_of_course
+        Whether it follows from how the run went, not only from what it came to: then a run that
+        starts elsewhere has another.
+    applies
+        Whether runs of these settings may have it.
+    at_instant
+        Gives what it would be at an instant, for one that is taken at the largest load.
+    """
+
+    name: str
+    title: str
+    unit: str
+    of: Callable[[FinishedRun, float | None], float]
+    parameter: Parameter | None = None
+    reads: Literal["errors", "indicators"] | None = None
+    is_share: bool = False
+    is_of_course: bool = False
+    applies: Callable[[Settings], bool] = lambda settings: True
+    at_instant: Callable[[FinishedRun, int], float] | None = None

@@ -1,0 +1,295 @@
+"""Errors of all methods against the time that they take, from settings to result.
+
+Each method pays for what it needs: discretisation, factorisation, the coarser mesh, iterations. One
+pass without the clock finds the errors, and warms up; then timed passes run every method once, in
+turn, and the median of the passes counts. No error is computed while the clock of a pass runs.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Literal
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.discrete.problem import Problem
+from solver.latin import judged
+from solver.reference.choice import reference_of
+from solver.reference.distance import Distance, Fields, distance_to
+from solver.running.machine import machine
+from solver.scenes import discretise, entry_of
+from solver.scenes.method import method_of
+from solver.settings import Settings
+from solver.study.progress import Tell, silent
+from solver.study.speed.timed import by_increments, nothing_collected
+
+LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
+"""Errors of the friction force whose times make the table."""
+GOAL = 1e-7
+"""Error of the friction force at which an iteration ends."""
+MOST_ITERATIONS = 600
+PLAIN: dict[str, Any] = {
+    "multiscale": True,
+    "search_direction": "paper",
+    "linear_stage": "full",
+    "acceleration": "none",
+    "start": "zero",
+    "k_update": "none",
+    "finish": "none",
+}
+AUTO: dict[str, Any] = {**PLAIN, "search_direction": "auto"}
+NESTED: dict[str, Any] = {**AUTO, "start": "nested", "acceleration": "anderson"}
+FORMS: dict[str, dict[str, Any]] = {
+    "LATIN monoscale": {**PLAIN, "multiscale": False},
+    "LATIN multiscale": PLAIN,
+    "LATIN auto k, nested": {**AUTO, "start": "nested"},
+    "LATIN auto k, nested, Anderson": NESTED,
+    "LATIN auto k, nested, Anderson, k updated": {**NESTED, "k_update": "status"},
+    "LATIN fast": {**NESTED, "finish": "at-once"},
+    "LATIN PGD": {**PLAIN, "linear_stage": "pgd"},
+}
+"""Settings that make the forms of LATIN; all others are those of the run."""
+FORMS_FROM_ZERO: dict[str, dict[str, Any]] = {
+    "LATIN monoscale": {**PLAIN, "multiscale": False},
+    "LATIN multiscale": PLAIN,
+    "LATIN auto k": AUTO,
+    "LATIN auto k, Anderson": {**AUTO, "acceleration": "anderson"},
+    "LATIN auto k, Anderson, k updated": {**AUTO, "acceleration": "anderson", "k_update": "status"},
+    "LATIN fast": {**AUTO, "acceleration": "anderson", "finish": "at-once"},
+    "LATIN PGD": {**AUTO, "linear_stage": "pgd"},
+}
+"""The same of scenes where no run starts from a coarser mesh."""
+INCREMENTAL = "incremental solver"
+Kind = Literal["latin", "incremental", "peer"]
+
+
+class PeerError(RuntimeError):
+    """Another solver gave up, or took too long; the message says at which instant."""
+
+
+@dataclass(frozen=True)
+class Peer:
+    """Another solver that is set beside these.
+
+    Attributes
+    ----------
+    name
+        What it is called.
+    tolerances
+        Those at which it runs; one alone for a method that ends exactly, in finitely many steps.
+    solve
+        Solves a problem at a tolerance, set-up included, or raises `PeerError`.
+    """
+
+    name: str
+    tolerances: tuple[float, ...]
+    solve: Callable[[Problem, float], Fields]
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorCurve:
+    """What a method reaches, and when.
+
+    Attributes
+    ----------
+    method, kind
+        What it is.
+    steps
+        Iterations done (latin), Newton steps (incremental) or tolerances asked for (peer), (n,).
+    seconds
+        Time from settings to result, medians of the passes, shape (n,).
+    error_displacement, error_force
+        Relative L2 distances to the incremental reference, shape (n,); 0 by definition for itself.
+    """
+
+    method: str
+    kind: Kind
+    steps: Array
+    seconds: Array
+    error_displacement: Array
+    error_force: Array
+
+    @property
+    def seconds_per_iteration(self) -> float | None:
+        """Median time between two iterations; None for a method that has none."""
+        if self.kind != "latin" or len(self.seconds) < 2:
+            return None
+        return float(np.median(np.diff(self.seconds)))
+
+    def reached(self, level: float) -> tuple[float, float] | None:
+        """Give the least time at which the friction force is so near, and the step it was."""
+        near = np.flatnonzero(self.error_force <= level)
+        if not len(near):
+            return None
+        first = near[self.seconds[near].argmin()]
+        return float(self.seconds[first]), float(self.steps[first])
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """All courses of one scene, and under which conditions they were measured.
+
+    Attributes
+    ----------
+    settings
+        The scene; the forms of LATIN change what `FORMS` names.
+    repeats
+        Timed passes.
+    machine
+        Processors, BLAS threads, versions.
+    courses
+        One per method that ran.
+    troubles
+        What another solver said where it gave up.
+    """
+
+    settings: Settings
+    repeats: int
+    machine: str
+    courses: tuple[ErrorCurve, ...]
+    troubles: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Entry:
+    """A method's errors and steps, and how to time it again."""
+
+    method: str
+    kind: Kind
+    steps: list[float]
+    errors: list[tuple[float, float]]
+    timed: Callable[[], list[float]]
+
+
+def error_against_time(
+    settings: Settings, repeats: int, tell: Tell = silent, peers: Sequence[Peer] = ()
+) -> Study:
+    """Run every method `repeats` times, in turns.
+
+    Parameters
+    ----------
+    settings
+        Checked settings of a scene.
+    repeats
+        Timed passes, at least 1.
+    tell
+        Is told how far it is, while no clock runs.
+    peers
+        Other solvers that are to be measured too.
+    """
+    troubles: list[str] = []
+    entries = _entries(settings, lambda doing, share: tell(doing, share / (repeats + 1)))
+    for peer in peers:
+        entries += _peer_entry(peer, settings, troubles)
+    samples: list[list[list[float]]] = [[] for _ in entries]
+    for turn in range(1, repeats + 1):
+        tell(f"Timed pass {turn} of {repeats}", turn / (repeats + 1))
+        for entry, times in zip(entries, samples, strict=True):
+            with nothing_collected():
+                times.append(entry.timed())
+    courses = [_course(entry, times) for entry, times in zip(entries, samples, strict=True)]
+    return Study(settings, repeats, machine(), tuple(courses), tuple(troubles))
+
+
+def _entries(settings: Settings, tell: Tell) -> list[_Entry]:
+    """Find the errors of all methods, without the clock."""
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    distance = distance_to(reference, problem)
+    forms = forms_of(settings)
+    entries = []
+    for number, (method, form) in enumerate(forms.items()):
+        tell(f"Errors of {method}", number / len(forms))
+        entries.append(_latin_entry(method, form, distance))
+    entries.append(
+        _Entry(
+            INCREMENTAL,
+            "incremental",
+            steps=[float(reference.steps)],
+            errors=[(0.0, 0.0)],
+            timed=lambda: [by_increments(settings, time.perf_counter)],
+        )
+    )
+    return entries
+
+
+def forms_of(settings: Settings) -> dict[str, Settings]:
+    """Give the settings of every form of LATIN that a scene has, by name."""
+    forms = FORMS if entry_of(settings).coarser is not None else FORMS_FROM_ZERO
+    return {method: settings.replace(**form) for method, form in forms.items()}
+
+
+def acting(settings: Settings) -> set[str]:
+    """Give the names of the settings that a study depends on: those that no form sets itself."""
+    forms = [settings.replace(**PLAIN), settings.replace(**FORMS["LATIN PGD"])]
+    names = settings.definitions().keys() - {"method", *PLAIN}
+    return {name for name in names if any(form.applies(name) for form in forms)}
+
+
+def _latin_entry(method: str, settings: Settings, distance: Distance) -> _Entry:
+    """Find the errors of a form of LATIN, until its friction force is as near as the goal."""
+    errors: list[tuple[float, float]] = []
+    for iterate, _ in islice(judged(discretise(settings), method_of(settings)), MOST_ITERATIONS):
+        errors.append((distance.of_displacement(iterate), distance.of_friction_force(iterate)))
+        force = errors[-1][1]
+        if not math.isfinite(force) or (force <= GOAL and iterate.number > 1):
+            break
+    steps = [float(number) for number in range(1, len(errors) + 1)]
+    return _Entry(method, "latin", steps, errors, lambda: _by_iterations(settings, len(steps)))
+
+
+def _by_iterations(settings: Settings, number: int) -> list[float]:
+    """Give the time after every iteration, with all that the run needs to end, and discretising."""
+    start = time.perf_counter()
+    problem = discretise(settings)
+    spent = time.perf_counter() - start
+    return [
+        verdict.seconds
+        for _, verdict in islice(judged(problem, method_of(settings), None, spent), number)
+    ]
+
+
+def _peer_entry(peer: Peer, settings: Settings, troubles: list[str]) -> list[_Entry]:
+    """Find the errors of another solver at the tolerances that it manages, if any."""
+    problem = discretise(settings)
+    distance = distance_to(reference_of(problem), problem)
+    done, errors = [], []
+    for tolerance in peer.tolerances:
+        try:
+            fields = peer.solve(problem, tolerance)
+        except PeerError as trouble:
+            troubles.append(f"{peer.name} at tolerance {tolerance:g} {trouble}.")
+            continue
+        done.append(tolerance)
+        errors.append((distance.of_displacement(fields), distance.of_friction_force(fields)))
+
+    def timed() -> list[float]:
+        return [_by_peer(peer, settings, tolerance) for tolerance in done]
+
+    return [_Entry(peer.name, "peer", done, errors, timed)] if done else []
+
+
+def _by_peer(peer: Peer, settings: Settings, tolerance: float) -> float:
+    start = time.perf_counter()
+    try:
+        peer.solve(discretise(settings), tolerance)
+    except PeerError:  # it did well before, so this is its time limit, on a busier machine
+        return math.inf
+    return time.perf_counter() - start
+
+
+def _course(entry: _Entry, times: list[list[float]]) -> ErrorCurve:
+    displacement, force = np.array(entry.errors).T
+    return ErrorCurve(
+        method=entry.method,
+        kind=entry.kind,
+        steps=np.array(entry.steps),
+        seconds=np.median(np.array(times), axis=0),
+        error_displacement=displacement,
+        error_force=force,
+    )
