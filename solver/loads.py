@@ -95,6 +95,16 @@ PRESSURES: dict[str, Callable[[Array, int], Array]] = {
 }
 """Presets of what presses: all of it at first, or in the end, and never nothing."""
 
+_pulses = _polyline(np.array([1.0, *[0.0, 1.0] * CYCLES]))
+INJECTIONS: dict[str, Callable[[Array, int], Array]] = {
+    "steady": PRESSURES["steady"],
+    "stopped": lambda phase, seed: np.where(phase <= 0.5, 1.0, 0.0),
+    "rising": _polyline(np.array([0.0, 1.0])),
+    "pulses": _pulses,
+    "random": PULLS["random"],
+}
+"""Presets of a fluid that is let in from the beginning."""
+
 BEGINS = {
     "triangle": 0.0,
     "sine": 0.0,
@@ -102,6 +112,7 @@ BEGINS = {
     "cycle": 0.2,
     "delayed": HELD,
     "cycles": HELD,
+    "pulses": 0.0,
     "shaken": HELD,
 }
 """Share of the interval from which on a preset comes back to where it is, and may be repeated."""

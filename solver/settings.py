@@ -254,6 +254,11 @@ class Settings(Checked):
         return True
 
     @property
+    def opens(self) -> bool:
+        """Whether contact may open, so that what presses is an unknown."""
+        return False
+
+    @property
     def has_spring(self) -> bool:
         """Whether a spring holds a body."""
         return False

@@ -27,6 +27,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "strand": {"elements": 10, "instants": 11},
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 2, "instants": 13},
+    "fault": {"elements": 16, "elements_up": 8, "instants": 13},
     "incline": {"elements": 12, "elements_up": 6, "instants": 13},
     "rope": {**SMALL_ROPE, "elements": 10, "instants": 13},
 }

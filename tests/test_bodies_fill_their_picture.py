@@ -84,9 +84,9 @@ def test_all_that_is_drawn_is_seen_at_any_size_and_no_word_lies_on_another(scene
                 assert not np.any(at > np.array(size) + 1e-3)
             ends = [page.word(word) for word in drawing.words]
             for left, right, low, high in ends:
-                assert left >= 0.0
-                assert right <= size[0]
-                assert low >= 0.0
+                assert left >= -1e-3
+                assert right <= size[0] + 1e-3
+                assert low >= -1e-3
                 assert high <= size[1] + 1e-3
             for one, other in combinations(ends, 2):
                 apart = one[1] <= other[0] or other[1] <= one[0]

@@ -34,7 +34,7 @@ def test_contrast_is_that_of_the_guidelines() -> None:
 
 
 @pytest.mark.parametrize("background", [LIGHT, DARK])
-@pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers", "incline", "rope"])
+@pytest.mark.parametrize("scene", ["bar", "strand", "block", "layers", "incline", "rope", "fault"])
 def test_every_line_and_mark_of_a_legend_stands_out_in_both_themes(
     scene: str, background: str
 ) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from solver.definitions import SettingError
-from solver.loads import BEGINS, PRESETS, PRESSURES, PULLS
+from solver.loads import BEGINS, INJECTIONS, PRESETS, PRESSURES, PULLS
 from solver.scenes import CATALOGUE
 from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, ends_of, turning_points
 from solver.study.quantities.finished import FinishedRun, finished_run
@@ -209,18 +209,23 @@ def test_friction_that_still_hardens_gets_no_word_until_it_has_hardened() -> Non
     assert words == [None, "steady slip"]
 
 
-@pytest.mark.parametrize("presets", [PRESETS, PULLS, PRESSURES])
+@pytest.mark.parametrize("presets", [PRESETS, PULLS, PRESSURES, INJECTIONS])
 def test_what_is_repeated_goes_on_where_it_ended(presets: Any) -> None:
     for name in set(BEGINS) & set(presets):
         values = presets[name](np.array([BEGINS[name], 1.0]), 1)
         assert values[0] == pytest.approx(values[1], abs=1e-12), name
 
 
+COMES_BACK = {"fault": {"injection_load": "pulses"}}
+"""Of scenes whose usual load does not, one that does."""
+
+
 @pytest.mark.parametrize("scene", CATALOGUE)
 def test_every_scene_has_as_many_cycles_as_it_is_asked_for(scene: str) -> None:
     """One more of the preset is always so many cycles more of the load."""
     settings = CATALOGUE[scene].settings
-    counted = [cycles_in(settings.checked({"instants": 401, "cycles": n})) for n in (2, 3, 9)]
+    values = {"instants": 401, **COMES_BACK.get(scene, {})}
+    counted = [cycles_in(settings.checked({**values, "cycles": n})) for n in (2, 3, 9)]
     more = counted[1] - counted[0]
     assert more >= 1
     assert counted[2] == counted[0] + 7 * more

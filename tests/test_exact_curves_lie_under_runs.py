@@ -33,6 +33,11 @@ KNOWN = {
     "block on a slope, caught by a spring": ["loop"],
     "three layers without friction": ["loop"],
     "three layers that friction glues": ["loop"],
+    **{
+        f"slip front driven by a fluid, T = {stress:g}": ["front", "friction"]
+        for stress in (0.1, 0.3, 0.5, 0.7, 0.9)
+    },
+    "slip under a strength that grows from the middle": ["front", "friction"],
 }
 """What the run of each case of the proof is drawn over."""
 APART = {"friction": 0.03, "pressure": 0.08, "loop": 0.01}
@@ -57,6 +62,13 @@ def test_a_run_of_the_proof_is_drawn_over_what_is_known_of_it(title, known):
     for curve in curves:
         assert np.abs(curve.up).max() > 0.0
         if curve.of == "axial force":
+            continue
+        if curve.of == "front":
+            places = problem.rubbing["support"].positions
+            slips = found.contact("support").status != 0
+            last = np.where(slips, places[:, None], 0.0).max(axis=0)
+            assert curve.up == pytest.approx(problem.instants)
+            assert np.abs(curve.across - last).max() <= 1.1 * places[1]
             continue
         if curve.of == "loop":
             loop = loop_of(settings, problem)

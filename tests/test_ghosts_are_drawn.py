@@ -87,6 +87,7 @@ OTHERS: dict[str, dict[str, Any]] = {
     "bar": {"peak": 4000.0, "friction": 0.6, "length": 1.4, "duration": 2.0},
     "strand": {"peak": 1800.0, "length": 1.4, "duration": 2.0},
     "block": {"top_normal_displacement": -1e-4, "friction": 0.6, "length": 0.13, "duration": 2.0},
+    "fault": {"shear_stress": 5e6, "friction": 0.8, "length": 800.0, "duration": 2e5},
     "incline": {"weight": 3000.0, "length": 0.13, "duration": 2.0},
     "rope": {"curvature": 0.2, "friction": 0.6, "length": 0.2, "duration": 2.0},
     "layers": {"pressure": 9e6, "friction": 0.6, "length": 0.6, "duration": 2.0},

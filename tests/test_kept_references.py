@@ -24,6 +24,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
     "block": {"elements": 12, "elements_up": 4, "instants": 11},
     "layers": {"elements": 12, "layers": 3, "instants": 11},
+    "fault": {"elements": 12, "elements_up": 6, "instants": 11},
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
     "rope": {**SMALL_ROPE, "elements": 8, "instants": 11},
 }
@@ -55,6 +56,16 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "substructures_up": 1,
     },
     "layers": {"contrast": 2.0, "pull": 1e6, "substructures": 2, "friction": 0.31},
+    "fault": {
+        "overpressure": 7e6,
+        "injection_load": "stopped",
+        "shear_stress": 4e6,
+        "normal_stress": 1.1e7,
+        "normal_profile": [[0.0, 0.9], [600.0, 1.2]],
+        "diffusivity": 0.2,
+        "young": 5e10,
+        "length": 500.0,
+    },
     "incline": {"slope": 41.0, "weight": 1001.0, "slack": 1e-4, "spring": 1e6, "height": 0.06},
     "rope": {
         "construction": "seven-wire",

@@ -17,6 +17,7 @@ IDLE: dict[str, dict[str, Any]] = {
     "strand": {"peak": 0.0},
     "block": {"top": "traction"},
     "layers": {"pressure": 0.0, "deflection": 0.0},
+    "fault": {"shear_stress": 0.0},
     "incline": {"weight": 0.0},
     "rope": {"curvature": 0.0},
 }

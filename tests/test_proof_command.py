@@ -182,9 +182,11 @@ def test_slip_in_an_infinite_body_is_nearer_on_a_finer_mesh(
         answer = Answer(problem := case.problem(), reference_of(problem))
         return max(number.deviation for number in case.numbers(answer))
 
-    fine = deviation()
-    monkeypatch.setattr(published, "ELEMENTS", 50)
-    assert deviation() > 1.4 * fine
+    coarse = deviation()
+    fine = {"elements": 192, "elements_up": 96, "substructures": 16, "substructures_up": 8}
+    monkeypatch.setattr(published, "FAULT", {**published.FAULT, **fine})
+    monkeypatch.setattr(published, "ZONE", 2 * published.ZONE)
+    assert coarse > 1.4 * deviation()
 
 
 def test_a_folder_that_cannot_be_made_is_refused(

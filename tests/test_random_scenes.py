@@ -27,6 +27,7 @@ SIZES = {
     "strand": {"elements": (2, 12), "wires": (2, 5), "instants": (1, 10)},
     "block": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "layers": {"elements": (1, 8), "elements_up": (1, 2), "layers": (2, 3), "instants": (1, 8)},
+    "fault": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "incline": {"elements": (1, 8), "elements_up": (1, 4), "instants": (1, 8)},
     "rope": {"elements": (2, 12), "layers": (1, 2), "instants": (1, 10)},
 }

@@ -44,6 +44,8 @@ def words(scene: str, changes: dict[str, Any]) -> str:
         ("block", {}, "a round rough support; it is pressed and moved to and fro at its top"),
         ("block", {"gap": "flat", "left": "clamped"}, "a flat rough support"),
         ("incline", {}, "a rough slope that rises and falls; a spring catches it"),
+        ("fault", {}, "A fluid is let in at the left end of a sheared fault, and slip spreads"),
+        ("fault", {"injection_load": "stopped"}, "A fluid is let in and stopped"),
         ("layers", {}, "Four steel layers, held at the left, are pressed together and rub; "),
         ("layers", {"layers": 2, "pull": 1e6}, "bent up and down, and pulled."),
     ],

@@ -28,6 +28,7 @@ SMALL = {
     "strand": {"elements": 12, "instants": 9},
     "block": {"elements": 12, "elements_up": 6, "instants": 9},
     "layers": {"elements": 12, "elements_up": 1, "instants": 9},
+    "fault": {"elements": 12, "elements_up": 6, "instants": 9},
     "incline": {"elements": 12, "elements_up": 6, "instants": 9},
     "rope": {**SMALL_ROPE, "elements": 10, "instants": 9},
 }

@@ -100,7 +100,7 @@ def test_a_unit_is_as_large_as_it_says(name: str, factor: float) -> None:
 def test_every_setting_has_a_unit_in_every_system(scene: str) -> None:
     for definition in CATALOGUE[scene].settings.definitions().values():
         unit = about(definition).unit
-        assert unit in LADDERS or unit in ("", "s", "°", "1/m")
+        assert unit in LADDERS or unit in ("", "s", "°", "1/m", "m^2/s")
 
 
 AT_HAND = {

@@ -17,7 +17,7 @@ from app.picture.shown import STATUS_OPEN, Look, Mesh, has_reference
 from app.views.bodies.deformed import fitting
 from app.views.drawing.scales import held
 from app.wire.orders import Watch
-from solver.scenes import CATALOGUE, discretise
+from solver.scenes import CATALOGUE, discretise, kind_of
 from solver.scenes.plane import PlaneSettings
 
 SIZES: dict[str, dict[str, Any]] = {
@@ -25,6 +25,7 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 20, "instants": 21},
     "block": {"elements": 16, "elements_up": 6, "instants": 13},
     "layers": {"elements": 16, "layers": 3, "instants": 13},
+    "fault": {"elements": 16, "elements_up": 8, "instants": 13},
     "incline": {"elements": 12, "elements_up": 6, "instants": 13},
     "rope": {**SMALL_ROPE, "elements": 10, "instants": 13},
 }
@@ -84,7 +85,7 @@ def test_what_few_views_show_is_computed_when_one_looks(
 ) -> None:
     frame, asked = told(scene).frame(), []
     assert not {"mesh", "axial", "spectra", "bases"} & set(vars(frame))
-    assert (frame.mesh is not None) == (scene in ("block", "layers", "incline"))
+    assert (frame.mesh is not None) == (kind_of(CATALOGUE[scene].settings()) == "plane")
     assert (frame.axial is not None) == (scene == "strand")
     assert (frame.fields.load is None) == (scene in ("bar", "strand"))
     monkeypatch.setattr("app.picture.spectra.friction_spectra", asked.append)

@@ -19,11 +19,12 @@ SIZES: dict[str, dict[str, Any]] = {
     "strand": {"elements": 12, "instants": 11, "substructures": 3},
     "block": {"elements": 8, "elements_up": 3, "instants": 6},
     "layers": {"elements": 12, "instants": 11, "layers": 2, "substructures": 2},
+    "fault": {"elements": 8, "elements_up": 4, "instants": 9},
     "incline": {"elements": 12, "elements_up": 4, "instants": 11},
     "rope": {**SMALL_ROPE, "elements": 8, "instants": 11},
 }
 """Of every scene, so small that hundreds of runs take seconds."""
-NEVER = {scene: {"start"} for scene in ("block", "layers", "incline")}
+NEVER = {scene: {"start"} for scene in ("block", "fault", "layers", "incline")}
 """Settings of a scene that nothing makes apply."""
 Reach = Callable[[Settings, str], list[Any]]
 

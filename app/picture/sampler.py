@@ -132,7 +132,7 @@ class Sampler:
         return replace(stand, exact=tuple(map(self._drawn, curves)))
 
     def _drawn(self, exact: ExactCurve) -> ExactCurve:
-        if exact.of == "loop":
+        if exact.up.ndim == 1:
             return replace(exact, across=exact.across[self._curve], up=exact.up[self._curve])
         rows = thinned(len(exact.across))
         return replace(exact, across=exact.across[rows], up=exact.up[np.ix_(rows, self._columns)])

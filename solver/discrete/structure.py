@@ -67,7 +67,8 @@ class Hold:
     Attributes
     ----------
     kind
-        A support is rigid and rough; a spring pulls along x, at the foot of its side.
+        A support is rigid and rough; below an image the bodies go on, turned by half a turn; a
+        spring pulls along x, at the foot of its side.
     side
         Of all bodies together.
     stretch
@@ -78,7 +79,7 @@ class Hold:
         Opening of a support that goes on beyond the bodies, at nodes along it, shape (n_nodes,), m.
     """
 
-    kind: Literal["clamp", "rollers", "support", "spring"]
+    kind: Literal["clamp", "rollers", "support", "image", "spring"]
     side: str
     stretch: tuple[float, float] = (0.0, 1.0)
     moved: Array | None = None

@@ -14,6 +14,7 @@ from solver.scenes.bar import BAR
 from solver.scenes.base import SceneSettings
 from solver.scenes.block import BLOCK
 from solver.scenes.entry import Entry, Kind
+from solver.scenes.fault import FAULT
 from solver.scenes.incline import INCLINE
 from solver.scenes.layers import LAYERS
 from solver.scenes.rope import ROPE
@@ -23,6 +24,7 @@ from solver.settings import Settings
 CATALOGUE: dict[str, Entry[Any]] = {
     "bar": BAR,
     "block": BLOCK,
+    "fault": FAULT,
     "incline": INCLINE,
     "layers": LAYERS,
     "rope": ROPE,

@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, curve, quantity, redefined
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
-from solver.discrete.stack.data import Support
+from solver.discrete.stack.data import Spring, Support
 from solver.discrete.stack.equilibrium import loss_of_equilibrium
 from solver.discrete.stack.stack import Stack
 from solver.loads import PRESETS, interpolate
@@ -21,7 +21,7 @@ from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_bodies import exact_parabola
-from solver.scenes.sides import AT_REST, LOADED_SIDES, SideSettings
+from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
 
 GAPS = ("flat", "parabola")
@@ -55,6 +55,17 @@ class BlockSettings(SideSettings):
         unit="m",
         logarithmic=True,
         applies=lambda settings: settings.gap == "parabola",
+    )
+    spring = quantity(
+        0.0,
+        (0.0, 1e18),
+        (0.0, 1e8),
+        "Stiffness of a spring that pulls the foot of the right side back as it moves to the left, "
+        "for a metre of thickness. 0: none.",
+        group="Contact",
+        title="Spring stiffness",
+        unit="N/m",
+        applies=lambda settings: not any(PRESCRIBED[settings.right]),
     )
     elements = count(
         48,
@@ -103,6 +114,11 @@ class BlockSettings(SideSettings):
     top_normal_displacement = redefined(SideSettings.param["top_normal_displacement"], -4e-5)
     top_tangential_displacement = redefined(SideSettings.param["top_tangential_displacement"], 2e-5)
 
+    @property
+    def has_spring(self) -> bool:
+        """Whether a spring holds the block."""
+        return bool(self.spring) and self.applies("spring")
+
     def _candidates(self) -> Mapping[str, str]:
         # Where both forces act, the larger stands for their sum.
         force = max("body_force_x", "body_force_y", key=lambda name: abs(getattr(self, name)))
@@ -145,6 +161,7 @@ def block(settings: BlockSettings) -> Stack:
         support=Support(gap, settings.friction),
         sides=sides,
         body_force=_body_force(settings),
+        spring=Spring(0.0, settings.spring) if settings.has_spring else None,
     )
 
 
@@ -171,6 +188,8 @@ def _words(settings: BlockSettings) -> str:
         acts += [Phrase(AT[side], listed(own))] if own else []
     if _body_force(settings) is not None:
         acts.append("loaded all through")
+    if settings.has_spring:
+        acts.append("pulled back by a spring")
     held = [side for side in LOADED_SIDES if getattr(settings, side) == "clamped"]
     acts += [Phrase(AT[side], "held") for side in held]
     does = listed(acts) if acts else "left alone"

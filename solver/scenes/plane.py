@@ -126,6 +126,11 @@ class PlaneSettings(SceneSettings):
         return 1
 
     @property
+    def opens(self) -> bool:
+        """Whether contact may open: it may, and its pressing force is an unknown."""
+        return True
+
+    @property
     def order(self) -> int:
         """Order of the elements: 1 bilinear, 2 biquadratic."""
         return 2 if self.interpolation == "biquadratic" else 1

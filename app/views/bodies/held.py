@@ -1,4 +1,4 @@
-"""What holds the bodies of a scene: supports, clamps, rollers, a spring."""
+"""What holds the bodies of a scene: supports, their own image, clamps, rollers, a spring."""
 
 from __future__ import annotations
 
@@ -22,14 +22,20 @@ WALL = 0.18
 
 def held(posed: Posed) -> Iterator[Array]:
     """Give a stroke of each."""
-    draws = {"clamp": _clamp, "rollers": _rollers, "support": _support, "spring": _spring}
+    draws = {
+        "clamp": _clamp,
+        "rollers": _rollers,
+        "support": _support,
+        "image": _image,
+        "spring": _spring,
+    }
     for hold in posed.described.holds:
         yield draws[hold.kind](posed, hold)
 
 
 def room_of(hold: Hold) -> float:
     """Give the pixels that it takes beside the bodies."""
-    return DEPTH if hold.kind == "support" else DEPTH + BEYOND
+    return DEPTH if hold.kind in ("support", "image") else DEPTH + BEYOND
 
 
 def _ends(posed: Posed, hold: Hold) -> Array:
@@ -68,6 +74,14 @@ def _support(posed: Posed, hold: Hold) -> Array:
     whole = sketch.line(np.stack([x, -gap], axis=1))
     ends = whole[[0, -1]] + [[0.0, 0.0, -2.0 * BEYOND, 0.0], [0.0, 0.0, 2.0 * BEYOND, 0.0]]
     return sketch.hatched(np.concatenate([ends[:1], whole, ends[1:]]), _count(posed, edge))
+
+
+def _image(posed: Posed, hold: Hold) -> Array:
+    """Draw the other side, which moves the other way."""
+    edge = _ends(posed, hold)
+    middle = edge.mean(axis=0)
+    away = sketch.arrow(middle, np.array([DEPTH, -DEPTH]), np.array([-DEPTH, -DEPTH]))
+    return sketch.joined([sketch.line(edge), away])
 
 
 def _spring(posed: Posed, hold: Hold) -> Array:

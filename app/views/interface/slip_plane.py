@@ -8,7 +8,7 @@ import numpy as np
 
 from app.picture.slip_plane import SlipPlane
 from app.views.drawing.colors import BLUE, FORCE, GREEN, GREY, VERMILION
-from app.views.drawing.drawing import Curve, Drawing, Marks, Plot, View, is_plane
+from app.views.drawing.drawing import Curve, Drawing, Marks, Plot, View
 from app.views.drawing.legend import Key
 from app.views.drawing.scales import Limits, held, spanned
 from app.views.scene import Scene
@@ -31,7 +31,7 @@ ALONE = "Contact alone holds the block: how far it slips does not say what press
 def applies(settings: Settings) -> bool:
     """Tell whether two points rub, whose friction follows from what presses them."""
     law = settings.values()["friction_law"]
-    return is_plane(settings) and law == COULOMB and settings.n_jumps == 2 * len(COLORS)
+    return settings.opens and law == COULOMB and settings.n_jumps == 2 * len(COLORS)
 
 
 def draw(scene: Scene, kept: tuple[Limits, Limits] | None) -> Drawing:

@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 
 from app.picture.frames import Stand
 from app.picture.shown import Bytes
-from app.views.drawing.colors import BACKWARD, FORWARD, FRONT, GREY, OPEN, PURPLE, STICK, VERMILION
+from app.views.drawing.colors import (
+    BACKWARD,
+    FORWARD,
+    FRONT,
+    GREEN,
+    GREY,
+    OPEN,
+    PURPLE,
+    STICK,
+    VERMILION,
+)
 from app.views.drawing.drawing import POSITION, Curve, Drawing, Image, Plot, View
 from app.views.drawing.legend import Key
 from app.views.drawing.scales import across, along, spanned, upright
@@ -46,6 +56,9 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
         across([float(instants[scene.instant])], x, color=VERMILION, width=3),
     ]
     ghosts = []
+    for exact in begun.known("front"):
+        curves.append(Curve(exact.across, exact.up, GREEN, 3))
+        ghosts.append(Key(GREEN, "line", "closed form"))
     if (changes := scene.frame.changes) is not None and changes[1].any():
         curves.append(_outlines(begun, changes[1], scene.length))
         ghosts.append(CHANGED)

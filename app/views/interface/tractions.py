@@ -1,10 +1,11 @@
-"""Pressure and friction along an interface at the chosen instant."""
+"""Pressure and friction along an interface of plane bodies at the chosen instant."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from app.picture.frames import DrawnFields
+from app.picture.frames import DrawnFields, Stand
+from app.picture.shown import Floats, floats
 from app.views import brought
 from app.views.drawing.colors import BLUE, GREEN, GREY, ORANGE, PURPLE
 from app.views.drawing.drawing import POSITION, Curve, Drawing, Plot, View, is_plane
@@ -12,22 +13,22 @@ from app.views.drawing.legend import Key
 from app.views.drawing.scales import Limits, along, held, spanned, upright
 from app.views.scene import Scene
 
-KEYS = (
-    Key(PURPLE, "line", "pressure p"),
-    Key(BLUE, "line", "friction"),
-    Key(GREY, "dashed", "±μp"),
-)
+PRESSURE = Key(PURPLE, "line", "pressure p")
+KEYS = Key(BLUE, "line", "friction"), Key(GREY, "dashed", "±μp")
+KNOWN = Key(BLUE, "line", "friction"), Key(GREY, "dashed", "its bound")
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
-    """Draw both tractions on the body above, with the bound that the pressure gives to friction.
+    """Draw both tractions on the body above, with the bound of friction: what the pressure gives.
+
+    Where that is given, as on a fault, no pressure is found.
 
     The scale holds all instants.
     """
     run, begun, now, instant = scene.run, scene.run.stand, scene.frame.fields, scene.instant
-    if begun.coefficient is None or now.pressure is None:
+    bound = _bound(begun, now)
+    if bound is None:
         return None
-    bound = begun.coefficient[:, None] * np.maximum(now.pressure, 0.0)
     top = float(bound.max())
     drawn = [now, scene.ghost[1]] if scene.ghost is not None else [now]
     shown = [one for each in drawn for one in (each.pressure, each.friction) if one is not None]
@@ -39,7 +40,8 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
     limits = held(kept, min(low, -top), max(high, top))
     y = spanned(*limits, label="Traction", unit="Pa")
     curves = [upright(begun.cuts, y, color=GREY, alpha=0.35, width=1)]
-    keys, past = list(KEYS), list[Key]()
+    keys = list(KNOWN) if now.pressure is None else [PRESSURE, *KEYS]
+    past = list[Key]()
     if scene.ghost is not None:
         before, fields, then = scene.ghost
         curves += _pair(before.stand.positions, fields, then, width=1.2)
@@ -52,10 +54,18 @@ def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
         keys.append(Key(ORANGE, "line", "reference"))
         curves += _pair(places, run.reference, instant, ORANGE, width=4.5)
     for sign in (1.0, -1.0):
-        curves.append(Curve(places, sign * bound[:, instant], GREY, 1.5, "dashed"))
+        limit = sign * bound[:, min(instant, bound.shape[1] - 1)]
+        curves.append(Curve(places, limit, GREY, 1.5, "dashed"))
     theirs, more = brought.along(scene)
     curves += [*_pair(places, now, instant), *theirs]
     return Drawing(along(0.0, scene.length), y, curves, keys=(*keys, *past, *more), kept=limits)
+
+
+def _bound(begun: Stand, now: DrawnFields) -> Floats | None:
+    """Give the largest friction, shape (n_positions, n_instants), or (n_positions, 1), Pa."""
+    if begun.coefficient is None or now.pressure is None:
+        return begun.bound
+    return floats(begun.coefficient[:, None] * np.maximum(now.pressure, 0.0))
 
 
 def _pair(

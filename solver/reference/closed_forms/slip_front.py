@@ -1,7 +1,9 @@
 """Slip on a straight interface in an infinite body, under a strength that is given (published).
 
 Half spaces of one material rub on each other under a uniform shear stress. The strength is given
-over the interface; where it is below that stress, a zone slips whose shape is known.
+over the interface; where it is below that stress, a zone slips whose shape is known: as long as it
+grows, the zone is a crack whose stress drops to the strength (J. R. Rice, Mathematical analysis in
+the mechanics of fracture, in Fracture II, Academic Press 1968).
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from solver.arrays import Array
 POINTS = 4000
 WIDEST = 60.0
 """Front over diffusion length up to which a solution is sought: T down to 0.006."""
+SHARES = np.cos((np.arange(500) + 0.5) * np.pi / 1000)
+"""Places in a zone, over its half-length, of one weight in integrals over ds / sqrt(a^2 - s^2)."""
 
 
 def front_over_diffusion(stress: float) -> float:
@@ -33,6 +37,58 @@ def front_over_diffusion(stress: float) -> float:
     """
     place = np.abs(np.cos((np.arange(POINTS) + 0.5) * np.pi / POINTS))
     return float(brentq(lambda factor: erfc(factor * place).mean() - stress, 0.0, WIDEST))
+
+
+def fronts(place: Array, lack: Array) -> Array:
+    """Give how far from its middle a zone slips that grows in both directions alike.
+
+    Nothing is singular at its ends: there what the stress lacks to the strength, times
+    ds / sqrt(a^2 - s^2), sums up to nothing over the zone.
+
+    Parameters
+    ----------
+    place
+        Distance from the middle, increasing from 0, shape (n,), m; linear in between.
+    lack
+        Strength less the stress far away, shape (n, n_instants), Pa; it grows along the interface,
+        and falls with time.
+
+    Returns
+    -------
+    Half-length a, shape (n_instants,), m; 0 where nothing slips, infinite where all does.
+    """
+    found = np.zeros(lack.shape[1])
+    for instant, own in enumerate(lack.T):
+
+        def left(half: float, own: Array = own) -> float:
+            return float(np.interp(half * SHARES, place, own).mean())
+
+        if own[0] < 0.0:
+            last = float(place[-1])
+            found[instant] = np.inf if left(last) < 0.0 else brentq(left, 0.0, last)
+    return found
+
+
+def stress_ahead(beyond: Array, place: Array, lack: Array, half_length: float) -> Array:
+    """Give how much such a zone adds to the stress ahead of it.
+
+    Parameters
+    ----------
+    beyond
+        Distance from the middle, at least the half-length, shape (m,), m.
+    place, lack
+        As of `fronts`, at one instant, shape (n,) each.
+    half_length
+        Of the zone, m.
+
+    Returns
+    -------
+    Shape (m,), Pa.
+    """
+    own = np.interp(half_length * SHARES, place, lack)
+    square = beyond**2 - half_length**2
+    near = square[:, None] + (half_length**2) * (1.0 - SHARES**2)
+    return np.asarray(np.sqrt(square) * beyond * (own / near).mean(axis=1))
 
 
 def slip_under_growing_strength(

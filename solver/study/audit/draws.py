@@ -17,6 +17,7 @@ from numpy.random import Generator
 
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
+from solver.scenes.base import FEWEST
 from solver.settings import Settings
 from solver.study.audit.random_loads import LOADS
 
@@ -108,12 +109,14 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
     if "elements_up" in definitions:
         _stretch(kind.across, values, definitions, generator)
     usual = {name: definition.default for name, definition in definitions.items()}
+    if "cycles" in values:
+        values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // FEWEST, 1))
     loads = LOADS.get(kind.scene)
     sizes = loads({**usual, **values}, generator) if loads is not None else {}
     for name, size in sizes.items():
         if isinstance(definitions[name], CurveParameter):
             if generator.random() < CHANGED:
-                values[name] = _path(size, values.get("duration", 1.0), generator)
+                values[name] = _path(size, {**usual, **values}["duration"], generator)
         else:
             values[name] = size
     return values

@@ -107,12 +107,26 @@ def rope_loads(values: Values, generator: Generator) -> Sizes:
     return {"tension": tension, "tension_load": tension, "curvature": bent, "load": bent}
 
 
+def fault_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw what presses, shears and loosens a fault: the fluid presses less than the rest does."""
+    pressing = values["young"] * 10.0 ** generator.uniform(-6.0, -3.0)
+    fluid = float(pressing * generator.uniform(0.0, 1.0))
+    stress = values["friction"] * pressing * _share(generator)
+    return {
+        "normal_stress": pressing,
+        "overpressure": fluid,
+        "injection_load": fluid,
+        "shear_stress": stress,
+    }
+
+
 LOADS: dict[str, Callable[[Values, Generator], Sizes]] = {
     "bar": bar_loads,
     "strand": strand_loads,
     "block": block_loads,
     "layers": layers_loads,
     "rope": rope_loads,
+    "fault": fault_loads,
 }
 """Sizes of loads by name, which depend on the other values; of curves, those of their tables. A
 scene without an entry has its loads drawn by their definitions alone."""

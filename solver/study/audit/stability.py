@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from solver.study.audit.audit import Audited, Trial
 from solver.study.audit.bar_cases import bar_cases
 from solver.study.audit.cases import METHODS, Case
+from solver.study.audit.fault_cases import fault_cases
 from solver.study.audit.plane_cases import plane_cases
 from solver.study.audit.report import AuditReport
 from solver.study.audit.rope_cases import rope_cases
@@ -48,7 +49,7 @@ def cases_of(scene: str | None = None, *, quick: bool = False) -> list[Case]:
     """Give the cases of one scene, or of all, and with `quick` only the few for a short check."""
     return [
         case
-        for case in (*bar_cases(), *strand_cases(), *rope_cases(), *plane_cases())
+        for case in (*bar_cases(), *strand_cases(), *rope_cases(), *fault_cases(), *plane_cases())
         if scene in (None, case.scene) and (case.quick or not quick)
     ]
 

@@ -33,9 +33,9 @@ def _on_rods(settings: Settings) -> bool:
     return kind_of(settings) != "plane"
 
 
-def _in_the_plane(settings: Settings) -> bool:
+def _may_open(settings: Settings) -> bool:
     """Tell where the pressing force is an unknown."""
-    return not _on_rods(settings)
+    return settings.opens
 
 
 def _over_a_displacement(settings: Settings) -> bool:
@@ -168,21 +168,21 @@ _ALL = (
         "Largest pressing force, all points",
         "N",
         measures.peak_pressing,
-        applies=_in_the_plane,
+        applies=_may_open,
     ),
     Quantity(
         "peak_pressure",
         "Largest pressure",
         "Pa",
         contact_measures.peak_pressure,
-        applies=_in_the_plane,
+        applies=_may_open,
     ),
     Quantity(
         "contact_width",
         "Largest length in contact",
         "m",
         contact_measures.contact_width,
-        applies=_in_the_plane,
+        applies=_may_open,
     ),
     *OF_STRESS,
     Quantity(

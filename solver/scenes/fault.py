@@ -1,0 +1,262 @@
+"""A fault into which a fluid is let in: it takes friction away, and slip spreads from there.
+
+The strength of the fault is mu (sigma - p), with p the pressure of the fluid, which spreads along
+it by diffusion (solver/README.md, 17).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import ClassVar
+
+import numpy as np
+
+import solver.scenes.shared as shared
+from solver.arrays import Array
+from solver.definitions import Pairs, SettingError, curve, quantity, redefined
+from solver.discrete.problem import Problem
+from solver.discrete.stack.data import Support
+from solver.discrete.stack.fault import Fault, sheared
+from solver.laws import Coulomb
+from solver.loads import INJECTIONS, instants_of, interpolate
+from solver.phrases import Amount, Phrase, Sentence
+from solver.reference.closed_forms.diffusion import spread
+from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.reference.closed_forms.slip_front import fronts, stress_ahead
+from solver.scenes.entry import Emblem, Entry
+from solver.scenes.plane import PlaneSettings
+from solver.scenes.words import acting
+
+PROFILES = {
+    "uniform": ((0.0, 1.0), (1.0, 1.0)),
+    "rising": ((0.0, 1.0), (1.0, 2.0)),
+    "barrier": ((0.0, 1.0), (0.15, 1.0), (0.16, 5.0), (1.0, 5.0)),
+}
+"""Factors over shares of the length."""
+FINE = 4000
+"""Intervals along the fault between which the strength of the closed form is linear."""
+INFINITE = 0.3
+"""Largest front, over the sides of the body, that is still that of an infinite one: to 2 %
+(tests/test_a_fluid_drives_slip.py)."""
+ROUND = 1e-9
+"""Share of the strength that rounding adds to it or takes away."""
+
+
+class FaultSettings(PlaneSettings):
+    """Settings of the fault; by default the fluid's pressure stays, and the front runs on."""
+
+    scene = "fault"
+    LOADS: ClassVar = ("overpressure", "shear_stress")
+    PATH = "injection_load"
+    SHAPES: ClassVar = INJECTIONS
+
+    overpressure = quantity(
+        8e6,
+        (0.0, 1e15),
+        (0.0, 1e7),
+        "Pressure p of the fluid where it is let in, above what was there before.",
+        group="Load",
+        title="Pressure of the fluid",
+        unit="Pa",
+        applies=lambda settings: isinstance(settings.injection_load, str),
+    )
+    injection_load = curve(
+        "steady",
+        INJECTIONS,
+        "time",
+        "pressure",
+        ("s", "Pa"),
+        "Pressure there over time. stopped: no more after half of the interval; what has spread "
+        "goes on. rising: from nothing. pulses: down and up again, six times. Or points (s, Pa).",
+        group="Load",
+        title="Path of the fluid",
+    )
+    shear_stress = quantity(
+        3.6e6,
+        (-1e15, 1e15),
+        (0.0, 1e7),
+        "Shear stress τ far from the fault, from the beginning.",
+        group="Load",
+        title="Shear stress τ",
+        unit="Pa",
+    )
+    duration = quantity(
+        86400.0,
+        (1e-9, 1e12),
+        (3600.0, 2.6e6),
+        "Length of the time interval. Friction does not feel the rate, but a fluid needs time: it "
+        "spreads over sqrt(4 α t).",
+        group="Load",
+        title="Duration T",
+        unit="s",
+        logarithmic=True,
+    )
+    normal_stress = quantity(
+        1e7,
+        (0.0, 1e15),
+        (1e6, 1e8),
+        "Pressure σ between both sides of the fault, less that of the fluid there before.",
+        group="Contact",
+        title="Normal stress σ",
+        unit="Pa",
+        logarithmic=True,
+    )
+    normal_profile = curve(
+        "uniform",
+        PROFILES,
+        "position",
+        "factor",
+        ("m", ""),
+        "Factor on σ along the fault: a preset, or points (m, factor).",
+        group="Contact",
+        title="σ along the fault",
+    )
+    diffusivity = quantity(
+        0.1,
+        (1e-15, 1e9),
+        (1e-3, 10.0),
+        "Hydraulic diffusivity α along the fault.",
+        group="Contact",
+        title="Diffusivity α",
+        unit="m^2/s",
+        logarithmic=True,
+    )
+    friction = redefined(PlaneSettings.param["friction"], 0.6)
+    length = shared.size(
+        600.0, (10.0, 1e4), "Length", "Length of the body to the right of the well.", "Body"
+    )
+    height = shared.size(
+        600.0, (10.0, 1e4), "Height", "Height of the body above the fault.", "Body"
+    )
+    young = shared.young("Body", 6e10, (1e9, 1e12))
+    poisson = redefined(PlaneSettings.param["poisson"], 0.25)
+
+    @property
+    def opens(self) -> bool:
+        """Whether contact may open: a fault stays closed."""
+        return False
+
+    @property
+    def n_jumps(self) -> int:
+        """Components of all contacts: those along the fault."""
+        return self.nodes[0]
+
+    @property
+    def loop_is_over_displacement(self) -> bool:
+        """Whether the loop is that of what drives: the fluid does."""
+        return False
+
+    def _candidates(self) -> Mapping[str, str]:
+        return {"left x": "overpressure", "top x": "shear_stress"}
+
+    def size_of(self, path: str) -> float:
+        """Give the largest pressure of the fluid that a preset reaches."""
+        return float(self.overpressure)
+
+    def points(self, name: str) -> Pairs:
+        """Give points of the preset that a curve setting has at present."""
+        if name != "normal_profile":
+            return super().points(name)
+        return tuple((x * self.length, factor) for x, factor in PROFILES[str(self.normal_profile)])
+
+    def pressing(self, place: Array) -> Array:
+        """Give the normal stress before any fluid is let in, shape (n_places,), Pa."""
+        own = self.normal_profile
+        given = self.points("normal_profile") if isinstance(own, str) else own
+        return np.asarray(self.normal_stress * interpolate(given, place))
+
+    def fluid(self, place: Array) -> Array:
+        """Give the pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
+        instants = instants_of(self.duration, max(self.instants, 2))
+        given = self._along("injection_load", instants)
+        return spread(place, instants, given, self.diffusivity)[:, -self.instants :]
+
+    def strength(self, place: Array) -> Array:
+        """Give the largest friction per area, shape (n_places, n_instants), Pa."""
+        return np.asarray(self.friction * (self.pressing(place)[:, None] - self.fluid(place)))
+
+    def check_together(self) -> None:
+        """Refuse a fluid that would open the fault, or that sucks."""
+        super().check_together()
+        place = np.linspace(0.0, self.length, self.nodes[0])
+        pressing, fluid = self.pressing(place), self.fluid(place)
+        if pressing.min() < 0.0:
+            raise SettingError(
+                "normal_profile",
+                self.normal_profile,
+                "factors of at least 0",
+                "raise the negative factor",
+            )
+        spare = pressing - fluid.max(axis=1)
+        worst = int(spare.argmin())
+        if spare[worst] < 0.0:
+            name = "overpressure" if isinstance(self.injection_load, str) else "injection_load"
+            raise SettingError(
+                name,
+                getattr(self, name),
+                Phrase("at most the normal stress, {}", Amount(float(pressing[worst]), "Pa")),
+                "it would open the fault: lower the pressure of the fluid, or press more",
+            )
+
+
+def fault(settings: FaultSettings) -> Fault:
+    """Make the quarter of the body that the settings describe; one metre thick."""
+    place = np.linspace(0.0, settings.length, settings.nodes[0])
+    modulus = 0.5 * settings.young / (1.0 + settings.poisson)
+    stress, height = settings.shear_stress, settings.height
+    body = settings.stack(
+        support=Support(np.zeros(len(place)), settings.friction, settings.strength(place)),
+        sides=sheared(stress, modulus, height, settings.instants),
+    )
+    return Fault(body, stress, settings.path("injection_load"))
+
+
+def _words(settings: FaultSettings) -> str:
+    path = settings.path("injection_load")
+    what = "a fluid is {} at the left end of a sheared fault, and slip spreads; a quarter is seen"
+    return Sentence(what, acting(path, "let in", "sucked out", back="{} and stopped"))
+
+
+def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:
+    """Give the front of slip and the friction, as long as slip spreads in an infinite body.
+
+    It does where strength falls with time, everywhere, and grows away from the well.
+    """
+    stress = settings.shear_stress
+    place = np.linspace(0.0, settings.length, FINE + 1)
+    lack = settings.strength(place) - stress
+    small = ROUND * float(np.abs(lack).max())
+    spreads = np.all(np.diff(lack, axis=1) <= small) and np.all(np.diff(lack, axis=0) >= -small)
+    if settings.law() != Coulomb() or not spreads or stress <= 0.0:
+        return
+    front = fronts(place, lack)
+    if not front.any() or front.max() > INFINITE * min(settings.length, settings.height):
+        return
+    yield ExactCurve("front", front, settings.times())
+    nodes = problem.rubbing["support"].positions
+    friction = np.full((len(nodes), settings.instants), stress)
+    strength = settings.strength(nodes)
+    for instant in np.flatnonzero(front):
+        ahead = nodes > front[instant]
+        added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))
+        friction[ahead, instant] += added
+        friction[~ahead, instant] = strength[~ahead, instant]
+    yield ExactCurve("friction", nodes, -friction)
+
+
+FAULT = Entry(
+    title="Fault driven by a fluid",
+    source="R. C. Viesca, J. Fluid Mech. 928, A29, 2021",
+    emblem=Emblem(
+        ground="M4 25H44M30 29H18M21 27L18 29L21 31",
+        body="M4 8H44V24H4Z",
+        load="M18 4H30M27 2L30 4L27 6M4 31V26M1 28L4 25L7 28M6 22H14M11 20L14 22L11 24",
+    ),
+    settings=FaultSettings,
+    kind="plane",
+    structure=fault,
+    words=_words,
+    sizes=shared.PLANE_SIZES,
+    grows=shared.PLANE_GROWS,
+    exact=lambda settings, problem, found: _exact(settings, problem),
+)

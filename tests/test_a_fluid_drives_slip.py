@@ -1,0 +1,154 @@
+"""A fluid that spreads along a fault takes friction away: pressure, front, and what is refused."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import solve_banded
+from scipy.special import erfc
+
+from solver.arrays import Array
+from solver.definitions import SettingError
+from solver.discrete.problem import Problem
+from solver.reference.choice import reference_of
+from solver.reference.closed_forms.diffusion import spread
+from solver.reference.closed_forms.slip_front import fronts, stress_ahead
+from solver.reference.solution import Reference
+from solver.scenes import discretise, exact_of
+from solver.scenes.fault import FaultSettings
+
+SMALL = {"elements": 48, "elements_up": 24, "instants": 31}
+
+
+def solved(**changes: Any) -> tuple[FaultSettings, Problem, Reference]:
+    settings = FaultSettings.checked({**SMALL, **changes})
+    problem = discretise(settings)
+    return settings, problem, reference_of(problem)
+
+
+def reached(problem: Problem, found: Reference) -> Array:
+    """Give the farthest place that slips at every instant, m."""
+    slips = found.contact("support").status == 1
+    return np.where(slips, problem.rubbing["support"].positions[:, None], 0.0).max(axis=0)
+
+
+def test_pressure_spreads_as_diffusion_has_it_whatever_is_given_at_the_well() -> None:
+    """Crank and Nicolson's steps on a fine line, for a pressure that jumps, rises and falls."""
+    length, parts, step, rate = 12.0, 600, 0.05, 0.7
+    place, instants = np.linspace(0.0, length, parts + 1), np.arange(41) * step
+    given = np.where(instants < 1.0, 1.0 + instants, 2.0 - 1.2 * (instants - 1.0))
+    found = spread(place, instants, given, rate)
+    many = 40
+    share = 0.5 * rate * step / many / place[1] ** 2
+    bands = np.zeros((3, parts - 1))
+    bands[0, 1:] = bands[2, :-1] = -share
+    bands[1] = 1.0 + 2.0 * share
+    now = np.zeros(parts + 1)
+    for instant in range(1, len(instants)):
+        for part in range(1, many + 1):
+            now[0] = np.interp((part - 1) / many, [0, 1], given[instant - 1 : instant + 1])
+            right = now[1:-1] + share * (now[2:] - 2.0 * now[1:-1] + now[:-2])
+            now[0] = np.interp(part / many, [0, 1], given[instant - 1 : instant + 1])
+            right[0] += share * now[0]
+            now[1:-1] = solve_banded((1, 1), bands, right)
+        if instant > 3:
+            assert now == pytest.approx(found[:, instant], abs=3e-4)
+
+
+def test_before_a_fluid_has_had_time_there_is_none_and_far_away_there_never_is() -> None:
+    found = spread(np.array([0.0, 1.0, 1e12]), np.array([0.0, 1.0]), np.array([2.0, 2.0]), 1.0)
+    assert found[:, 0] == pytest.approx(0.0)
+    assert found[:, 1] == pytest.approx([2.0, 2.0 * erfc(0.5), 0.0])
+
+
+def test_stress_ahead_of_a_zone_holds_the_balance_of_forces() -> None:
+    """What a zone no longer carries its surroundings do: the sum over the whole line is nothing."""
+    place = np.linspace(0.0, 4.0, 4001)
+    lack = (0.5 - erfc(place))[:, None]
+    (front,) = fronts(place, lack)
+    angle = (np.arange(4000) + 0.5) * np.pi / 8000
+    within = front * np.sum(np.interp(front * np.sin(angle), place, lack[:, 0]) * np.cos(angle))
+    # Beyond, x = a / s, so that all of it is seen, and ds / s^2 of it is dx.
+    share = (np.arange(20000) + 0.5) / 20000
+    beyond = front * np.mean(stress_ahead(front / share, place, lack[:, 0], front) / share**2)
+    assert within * np.pi / 8000 + beyond == pytest.approx(0.0, abs=2e-4)
+
+
+@pytest.mark.parametrize("changes", [{"young": 1e9}, {"poisson": 0.0}, {"plane": "stress"}])
+def test_the_front_does_not_depend_on_the_elastic_constants(changes: dict[str, Any]) -> None:
+    """As published: only slip does. The width of an element is what it may differ by."""
+    _, problem, usual = solved()
+    _, _, other = solved(**changes)
+    apart = np.abs(reached(problem, usual) - reached(problem, other))
+    assert apart.max() <= 1.001 * problem.rubbing["support"].positions[1]
+    assert reached(problem, usual)[-1] > 100.0
+
+
+def test_the_front_does_not_depend_on_the_size_of_the_body() -> None:
+    _, problem, usual = solved()
+    larger = {"length": 1200.0, "height": 1200.0, "elements": 96, "elements_up": 48}
+    _, other, found = solved(**larger)
+    apart = np.abs(reached(problem, usual) - reached(other, found))
+    assert apart.max() <= 1.001 * problem.rubbing["support"].positions[1]
+
+
+def test_slip_goes_on_after_the_fluid_is_stopped() -> None:
+    """What has spread still does: the front runs on, while the well sticks again."""
+    settings, problem, found = solved(injection_load="stopped", shear_stress=5e6, instants=61)
+    stopped = int(np.argmax(settings.path("injection_load") == 0.0))
+    front = reached(problem, found)
+    assert front.max() > front[stopped - 1]
+    after = found.contact("support").status[:, stopped + 1]
+    assert after[0] == 0
+    assert after.any()
+
+
+def test_a_barrier_stops_the_front() -> None:
+    settings, problem, found = solved(normal_profile="barrier", duration=3e5)
+    _, _, free = solved(duration=3e5)
+    end = 0.16 * settings.length
+    assert reached(problem, found).max() <= end < 2.0 * end < reached(problem, free).max()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"injection_load": "stopped"},
+        {"injection_load": "pulses"},
+        {"friction_law": "slip-dependent"},
+        {"duration": 1e6},
+        {"overpressure": 0.0},
+        {"shear_stress": -3.6e6},
+    ],
+    ids=lambda changes: str(changes),
+)
+def test_no_closed_form_is_drawn_where_none_holds(changes: dict[str, Any]) -> None:
+    settings = FaultSettings.checked({**SMALL, **changes})
+    assert exact_of(settings, discretise(settings)) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "name", "words"),
+    [
+        ({"overpressure": 1.1e7}, "overpressure", "normal stress"),
+        ({"injection_load": [[0.0, 1.1e7]]}, "injection_load", "normal stress"),
+        ({"normal_profile": [[0.0, 1.0], [600.0, -1.0]]}, "normal_profile", "factors of at least"),
+        ({"normal_profile": [[0.0, 1.0], [5.0, 0.1]]}, "overpressure", "normal stress"),
+        ({"diffusivity": 0.0}, "diffusivity", "above 0"),
+        ({"overpressure": -1.0}, "overpressure", "0"),
+    ],
+)
+def test_what_would_open_the_fault_is_refused(
+    changes: dict[str, Any], name: str, words: str
+) -> None:
+    with pytest.raises(SettingError) as refused:
+        FaultSettings.checked(changes)
+    assert name in str(refused.value)
+    assert words in str(refused.value)
+
+
+def test_a_single_instant_is_that_at_the_end() -> None:
+    many, one = solved(instants=2), solved(instants=1)
+    assert one[2].friction_force[:, -1] == pytest.approx(many[2].friction_force[:, -1], rel=1e-6)
