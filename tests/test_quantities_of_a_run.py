@@ -39,6 +39,7 @@ def test_the_end_of_the_bar_moves_as_the_closed_form_says(peak: float) -> None:
     exact = peak**2 / (2.0 * STIFFNESS * BOUND)
     assert taken("end_displacement", run) == pytest.approx(exact, rel=1e-6)
     assert taken("peak_displacement", run) == pytest.approx(exact, rel=1e-6)
+    assert taken("peak_slip", run) == pytest.approx(exact, rel=1e-6)
 
 
 @pytest.mark.parametrize("peak", [600.0, 900.0, 1200.0])

@@ -213,6 +213,8 @@ def fault(settings: FaultSettings) -> Fault:
 
 def _words(settings: FaultSettings) -> str:
     path = settings.path("injection_load")
+    if not path.any():
+        return Sentence("a fault is sheared; a quarter of it is seen")
     what = "a fluid is {} at the left end of a sheared fault, and slip spreads; a quarter is seen"
     return Sentence(what, acting(path, "let in", "sucked out", back="{} and stopped"))
 

@@ -46,7 +46,7 @@ FAULT = {
 }
 ZONE, STRENGTH, DROP = 10, FRICTION * PRESSED, 6e5
 """Elements that slip under a strength that grows; that in the middle, and what it grows by, Pa."""
-STUCK = 1e3
+STUCK = 2.0
 """Strength of what must not slip, over that of what may."""
 
 

@@ -93,6 +93,12 @@ def peak_displacement(run: FinishedRun, at: float | None) -> float:
     return float(np.linalg.norm(inside.displacement(moved, slice(None)), axis=1).max())
 
 
+def peak_slip(run: FinishedRun, at: float | None) -> float:
+    """Give the farthest that any point in contact has come along what it rubs on, m."""
+    contacts = map(run.iterate.contact, run.problem.rubbing)
+    return float(max(np.abs(one.slip * (one.status != OPEN)).max() for one in contacts))
+
+
 def peak_friction(run: FinishedRun, at: float | None) -> float:
     """Give the largest sum over all points of the sizes of the friction force, N."""
     return float(np.abs(run.iterate.friction_force).sum(axis=0).max())

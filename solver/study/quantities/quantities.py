@@ -162,6 +162,7 @@ _ALL = (
     ),
     *OF_CLIPS,
     Quantity("peak_displacement", "Largest displacement", "m", measures.peak_displacement),
+    Quantity("peak_slip", "Largest slip", "m", measures.peak_slip),
     Quantity("peak_friction", "Largest friction, all points", "N", measures.peak_friction),
     Quantity(
         "peak_pressing",
