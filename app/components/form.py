@@ -42,7 +42,7 @@ h4 { margin: 14px 0 2px; font-size: 12px; font-weight: 400; letter-spacing: 0.08
 div[title] { margin: 6px 0; }
 label { display: block; }
 .scenes { display: grid; grid-template-columns: repeat(auto-fit, minmax(40px, 1fr)); gap: 1px; }
-.scenes label { position: relative; padding: 2px 1px 1px; text-align: center; font-size: 12px;
+.scenes label { position: relative; padding: 2px 1px 1px; text-align: center; font-size: 11px;
   text-transform: capitalize; border: 1px solid transparent; border-radius: 6px; }
 .scenes label:hover { background: color-mix(in srgb, currentColor 8%, transparent); }
 .scenes label:has(:checked) { border-color: var(--accent); font-weight: 600;

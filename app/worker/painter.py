@@ -12,7 +12,7 @@ import numpy as np
 from app.languages.language import Language
 from app.picture.glossary import ENGLISH
 from app.picture.shown import Look
-from app.picture.units import titled
+from app.picture.units import rounded, titled
 from app.views.catalogue import fitting
 from app.views.drawing.colors import VERMILION
 from app.views.drawing.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
@@ -86,14 +86,14 @@ def caption(scene: Scene) -> str:
     """Say of which moment of which run a picture is."""
     time, settings = scene.run.stand.instants[scene.instant], scene.run.settings
     called = scene.run.called(scene.frame.iteration)
-    return Phrase("{}, t = {} s, {}", settings.scene, f"{time:.3g}", called)
+    return Phrase("{}, t = {} s, {}", settings.scene, rounded(time), called)
 
 
 def sliders(facts: Facts, say: Language = ENGLISH) -> dict[str, Attributes]:
     """Give where the sliders over iterations and instants stand, and what they say."""
     at, done, searched = facts.iteration, max(facts.done, 1), max(facts.searched, 1)
     said = say(Phrase("{} of {}", at, searched) if at <= searched else "answer")
-    last, time = max(facts.instants - 1, 1), f"t = {facts.time:.3g} s"
+    last, time = max(facts.instants - 1, 1), f"t = {rounded(facts.time)} s"
     return {
         ITERATION: {"end": max(done, 2), "shown": at, "text": said},
         INSTANT: {"end": last, "shown": facts.instant, "text": time},
