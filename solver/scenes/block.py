@@ -20,7 +20,7 @@ from solver.phrases import Phrase, Sentence, plain
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
-from solver.scenes.exact_bodies import exact_parabola
+from solver.scenes.exact_bodies import exact_on_spring, exact_parabola
 from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
 
@@ -205,10 +205,11 @@ def _body_force(settings: BlockSettings) -> Array | None:
 def _exact(
     settings: BlockSettings, problem: Problem, found: LoopFields | None
 ) -> Iterable[ExactCurve]:
-    """Give tractions on a parabola, once there are forces for which to give them."""
-    if found is None or settings.gap != "parabola":
-        return ()
-    return exact_parabola(block(settings), settings.radius, problem, found)
+    """Give tractions on a parabola, once there are forces for them, or the slide on a spring."""
+    body = block(settings)
+    if settings.gap != "parabola":
+        return exact_on_spring(body)
+    return () if found is None else exact_parabola(body, settings.radius, problem, found)
 
 
 BLOCK = Entry(

@@ -9,6 +9,8 @@ import numpy as np
 from solver.arrays import Array
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
+from solver.discrete.stack.equilibrium import wrench
+from solver.discrete.stack.rest import rigid_slide
 from solver.discrete.stack.stack import Stack
 from solver.laws import Coulomb
 from solver.reference.closed_forms.cantilever import cantilever
@@ -20,6 +22,8 @@ SMALL = 0.12
 of a half-plane: to some 2 % (tests/test_hertz_and_cattaneo.py)."""
 UNCOUPLED = 0.49
 """Poisson's ratio from which on pressure and friction leave each other alone on a rigid support."""
+RIGID = 50.0
+"""Slide of a body over its largest deformation, from which on that is left out: 2 % of it."""
 STEADY = 0.01
 """Change of the pressing force, as a share, that is none."""
 
@@ -67,6 +71,23 @@ def _begins(shear: Array, total: Array, friction: float) -> int | None:
         return None
     first = max(int(acts[0]) - 1, 0)
     return first if np.ptp(total[first:]) <= STEADY * total.max() else None
+
+
+def exact_on_spring(body: Stack) -> Iterator[ExactCurve]:
+    """Give the shear force of a block that a spring pulls back, where it slides like a rigid one.
+
+    It does where it slides much farther than it is deformed, and no side holds it.
+    """
+    held = any(one.prescribed for side in body.sides.values() for one in (side.x, side.y))
+    if held or body.spring is None or body.friction_law != Coulomb():
+        return
+    slide = rigid_slide(body, body.spring)
+    pushed, pressed, _ = wrench(body)
+    stress = max(np.abs(pushed).max() / body.height, np.abs(pressed).max() / body.length)
+    if np.abs(slide).max() < RIGID * stress / body.young * max(body.length, body.height):
+        return
+    pull = body.spring.stiffness * np.maximum(-slide - body.spring.slack, 0.0)
+    yield ExactCurve("loop", slide, pushed + pull)
 
 
 def exact_slope(body: Stack) -> Iterator[ExactCurve]:

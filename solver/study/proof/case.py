@@ -68,7 +68,7 @@ class KnownCase:
     numbers
         What is known of it, beside what an iterate or a reference has.
     address
-        What follows the page's address to open this run there; empty for what no scene shows.
+        What follows the page's address to open this run there.
     part
         Of the report.
     """
@@ -80,8 +80,8 @@ class KnownCase:
     problem: Callable[[], Problem]
     method: Callable[[], Latin]
     numbers: Callable[[Answer], Iterable[KnownNumber]]
-    address: str = ""
-    part: ProofPart = ProofPart.CLOSED_FORMS
+    address: str
+    part: ProofPart
 
 
 @dataclass(frozen=True)

@@ -61,10 +61,8 @@ def _lines(rows: Iterable[HeldNumber], page: str) -> Iterable[str]:
 
 
 def _said(case: KnownCase, page: str) -> str:
-    title = f"<b>{escape(case.title)}</b>"
-    if case.address:
-        title = f'<a class="run" href="{escape(page + case.address)}">{title}</a>'
-    return f"{title} · {escape(case.mesh)}<br><small>{escape(case.source)}</small>"
+    link = f'<a class="run" href="{escape(page + case.address)}"><b>{escape(case.title)}</b></a>'
+    return f"{link} · {escape(case.mesh)}<br><small>{escape(case.source)}</small>"
 
 
 def _cells(rows: Sequence[HeldNumber]) -> str:
