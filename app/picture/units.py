@@ -18,9 +18,10 @@ COOKIE = "slipfront-units"
 """By which a browser keeps the choice: the first picture has it already."""
 PREFIXES = {"n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^3", "N·m", "N·m/m", "rad")
-"""Units that take a prefix; all others stand as they are, but for the area."""
+"""Units that take a prefix; all others stand as they are, but for area and time."""
 AREA = "m^2"
-KNOWN = (*PREFIXED, AREA)
+TIME = "s"
+KNOWN = (*PREFIXED, AREA, TIME)
 OF_MM = {
     "m": ("mm", 1e-3),
     AREA: ("mm²", 1e-6),
@@ -31,7 +32,9 @@ OF_MM = {
     "N·m": ("N·mm", 1e-3),
     "N·m/m": ("N·mm/mm", 1.0),
 }
-LATER = {"GPa": 10.0, "GN/m³": 10.0}
+NAMED = {AREA: {"mm²": 1e-6, "m²": 1.0}, TIME: {"s": 1.0, "h": 3600.0, "d": 86400.0}}
+"""Of units without a prefix."""
+LATER = {"GPa": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
 """Where a step begins that is not taken from 1 on: a stress of 3000 MPa is told as that. Zero has
 the unit in which its slider ends: of a force per volume 1000 MN/m³, and weights are small."""
 EXPONENTS = str.maketrans({"^": "", "2": "²", "3": "³"})
@@ -64,7 +67,7 @@ def steps(unit: str, units: str = BY_SIZE) -> list[UnitStep]:
         return [UnitStep(*OF_MM[unit])] if unit in OF_MM else plain
     if units == SI or unit not in KNOWN:
         return plain
-    named = {"mm²": 1e-6, "m²": 1.0} if unit == AREA else _prefixed(plain[0].name)
+    named = NAMED.get(unit) or _prefixed(plain[0].name)
     found = [UnitStep(name, size, size * LATER.get(name, 1.0)) for name, size in named.items()]
     return [found[0]._replace(least=0.0), *found[1:]]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.picture.shown import Floats, floats
-from app.picture.units import rounded
+from app.picture.units import TIME, measured
 from app.views.drawing.colors import VERMILION
 from app.views.drawing.drawing import Curve
 from app.views.drawing.legend import Key
@@ -27,7 +27,7 @@ def along(scene: Scene) -> tuple[list[Curve], list[Key]]:
     if len(x) == 1:
         half = 0.5 * SHORT * scene.length
         x, values = np.array([x[0] - half, x[0] + half]), np.repeat(values, 2)
-    name = Phrase("{}, t = {} s", brought.source, rounded(time))
+    name = Phrase("{}, t = {}", brought.source, measured(time, TIME, scene.look.units))
     return [Curve(x, values, VERMILION, 2, "dashed")], [Key(VERMILION, "dashed", name)]
 
 

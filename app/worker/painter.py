@@ -12,7 +12,7 @@ import numpy as np
 from app.languages.language import Language
 from app.picture.glossary import ENGLISH
 from app.picture.shown import Look
-from app.picture.units import rounded, titled
+from app.picture.units import BY_SIZE, TIME, measured, titled
 from app.views.catalogue import fitting
 from app.views.drawing.colors import VERMILION
 from app.views.drawing.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
@@ -44,7 +44,10 @@ class Painter:
         """Draw every view that is seen; give what has changed of the page."""
         say = scene.look.say
         seen_now, said = {"caption": say(caption(scene))}, []
-        models: dict[str, Attributes] = {TAKE_AWAY: seen_now, **sliders(facts, say)}
+        models: dict[str, Attributes] = {
+            TAKE_AWAY: seen_now,
+            **sliders(facts, say, scene.look.units),
+        }
         if scene.look.readings:
             models["lesson"] = {"values": values(scene)}
         for view, drawing in self._drawings(scene):
@@ -86,14 +89,15 @@ def caption(scene: Scene) -> str:
     """Say of which moment of which run a picture is."""
     time, settings = scene.run.stand.instants[scene.instant], scene.run.settings
     called = scene.run.called(scene.frame.iteration)
-    return Phrase("{}, t = {} s, {}", settings.scene, rounded(time), called)
+    at = measured(float(time), TIME, scene.look.units)
+    return Phrase("{}, t = {}, {}", settings.scene, at, called)
 
 
-def sliders(facts: Facts, say: Language = ENGLISH) -> dict[str, Attributes]:
+def sliders(facts: Facts, say: Language = ENGLISH, units: str = BY_SIZE) -> dict[str, Attributes]:
     """Give where the sliders over iterations and instants stand, and what they say."""
     at, done, searched = facts.iteration, max(facts.done, 1), max(facts.searched, 1)
     said = say(Phrase("{} of {}", at, searched) if at <= searched else "answer")
-    last, time = max(facts.instants - 1, 1), f"t = {rounded(facts.time)} s"
+    last, time = max(facts.instants - 1, 1), f"t = {measured(facts.time, TIME, units)}"
     return {
         ITERATION: {"end": max(done, 2), "shown": at, "text": said},
         INSTANT: {"end": last, "shown": facts.instant, "text": time},

@@ -22,6 +22,8 @@ from solver.settings import Settings
 
 POSITION = "Position x"
 """Title of axes along the bodies, m."""
+TIME = "Time t"
+"""Title of axes over time, s."""
 
 
 @dataclass(frozen=True, eq=False)

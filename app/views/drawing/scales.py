@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from app.views.drawing.drawing import POSITION, Axis, Curve
+from app.views.drawing.drawing import POSITION, TIME, Axis, Curve
 
 
 def decades(values: ArrayLike, floor: float) -> tuple[float, float]:
@@ -88,6 +88,11 @@ def spanned(low: float, high: float, **options: Any) -> Axis:
 def along(low: float, high: float) -> Axis:
     """Give an axis along the bodies, m."""
     return spanned(low, high, label=POSITION, unit="m")
+
+
+def over_time(low: float, high: float) -> Axis:
+    """Give an axis over time, s."""
+    return spanned(low, high, label=TIME, unit="s")
 
 
 def in_decades(low: float, high: float) -> Axis:

@@ -20,9 +20,9 @@ from app.views.drawing.colors import (
     STICK,
     VERMILION,
 )
-from app.views.drawing.drawing import POSITION, Curve, Drawing, Image, Plot, View
+from app.views.drawing.drawing import POSITION, TIME, Curve, Drawing, Image, Plot, View
 from app.views.drawing.legend import Key
-from app.views.drawing.scales import across, along, spanned, upright
+from app.views.drawing.scales import across, along, over_time, upright
 from app.views.scene import Scene
 from solver.arrays import Array
 
@@ -43,7 +43,7 @@ def draw(scene: Scene, _kept: Any) -> Drawing:
     first_x, last_x = float(places[0]), float(places[-1])
     first_t, last_t = float(instants[0]), float(instants[-1])
     x = along(0.0, scene.length)
-    y = spanned(*_ends(scene, first_t - half_t, last_t + half_t))
+    y = over_time(*_ends(scene, first_t - half_t, last_t + half_t))
     image = Image(
         np.ascontiguousarray((scene.frame.fields.status + 1).astype(np.uint8).T),
         left=first_x - half_x,
@@ -118,6 +118,6 @@ def _step(axis: np.ndarray) -> float:
 
 VIEW = View(
     "Stick and slip",
-    Plot(POSITION, "Time t (s)", palette=(BACKWARD, STICK, FORWARD, OPEN), chooses="instant"),
+    Plot(POSITION, TIME, palette=(BACKWARD, STICK, FORWARD, OPEN), chooses="instant"),
     draw,
 )

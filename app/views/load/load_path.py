@@ -6,9 +6,9 @@ import numpy as np
 
 from app.picture.units import measured
 from app.views.drawing.colors import BLUE, FORCE, GREEN, GREY, PURPLE, VERMILION
-from app.views.drawing.drawing import Axis, Curve, Drawing, Marks, Plot, View, has_instants
+from app.views.drawing.drawing import TIME, Axis, Curve, Drawing, Marks, Plot, View, has_instants
 from app.views.drawing.legend import Key
-from app.views.drawing.scales import ROOM, across, spanned, upright
+from app.views.drawing.scales import ROOM, across, over_time, upright
 from app.views.scene import Scene
 from solver.arrays import Array
 from solver.phrases import Phrase
@@ -26,7 +26,7 @@ def draw(scene: Scene, _kept: None) -> Drawing | None:
     peaks = [float(np.abs(values).max()) or 1.0 for _, _, values in paths]
     alike = units.pop() if len(units) == 1 else ""
     time = float(scene.run.stand.instants[scene.instant])
-    x = spanned(float(instants[0]), float(instants[-1]))
+    x = over_time(float(instants[0]), float(instants[-1]))
     shown = [
         values / (1.0 if alike else peak) for (_, _, values), peak in zip(paths, peaks, strict=True)
     ]
@@ -76,7 +76,7 @@ def _placed(symbol: str, where: str) -> str:
 
 VIEW = View(
     "Load path",
-    Plot("Time t (s)", "Load", marks=(Marks((), (), VERMILION),), chooses="time"),
+    Plot(TIME, "Load", marks=(Marks((), (), VERMILION),), chooses="time"),
     draw,
     has_instants,
 )

@@ -11,6 +11,7 @@ from app.picture.units import measured
 from app.views.drawing.colors import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 from app.views.drawing.drawing import (
     POSITION,
+    TIME,
     Axis,
     Curve,
     Drawing,
@@ -20,7 +21,7 @@ from app.views.drawing.drawing import (
     is_plane,
 )
 from app.views.drawing.legend import Key
-from app.views.drawing.scales import along, spanned, upright
+from app.views.drawing.scales import along, over_time, upright
 from app.views.scene import Scene
 from solver.phrases import Phrase
 
@@ -56,7 +57,7 @@ def draw_time(scene: Scene, _kept: None) -> Drawing | None:
         Key(color, "line", measured(float(size), "m", scene.look.units, 2))
         for color, size in zip(RANK_COLORS, sizes, strict=False)
     )
-    x = spanned(float(instants[0]), float(instants[-1]))
+    x = over_time(float(instants[0]), float(instants[-1]))
     return Drawing(x, UP, [*_curves(instants, scaled, modes), chosen], keys=keys)
 
 
@@ -84,7 +85,7 @@ SPACE_MODES = View(
 )
 TIME_FUNCTIONS = View(
     "PGD time functions",
-    Plot("Time t (s)", "Value / largest"),
+    Plot(TIME, "Value / largest"),
     draw_time,
     lambda settings: settings.applies("pgd_modes") and has_instants(settings),
 )
