@@ -307,6 +307,7 @@ def test_a_quantity_of_cycles_applies_where_a_run_has_it(name: str) -> None:
         ran("strand", **TIMES, **SMALL),
         lesson(),
         ran("bar", peak=900.0, friction_law="slip-dependent", **TIMES, **SMALL),
+        lesson(gap="parabola"),
     ]
     for run in cases:
         assert QUANTITIES[name].applies(run.settings) == (not math.isnan(reading(name)(run)))

@@ -19,7 +19,7 @@ from app.whatif.question import (
     question_from_query,
     usual_span,
 )
-from app.whatif.ready import READY, bathtub, fretting_map
+from app.whatif.ready import READY, bathtub, fretting_map, shakedown
 from solver.scenes import CATALOGUE
 from solver.scenes.bar import BarSettings
 from solver.settings import Settings
@@ -51,7 +51,7 @@ def test_every_quantity_that_is_offered_can_be_asked_and_every_ready_question(
     for name in askable(settings):
         assert Question(spans, changed_quantity(name, "")).refusals(settings) == {}, name
     made = {title: question for title, (_, make) in READY.items() if (question := make(settings))}
-    assert READY.keys() - made.keys() <= {"The fretting map"}
+    assert READY.keys() - made.keys() <= {"The fretting map", "The shakedown limit"}
     for question in made.values():
         assert question.refusals(settings) == {}, question.vary
 
@@ -65,6 +65,18 @@ def test_the_fretting_map_is_offered_where_a_load_goes_to_and_fro() -> None:
         assert question.of == "sliding_share"
         assert question.refusals(settings) == {}, question.vary
     assert fretting_map(DEFAULTS) is None
+
+
+def test_the_shakedown_limit_is_offered_where_there_is_one_that_no_mesh_makes() -> None:
+    held = {"gap": "flat", "top_tangential_load": "cycles"}
+    cycles = {"load": "cycles", "friction_law": "compliant"}
+    for scene, changes in (("block", held), ("layers", {"bend_load": "cycles"}), ("bar", cycles)):
+        settings = CATALOGUE[scene].settings.checked(changes)
+        question = shakedown(settings)
+        assert question is not None
+        assert question.refusals(settings) == {}, question.vary
+    for scene, changes in (("bar", {"load": "cycles"}), ("block", {**held, "gap": "parabola"})):
+        assert shakedown(CATALOGUE[scene].settings.checked(changes)) is None
 
 
 @pytest.mark.parametrize(

@@ -43,8 +43,12 @@ class SlipPlane:
 
 
 def space_of(problem: Problem) -> SlipSpace | None:
-    """Give the lines of the only interface of a problem, if it has two points and there are any."""
-    if [len(law.positions) for law in problem.rubbing.values()] != [POINTS]:
+    """Give the lines of the only interface of a problem, if it has two points and there are any.
+
+    Where contact alone holds a body there is no field: its slip as a whole costs nothing.
+    """
+    points = [len(law.positions) for law in problem.rubbing.values()]
+    if points != [POINTS] or problem.motions is not None:
         return None
     try:
         found = slip_space(problem)

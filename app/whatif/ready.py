@@ -17,9 +17,9 @@ from app.whatif.question import (
     usual_span,
 )
 from solver.definitions import SettingError
-from solver.scenes import behind, loads_of
+from solver.scenes import behind, kind_of, loads_of
 from solver.settings import Settings
-from solver.study.quantities.cycle_measures import has_cycles
+from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 
 COARSE = 10
 """Values along each side of a map."""
@@ -51,6 +51,19 @@ def fretting_map(settings: Settings) -> Question | None:
     )
 
 
+def shakedown(settings: Settings) -> Question | None:
+    """Ask for the shakedown factor over friction; it is in proportion to what presses.
+
+    Not of rods that stick rigidly: a load at their end has no limit, as the mesh is refined.
+    """
+    is_rigid_rod = kind_of(settings) != "plane" and not settings.applies("contact_stiffness")
+    if not has_a_limit(settings) or is_rigid_rod:
+        return None
+    end = shown_range(settings.definitions()["friction"])[1]
+    span = Span("friction", f"{TENTH * end:g}", f"{end:g}", str(COARSE))
+    return Question((span,), "shakedown_factor")
+
+
 READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
     "The bathtub": (
         "Iterations over the factor on k, with and without acceleration. It is steepest with the "
@@ -66,6 +79,11 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
         "Share of the contact that slips at once in the last cycle, over the load and what "
         "presses: 0 is stick, 1 gross slip.",
         fretting_map,
+    ),
+    "The shakedown limit": (
+        "How many times as far the load may swing to and fro until slip goes on for ever, over "
+        "friction. Below 1 it does so now. Pressed twice as hard, it is twice as much.",
+        shakedown,
     ),
 }
 """Questions that are ready, by what their buttons say, with a word on each."""

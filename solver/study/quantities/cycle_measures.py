@@ -9,7 +9,8 @@ import numpy as np
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.melan import shakedown_limit
-from solver.scenes import kind_of
+from solver.reference.shakedown.slip_space import largest_swing, slip_space
+from solver.scenes import kind_of, structure_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in, cycles_of, ends_of
 from solver.study.quantities.finished import FinishedRun
@@ -30,12 +31,19 @@ def has_several(settings: Settings) -> bool:
 
 
 def has_a_limit(settings: Settings) -> bool:
-    """Tell whether the theorem holds: where bounds are known, and no slip changes them."""
-    return (
-        has_cycles(settings)
-        and kind_of(settings) != "plane"
-        and not settings.applies("friction_ratio")
-    )
+    """Tell whether slip that stays is known: of rods, and in the plane of closed contacts."""
+    if not has_cycles(settings) or settings.applies("friction_ratio"):
+        return False
+    return kind_of(settings) != "plane" or _may_stay_closed(settings)
+
+
+def _may_stay_closed(settings: Settings) -> bool:
+    """Tell whether surfaces rub by Coulomb's law that are closed as long as something presses."""
+    if not settings.opens or settings.has_spring or settings.applies("contact_stiffness"):
+        return False
+    holds = structure_of(settings).described().holds
+    gaps = [hold.gap for hold in holds if hold.gap is not None]
+    return settings.values()["friction"] != 0.0 and not np.any(gaps)
 
 
 def energy_ratio(run: FinishedRun, at: float | None) -> float:
@@ -74,12 +82,23 @@ def sliding_share(run: FinishedRun, at: float | None) -> float:
 
 
 def shakedown_factor(run: FinishedRun, at: float | None) -> float:
-    """Give the largest factor on the loads under which slip ceases; NaN where none is known."""
+    """Give the largest factor on the swing of the loads under which there is slip that stays.
+
+    The swing is about the mean of the last cycle, as often as one likes. On rods the mean does not
+    matter, so that it is the factor on all loads, too, and slip ceases below it wherever it began.
+    In the plane all contacts have to stay closed; below it slip may cease, or not, by its start,
+    where slip changes what presses. Above it something slips, or opens, in every cycle.
+
+    NaN where none is known, or not even the mean keeps all contacts closed.
+    """
     ends = ends_of(run.settings)
     if len(ends) < 2 or not has_a_limit(run.settings):
         return math.nan
+    last = slice(ends[-2], ends[-1] + 1)
     try:
-        return shakedown_limit(run.problem, slice(ends[0], ends[-1] + 1)).factor
+        if run.problem.opens:
+            return largest_swing(slip_space(run.problem), last)[0]
+        return shakedown_limit(run.problem, last).factor
     except NoReferenceError:
         return math.nan
 
@@ -103,7 +122,7 @@ OF_CYCLES = (
     ),
     Quantity(
         "shakedown_factor",
-        "Shakedown factor on the load",
+        "Shakedown factor on the swing of the load",
         "",
         shakedown_factor,
         applies=has_a_limit,

@@ -1,0 +1,243 @@
+"""In the plane slip that stays, with all contacts closed, is where slip may cease.
+
+Where no slip changes what presses, it ceases from any start; else the start matters.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver.arrays import Array
+from solver.laws import OPEN
+from solver.reference.condensation import NoReferenceError
+from solver.reference.shakedown.slip_space import (
+    MOST_POINTS,
+    SlipSpace,
+    largest_swing,
+    slip_space,
+)
+from solver.scenes import CATALOGUE, discretise
+from solver.study.quantities.cycles import ends_of
+from solver.study.quantities.finished import FinishedRun, finished_run
+from solver.study.quantities.quantities import QUANTITIES, reading
+from solver.study.quantities.slips import slips_of
+
+N_CYCLES = 4
+LOADS = {"layers": "bend_load", "block": "top_tangential_load"}
+MESH = {"substructures": 1, "substructures_up": 1, "duration": 8.0, "instants": 129}
+TWINS = {**MESH, "layers": 2, "elements": 12, "elements_up": 1, "pressure": 2e6}
+FREE = {
+    **MESH,
+    **{"gap": "flat", "elements": 12, "elements_up": 6, "friction": 0.2},
+    **{"top": "traction", "top_normal_load": ((0.0, -1e8),)},
+}
+ROLLER = {
+    **MESH,
+    **{"gap": "flat", "elements": 8, "elements_up": 4, "friction": 1.0, "left": "roller"},
+    **{"top": "traction", "top_normal_load": ((0.0, -1e7),), "top_normal_slope": 0.5},
+}
+
+
+def path(swing: float, first: float = 0.0) -> tuple[tuple[float, float], ...]:
+    """Give cycles of a load after a push or none, so long that all turns are instants."""
+    turns = ((3.0 + 0.5 * n, swing * (-1.0) ** n) for n in range(2 * N_CYCLES + 2))
+    return ((1.0, 0.0), (1.5, first), (2.0, 0.0), *turns, (8.0, 0.0))
+
+
+@cache
+def _ran(scene: str, swing: float, first: float, given: tuple[tuple[str, Any], ...]) -> FinishedRun:
+    settings = CATALOGUE[scene].settings.checked({**dict(given), LOADS[scene]: path(swing, first)})
+    return finished_run(settings, errors=False, indicators=False)
+
+
+def ran(scene: str, given: dict[str, Any], swing: float, first: float = 0.0) -> FinishedRun:
+    return _ran(scene, swing, first, tuple(given.items()))
+
+
+def last(run: FinishedRun) -> slice:
+    ends = ends_of(run.settings)
+    return slice(ends[-2], ends[-1] + 1)
+
+
+def factor(run: FinishedRun) -> float:
+    return reading("shakedown_factor")(run)
+
+
+def goes_on(run: FinishedRun) -> bool:
+    """Tell whether anything slips or opens in the last cycle."""
+    assert run.solution.status.ending == "converged"
+    return bool((run.iterate.status[:, last(run)][:, 1:] != 0).any())
+
+
+def forces(run: FinishedRun) -> tuple[Array, Array]:
+    """Give pressing and friction forces of the only interface, shape (n_points, n_instants)."""
+    (name,) = run.problem.rubbing
+    contact = run.iterate.contact(name)
+    return contact.normal_force, contact.tangential_force
+
+
+SMALL = 1e-4
+"""Deflection, m, under which the two layers stick wherever they do so at all."""
+
+
+@pytest.mark.parametrize("first", [0.0, 4.0, -4.0])
+def test_two_equal_layers_cease_to_slip_below_the_limit_from_any_start_and_not_above(
+    first: float,
+) -> None:
+    """The friction between them is mirrored, and so presses nothing: Melan's theorem holds."""
+    swing = SMALL * factor(ran("layers", TWINS, SMALL))
+    for share, expected in ((0.995, False), (1.005, True)):
+        run = ran("layers", TWINS, share * swing, first * swing)
+        assert goes_on(run) == expected, share
+        assert first == 0.0 or np.abs(run.iterate.status[:, : last(run).start]).any()
+
+
+def test_the_limit_of_two_equal_layers_is_where_a_point_is_pulled_by_twice_its_friction() -> None:
+    """The dual, of forces that a run without any slip has."""
+    run = ran("layers", {**TWINS, "friction": 10.0}, SMALL)
+    assert not goes_on(run)
+    pressing, friction = (one[:, last(run)] for one in forces(run))
+    swing = np.ptp(friction, axis=1)
+    mu = CATALOGUE["layers"].settings.checked({}).friction
+    most = 2.0 * mu * pressing.min(axis=1)[swing > 0.0] / swing[swing > 0.0]
+    assert factor(ran("layers", TWINS, SMALL)) == pytest.approx(most.min(), rel=1e-5)
+
+
+SHEAR, PUSH = 1.2e7, 1.7e7
+"""Pa, of a block that contact alone holds, and whose slip changes what presses."""
+
+
+@pytest.mark.parametrize("first", [0.0, PUSH, -PUSH])
+def test_a_coupled_block_slips_for_ever_above_the_limit_and_well_below_it_never(
+    first: float,
+) -> None:
+    swing = SHEAR * factor(ran("block", FREE, SHEAR))
+    for share, expected in ((0.9, False), (1.01, True)):
+        assert goes_on(ran("block", FREE, share * swing, first)) == expected, share
+
+
+def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> None:
+    swing = SHEAR * factor(ran("block", FREE, SHEAR))
+    assert not goes_on(ran("block", FREE, 0.99 * swing))
+    assert goes_on(ran("block", FREE, 0.99 * swing, PUSH))
+
+
+def test_how_the_pressing_begins_is_no_part_of_the_factor() -> None:
+    """Only the last cycle counts: a push before it changes nothing of what could stay."""
+    pushed, not_pushed = (factor(ran("block", FREE, SHEAR, first)) for first in (PUSH, 0.0))
+    assert pushed == pytest.approx(not_pushed, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("scene", "given", "swing"),
+    [("layers", TWINS, 4e-3), ("block", FREE, SHEAR), ("block", ROLLER, 1e6)],
+)
+def test_the_planes_are_where_the_forces_of_a_run_come_to_their_bounds(
+    scene: str, given: dict[str, Any], swing: float
+) -> None:
+    """With closed contacts A w - b is what friction, either way, is beyond its bound."""
+    run = ran(scene, given, swing, 1.4 * swing)
+    space, some = slip_space(run.problem), slice(16, None)
+    ((law, slip, _),) = slips_of(run.iterate)
+    pressing, friction = forces(run)
+    assert not np.any(run.iterate.status[:, some] == OPEN)
+    moves = len(law.positions) - space.matrix.shape[1]
+    moved = np.cumsum(law.mean_by_point(slip), axis=1)[moves:]
+    beyond = space.matrix @ moved - space.limit
+    mu = run.settings.values()["friction"]
+    bound, held = mu * pressing[moves:], friction[moves:]
+    expected = np.concatenate([held - bound, -held - bound, -pressing[:moves]])
+    if scene == "layers":
+        expected, beyond = (one[: 2 * len(held)] for one in (expected, beyond))
+    slack = 1e-6 * np.abs(expected).max()
+    np.testing.assert_allclose(beyond[:, some], expected[:, some], atol=slack)
+
+
+def test_a_corner_that_only_presses_ends_the_swing_where_it_opens() -> None:
+    """A side on rollers holds it, so that no friction tells that it opens."""
+    run = ran("block", ROLLER, 1e6)
+    space = slip_space(run.problem)
+    rubbing = 2 * space.matrix.shape[1]
+    assert len(space.matrix) == rubbing + 1
+    without = SlipSpace(space.matrix[:rubbing], space.limit[:rubbing])
+    assert largest_swing(without, last(run))[0] > 1.03 * factor(run)
+    for first in (0.0, 5e6, -5e6):
+        beyond = ran("block", ROLLER, 1.01e6 * factor(run), first)
+        assert (beyond.iterate.status[0, last(beyond)] == OPEN).any()
+
+
+@pytest.mark.parametrize("given", [FREE, ROLLER, {**FREE, "friction": 0.6}])
+def test_with_the_slip_that_is_found_all_contacts_press_at_all_instants(
+    given: dict[str, Any],
+) -> None:
+    """Two planes of a point, added up, are its pressing force, within rounding."""
+    run = ran("block", given, 1e6)
+    space = slip_space(run.problem)
+    found, slip = largest_swing(space, last(run))
+    limit = space.limit[:, last(run)]
+    mean = 0.5 * (limit[:, 1:] + limit[:, :-1]).mean(axis=1)[:, None]
+    room = mean + found * (limit - mean) - (space.matrix @ slip)[:, None]
+    count = space.matrix.shape[1]
+    pressing = np.concatenate([room[:count] + room[count : 2 * count], room[2 * count :]])
+    assert pressing.min() >= -1e-6 * np.abs(limit).max()
+    assert np.abs(room.min()) <= 1e-6 * np.abs(limit).max()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"friction_law": "compliant"},
+        {"friction_law": "slip-dependent"},
+        {"friction": 0.0, "top": "displacement"},
+        {"gap": "parabola"},
+    ],
+)
+def test_where_nothing_is_known_there_is_no_factor(changes: dict[str, Any]) -> None:
+    given = {**FREE, "elements": 4, "elements_up": 2, **changes}
+    settings = CATALOGUE["block"].settings.checked({**given, LOADS["block"]: path(1e-6)})
+    assert not QUANTITIES["shakedown_factor"].applies(settings)
+    with pytest.raises(NoReferenceError):
+        largest_swing(slip_space(discretise(settings)), last_of(settings))
+
+
+def last_of(settings: Any) -> slice:
+    ends = ends_of(settings)
+    return slice(ends[-2], ends[-1] + 1)
+
+
+def test_a_fault_whose_strength_alone_is_driven_has_no_factor_on_a_load() -> None:
+    fault = {
+        "elements": 8,
+        "elements_up": 4,
+        "instants": 81,
+        "cycles": 3,
+        "injection_load": "pulses",
+    }
+    settings = CATALOGUE["fault"].settings.checked(fault)
+    assert QUANTITIES["ratchet"].applies(settings)
+    assert not QUANTITIES["shakedown_factor"].applies(settings)
+
+
+def test_a_spring_that_catches_a_block_and_too_many_points_are_refused() -> None:
+    incline = CATALOGUE["incline"].settings.checked({"elements": 4, "elements_up": 2, "cycles": 3})
+    assert not QUANTITIES["shakedown_factor"].applies(incline)
+    many = {"layers": 7, "elements": 100, "elements_up": 1, "substructures": 10}
+    with pytest.raises(NoReferenceError, match=str(MOST_POINTS)):
+        slip_space(discretise(CATALOGUE["layers"].settings.checked(many)))
+    with pytest.raises(NoReferenceError):
+        slip_space(discretise(incline))
+
+
+def test_a_pressing_that_leaves_contacts_open_has_no_factor() -> None:
+    """It pulls at a block that a side holds."""
+    lifted = {**FREE, "left": "clamped", "top_normal_load": ((0.0, 1e6),)}
+    assert math.isnan(factor(ran("block", lifted, 1e6)))
+
+
+def test_without_any_pressing_no_swing_is_small_enough() -> None:
+    assert factor(ran("layers", {**TWINS, "pressure": 0.0}, SMALL)) == pytest.approx(0.0, abs=1e-9)
