@@ -21,7 +21,7 @@ from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.block import block
 from solver.study.proof import by_getfem, others, published, report
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_field
 from solver.study.speed.error_against_time import PeerError
 
 CASES = list(report.cases())
@@ -142,17 +142,35 @@ def test_a_program_that_is_not_installed_is_said_to_be_absent(
     assert "Not installed: PIQP, OSQP, DAQP, Clarabel, GetFEM." in page.read_text(encoding="utf-8")
 
 
-def test_getfem_finds_the_same_forces_at_all_nodes_and_instants() -> None:
+def test_a_field_is_as_far_off_as_where_it_is_farthest_off() -> None:
+    theirs = np.zeros((2, 5, 3))
+    theirs[:, 1, 2] = 3.0, -4.0
+    ours = theirs.copy()
+    ours[:, 4, 0] = 0.3, 0.4
+    number = of_field("displacement", "m", theirs, ours)
+    assert (number.exact, number.found) == (5.0, 5.0)
+    assert number.deviation == pytest.approx(0.1)
+    assert of_field("displacement", "m", theirs, theirs).deviation == 0.0
+    assert np.isnan(of_field("displacement", "m", theirs * np.nan, ours).deviation)
+
+
+def test_getfem_finds_the_same_at_all_nodes_and_instants() -> None:
     there = by_getfem.installed()
     if there is None:
         pytest.skip("GetFEM is not installed")
     settings = CATALOGUE["block"].settings.checked({**others.SHEARED, "plane": "stress"})
     theirs = by_getfem.solve_block(block(settings), there.python)
-    ours = reference_of(discretise(settings)).contact("support")
+    problem = discretise(settings)
+    reference = reference_of(problem)
+    ours, inside = reference.contact("support"), problem.inside
     assert ours.normal_force is not None
+    assert inside is not None
     scale = ours.normal_force.max()
     assert np.abs(theirs.normal_force - ours.normal_force).max() < 1e-9 * scale
     assert np.abs(theirs.tangential_force - ours.tangential_force).max() < 1e-9 * scale
+    moved = inside.displacement(reference.displacement, slice(None))
+    for component, one in enumerate(theirs.displacement):
+        assert np.abs(one - moved[:, component]).max() < 1e-9 * np.abs(moved).max()
 
 
 def test_a_program_that_gives_up_proves_nothing(

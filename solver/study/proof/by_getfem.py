@@ -32,11 +32,24 @@ class Installed(NamedTuple):
 
 
 class GetfemFields(NamedTuple):
-    """What it finds at the nodes of the support, shape (n_nodes, n_instants) each, SI."""
+    """What it finds, SI.
+
+    Attributes
+    ----------
+    normal_force, tangential_force
+        At the nodes of the support, shape (n_lowest, n_instants) each.
+    displacement
+        Of all nodes, row by row from below, shape (2, n_nodes, n_instants).
+    """
 
     normal_force: Array
     tangential_force: Array
-    moved: Array
+    displacement: Array
+
+    @property
+    def moved(self) -> Array:
+        """How far the nodes of the support have moved along it, shape (n_lowest, n_instants)."""
+        return self.displacement[0, : len(self.tangential_force)]
 
 
 @cache
@@ -68,8 +81,9 @@ def solve_block(body: Stack, python: str) -> GetfemFields:
     }
     said = _run([python, str(PROGRAM)], json.dumps(asked))
     if said is None:
-        nothing = np.full((len(body.support.gap), len(body.instants)), np.nan)
-        return GetfemFields(nothing, nothing, nothing)
+        along, up = (number + 1 for number in body.elements)
+        nothing = np.full((2, along * up, len(body.instants)), np.nan)
+        return GetfemFields(nothing[0, :along], nothing[0, :along], nothing)
     answer: dict[str, Any] = json.loads(said)
     normal, tangential, moved = (
         np.array(answer[name]).T for name in ("normal", "tangential", "moved")

@@ -9,6 +9,9 @@ from enum import Enum
 from typing import Any, NamedTuple
 from urllib.parse import urlencode
 
+import numpy as np
+
+from solver.arrays import Array
 from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
 from solver.latin import Ending, Latin, solve
@@ -29,17 +32,33 @@ class ProofPart(Enum):
 
 @dataclass(frozen=True)
 class KnownNumber:
-    """A number that is known, and what a run has for it, in the same unit."""
+    """A number that is known, and what a run has for it, in the same unit.
+
+    Attributes
+    ----------
+    exact, found
+        The number; of a field its largest size.
+    apart
+        Largest distance of two fields at any place and instant; 0 of a number alone.
+    """
 
     quantity: str
     unit: str
     exact: float
     found: float
+    apart: float = 0.0
 
     @property
     def deviation(self) -> float:
         """Distance of the two over what is known."""
-        return abs(self.found - self.exact) / abs(self.exact)
+        distance = np.maximum(self.apart, abs(self.found - self.exact))
+        return float(distance / abs(self.exact))
+
+
+def of_field(quantity: str, unit: str, exact: Array, found: Array) -> KnownNumber:
+    """Compare a field everywhere: vectors along the first axis, of any shape beyond it."""
+    sizes = (float(np.linalg.norm(one, axis=0).max()) for one in (exact, found, found - exact))
+    return KnownNumber(quantity, unit, *sizes)
 
 
 class Answer(NamedTuple):

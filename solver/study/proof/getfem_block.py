@@ -34,14 +34,16 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
 
     Returns
     -------
-    Pressing forces `normal` and friction on the block `tangential` of the nodes of the support, and
-    how far they have `moved` along it, (n_instants, n_nodes) each.
+    Pressing forces `normal` and friction on the block `tangential` of the nodes of the support,
+    (n_instants, n_lowest) each, and how far all nodes have `moved`, row by row from below,
+    (n_instants, n_nodes, 2).
     """
-    model, mesh, lowest = _elastic(asked)
+    model, mesh, nodes = _elastic(asked)
+    lowest = nodes[: asked["elements"][0] + 1]
     _touching(model, mesh, lowest, asked["friction"])
     gap, before = np.array(asked["gap"]), np.zeros(2)
     gone, deformed = model.variable("u0"), model.variable("a0")
-    found: dict[str, list[list[float]]] = {"normal": [], "tangential": [], "moved": []}
+    found: dict[str, list[Any]] = {"normal": [], "tangential": [], "moved": []}
     for top in np.array(asked["top"]).T:
         model.set_variable("top", top - before)
         model.set_variable("u0", gone)
@@ -52,12 +54,12 @@ def solve(asked: dict[str, Any]) -> dict[str, Any]:
         deformed = deformed + model.variable("a")
         found["normal"].append((-model.variable("n")).tolist())
         found["tangential"].append(model.variable("t").tolist())
-        found["moved"].append(gone[lowest[:, 0]].tolist())
+        found["moved"].append(gone[nodes].tolist())
     return found
 
 
 def _elastic(asked: dict[str, Any]) -> tuple[Any, Any, Any]:
-    """Make the block, moved at its top; with its displacements, and those of its lowest nodes."""
+    """Make the block, moved at its top; with its displacements, x and y of nodes row by row."""
     import getfem as gf
 
     gf.util("trace level", 0)
@@ -84,9 +86,9 @@ def _elastic(asked: dict[str, Any]) -> tuple[Any, Any, Any]:
     model.add_source_term(points, f"-({_work(asked['elastic'], 'u0', 'a0')})")
     model.add_initialized_data("top", [0.0, 0.0])
     model.add_Dirichlet_condition_with_multipliers(points, "u", displaced, 1, "top")
-    nodes = displaced.basic_dof_nodes()
-    lowest = np.flatnonzero(nodes[1] < 0.5 * up[1])
-    return model, displaced, lowest[np.argsort(nodes[0, lowest], kind="stable")].reshape(-1, 2)
+    x, y = displaced.basic_dof_nodes()
+    place = np.rint(y * rows / asked["height"]) * (columns + 1) + np.rint(x * columns)
+    return model, displaced, np.argsort(place, kind="stable").reshape(-1, 2)
 
 
 def _touching(model: Any, displaced: Any, lowest: Any, friction: float) -> None:

@@ -14,7 +14,7 @@ from solver.scenes import discretise
 from solver.scenes.block import block
 from solver.study.other_programs.public_solvers import PUBLIC, Public, PublicFields, solve_by
 from solver.study.proof import by_getfem
-from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_scene
+from solver.study.proof.case import Answer, KnownCase, KnownNumber, ProofPart, of_field, of_scene
 from solver.study.speed.error_against_time import PeerError
 
 ABSENT = "Not installed: {}."
@@ -59,6 +59,8 @@ def _quadratic(public: Public) -> KnownCase:
         ours, theirs = answer.fields, solved(settings)
         end = theirs.displacement[-1, -1], ours.displacement[-1, -1]
         yield KnownNumber("end displacement", "m", float(end[0]), float(end[1]))
+        moved = theirs.displacement[None], ours.displacement[None]
+        yield of_field("displacement, all nodes", "m", *moved)
         friction = ours.contact("friction").tangential_force
         lost = _lost(answer.problem, theirs.displacement, theirs.contact_force)
         own = _lost(answer.problem, ours.displacement, friction)
@@ -88,8 +90,13 @@ def _block(there: by_getfem.Installed) -> KnownCase:
         assert ours.normal_force is not None
         pressed = [one.sum(axis=0)[-1] for one in (theirs.normal_force, ours.normal_force)]
         yield KnownNumber("pressing force", "N/m", *map(float, pressed))
-        largest = [one.max() for one in (theirs.normal_force, ours.normal_force)]
-        yield KnownNumber("largest pressing force of a node", "N/m", *map(float, largest))
+        known = np.stack([theirs.tangential_force, theirs.normal_force])
+        found = np.stack([ours.tangential_force, ours.normal_force])
+        yield of_field("contact force, all nodes", "N/m", known, found)
+        inside = answer.problem.inside
+        assert inside is not None
+        found = inside.displacement(answer.fields.displacement, slice(None)).transpose(1, 0, 2)
+        yield of_field("displacement, all nodes", "m", theirs.displacement, found)
         lost = (
             -float(np.sum(force * np.diff(moved, axis=1, prepend=0.0)))
             for force, moved in (

@@ -13,7 +13,9 @@ from solver.study.proof.others import absent
 WORDS = (
     "<p>Each row is a number that is known, and the same number of a run: by LATIN, ended as a run "
     "on the page ends, and by the incremental solver on the same mesh. <em>Deviation</em> is the "
-    "distance of each over the number that is known, <em>allowed</em> what the mesh leaves.</p>"
+    "distance of each over the number that is known, <em>allowed</em> what the mesh leaves. Of all "
+    "nodes, the number is the largest of all, and the distance that at the node and instant where "
+    "it is largest.</p>"
 )
 HEADS = "", "quantity", "unit", "known", LATIN, "deviation", INCREMENTAL, "deviation", "allowed"
 HOLDS, FAILS = "holds", "FAILS"
