@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from ropes import SMALL_ROPE
-from unpacking import unpack
+from unpacking import Unpacker
 
 from app.picture.recording import Recording
 from app.picture.sampler import Frame
@@ -59,6 +59,7 @@ class Shown:
         self.files: list[list[Any]] = []
         self.said: list[str] = []
         self.models: list[Models] = []
+        self._unpack = Unpacker()
         self.runs = PageRuns(self._paint, lambda: False)
         self.runs.obey(Watch(look))
         self.runs.obey(Ready())
@@ -104,7 +105,7 @@ class Shown:
 
     def _paint(self, picture: Picture | File) -> None:
         if isinstance(picture, File):
-            found = unpack(picture.block)
+            found = self._unpack(picture.block)
             if "take-away" in found:
                 self.files.append(found["take-away"]["file"])
                 self.runs.obey(Ready())
@@ -113,7 +114,7 @@ class Shown:
             return
         self.pictures.append(picture)
         before = self.models[-1] if self.models else {}
-        self.models.append({**before, **unpack(picture.block)})
+        self.models.append({**before, **self._unpack(picture.block)})
         self.runs.obey(Ready())
 
 

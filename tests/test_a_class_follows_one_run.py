@@ -169,7 +169,7 @@ def test_a_picture_is_told_once_more_in_what_each_of_a_class_has_chosen() -> Non
     page, alone = Shown(look), Shown(ALL.told_in(own))
     for one in (page, alone):
         one.run(1, "bar", SMALL["bar"])
-    told, words = page.pictures[-1], unpack(alone.pictures[-1].block)
+    told, words = page.pictures[-1], alone.page
     assert list(told.others) == [own], "who has what the leader has gets the leader's"
     german = unpack(told.others[own])
     for name, attributes in words.items():

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import sick_workers
 from processes import wait_for
-from unpacking import unpack
+from unpacking import Unpacker
 
 from app.session.page_worker import AGAIN
 from app.session.pages import Pages
@@ -35,12 +35,13 @@ class Page:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.words: list[str] = []
+        self._unpack = Unpacker()
         session.start()
 
     def until(self, condition: Callable[[], object]) -> None:
         def is_so() -> object:
             for block in self.session.collect():
-                self.words.append(unpack(block).get("status", {}).get("text", ""))
+                self.words.append(self._unpack(block).get("status", {}).get("text", ""))
                 self.session.ask()
             return condition()
 

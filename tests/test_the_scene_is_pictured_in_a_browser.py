@@ -176,3 +176,28 @@ def test_a_page_opens_in_motion_until_it_is_touched(open_page: Visit) -> None:
     page.keyboard.press("Shift")
     expect(instant).to_have_value("15")
     expect(page.get_by_role("button", name="Play through time")).to_be_visible()
+
+
+DRAWN = """() => Bokeh.documents.flatMap(({_all_models}) => [..._all_models.values()])
+  .filter(({name}) => /\\.(bodies|curves|contacts|image|patches)$/.test(name ?? ""))
+  .map(({name, data, line_alpha}) => `${name} ${JSON.stringify(data ?? line_alpha)}`).sort()"""
+
+
+def test_pictures_bit_by_bit_come_to_what_is_drawn_afresh(open_page: Visit) -> None:
+    page = open_page(
+        "?scene=rope&layers=1&elements=10&instants=21&finish=at+once&instant=0.4"
+        "&plots=Scene,Cross-section,Friction+force,All+wires"
+    )
+    expect(status(page)).to_contain_text("solved")
+    instant = page.get_by_role("slider", name="Instant", exact=True)
+    for key in ("ArrowRight", "ArrowRight", "ArrowRight", "ArrowLeft"):
+        drawn = page.evaluate(DRAWN)
+        instant.press(key)
+        comes_true(page, f"(drawn) => String(({DRAWN})()) !== String(drawn)", drawn)
+    drawn = at_rest(page, DRAWN)
+    names = {one.split()[0] for one in drawn}
+    assert names >= {"scene.bodies", "scene.contacts", "scene.patches", "all-wires.image"}
+    comes_true(page, "() => location.search.includes('instant=0.5')")
+    page.reload()
+    expect(status(page)).to_contain_text("solved")
+    comes_true(page, f"(drawn) => String(({DRAWN})()) === String(drawn)", drawn)

@@ -8,6 +8,7 @@ from html import escape
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from app.languages.language import Language
 from app.picture.glossary import ENGLISH
@@ -15,12 +16,21 @@ from app.picture.shown import Look
 from app.picture.units import BY_SIZE, TIME, measured, titled
 from app.views.catalogue import fitting
 from app.views.drawing.colors import VERMILION
-from app.views.drawing.drawing import POSITION, Axis, Curve, Drawing, Image, Marks, QuadMesh, View
+from app.views.drawing.drawing import (
+    POSITION,
+    Axis,
+    Curve,
+    Drawing,
+    Image,
+    Marks,
+    QuadMesh,
+    View,
+)
 from app.views.drawing.in_units import in_units
 from app.views.drawing.legend import card_title
 from app.views.drawing.scales import upright
 from app.views.scene import Scene
-from app.wire.block import Attributes, Packer, Quads
+from app.wire.block import Attributes, Packer, Places, Quads
 from app.wire.reports import Facts
 from app.worker.readings import values
 from app.worker.telling import told
@@ -161,10 +171,17 @@ def _axis(
 def _curves(drawing: Drawing) -> Attributes:
     curves = drawing.curves
     return {
-        "xs": [np.asarray(curve.x) for curve in curves],
-        "ys": [np.asarray(curve.y) for curve in curves],
+        **_lines(drawing, [curve.x for curve in curves], [curve.y for curve in curves]),
         **_columns(curves, "color", "width", "alpha", "dash", "name"),
     }
+
+
+def _lines(drawing: Drawing, xs: Sequence[ArrayLike], ys: Sequence[ArrayLike]) -> Attributes:
+    """Give lines; those beside bodies by their places in the picture."""
+    if drawing.bodies is None:
+        return {"xs": [np.asarray(one) for one in xs], "ys": [np.asarray(one) for one in ys]}
+    box = drawing.bodies.box
+    return {"xs": Places(xs, box.left, box.right), "ys": Places(ys, box.low, box.high)}
 
 
 def _shifts(curves: Sequence[Curve]) -> Attributes:
@@ -203,8 +220,7 @@ def _handles(drawing: Drawing) -> Attributes:
 def _contacts(drawing: Drawing) -> Attributes:
     places = drawing.contacts.values()
     return {
-        "xs": [one[:, 0] for one in places],
-        "ys": [one[:, 1] for one in places],
+        **_lines(drawing, [one[:, 0] for one in places], [one[:, 1] for one in places]),
         "name": list(drawing.contacts),
     }
 
@@ -225,9 +241,11 @@ def _image(image: Image) -> Attributes:
 
 
 def _bodies(bodies: QuadMesh) -> Iterator[tuple[str, Attributes]]:
-    yield "bodies", {"quads": Quads(bodies.corners, bodies.places), "value": bodies.values}
+    box, (x, y) = bodies.box, bodies.places.T
+    ends = box.left, box.right, box.low, box.high
+    quads = Quads(bodies.corners, Places([x], *ends[:2]), Places([y], *ends[2:]))
+    yield "bodies", {"quads": quads, "value": bodies.values}
+    yield "patches", {"line_alpha": bodies.lines}
     if bodies.along is not None:
         yield "along", {"x": bodies.along}
-    box = bodies.box
-    ends = box.left, box.right, box.low, box.high
     yield "box", {"edge": [*ends, *box.room, *box.lines, box.flattest, box.filled]}

@@ -56,6 +56,8 @@ STATUSES = ((0, STICK, "stick"), (-1, BACKWARD, "slip −"), (1, FORWARD, "slip 
 LEANEST = 4.0
 """Times their height that long bodies count at most, where a displacement is to show: room for one
 that bends far would leave them thin."""
+SEAMLESS = 0.2
+"""How opaque the lines around parts of a wire are, so that none shows where two parts meet."""
 FEW_BODIES = 8
 """Bodies above each other with room for a broad band between them."""
 
@@ -92,6 +94,7 @@ def draw(scene: Scene, kept: Scale | None) -> Drawing:
             _values(scene),
             box,
             portrait.mesh.nodes[portrait.mesh.quads, 0].mean(axis=1),
+            lines=SEAMLESS if posed.is_strand else 1.0,
         ),
         colors=_COLORS if is_told else Colors(0, max(last, 1) * _OF_PARTS),
         curves=[

@@ -127,6 +127,8 @@ class QuadMesh:
         What is to be seen.
     along
         Position of each along the undeformed body, shape (n_quads,), m, where it can be chosen.
+    lines
+        How opaque the lines around each are.
     """
 
     corners: NDArray[np.int32]
@@ -134,6 +136,7 @@ class QuadMesh:
     values: NDArray[np.float32]
     box: Box
     along: NDArray[np.float32] | None = None
+    lines: float = 1.0
 
 
 @dataclass(frozen=True)

@@ -232,9 +232,8 @@ def _add_colors(made: Plot, view: View, say: Language) -> None:
         color: Any = {"field": "value", "transform": mapper}
         source = _empty(f"{slug}.bodies", "xs", "ys", "value")
         alpha = 0.6 if plot.words else 1.0
-        made.add_glyph(
-            source, Patches(fill_color=color, fill_alpha=alpha, line_color=color, line_width=0.5)
-        )
+        shown = {"fill_color": color, "fill_alpha": alpha, "line_color": color, "line_width": 0.5}
+        made.add_glyph(source, Patches(**shown, name=f"{slug}.patches"))
     elif not plot.names:
         source = _empty(f"{slug}.image", "image", "x", "y", "dw", "dh")
         made.add_glyph(source, Image(dw="dw", dh="dh", color_mapper=mapper))
