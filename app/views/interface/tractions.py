@@ -15,7 +15,7 @@ from app.views.scene import Scene
 
 PRESSURE = Key(PURPLE, "line", "pressure p")
 KEYS = Key(BLUE, "line", "friction"), Key(GREY, "dashed", "±μp")
-KNOWN = Key(BLUE, "line", "friction"), Key(GREY, "dashed", "its bound")
+KNOWN = Key(BLUE, "line", "friction"), Key(GREY, "dashed", "±μ(σ−p)")
 
 
 def draw(scene: Scene, kept: Limits | None) -> Drawing | None:
