@@ -62,8 +62,7 @@ TERMS: dict[tuple[str, ...], str] = {
     ("slip −", "slip +", "slip"): "The friction force has reached its bound: the point slides, "
     "+ to the right, − to the left.",
     ("open",): "The surfaces do not touch: there is neither pressure nor friction.",
-    ("±μp", "±μ(σ−p)"): "The bound of the friction force: coefficient of friction times "
-    "pressure.",
+    ("±μp", "±μ(σ−p)"): "The bound of the friction force: coefficient of friction times pressure.",
     ("hysteresis loop",): "Force over displacement; the area inside is the energy that friction "
     "takes.",
     ("cycle",): "From one turning point of the load to the next but one; the way there from rest "

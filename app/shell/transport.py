@@ -59,8 +59,8 @@ class Transport:
         self._next = session.turns.timer(self.play_on)
         self._make_buttons()
         self._make_sliders()
-        styles = {"flex": "1 1 312px"}
-        self._sliders = row(self._iteration, self._instant, min_width=312, styles=styles)
+        styles = {"flex": "1 1 288px"}
+        self._sliders = row(self._iteration, self._instant, min_width=288, styles=styles)
         parts = self._run, self._step, self._reset, self._way, self._pace
         for part in parts:
             part.margin = (5, 4, 5, 10 if part is self._run else 4)
@@ -255,7 +255,7 @@ class Transport:
 
     def _make_sliders(self) -> None:
         self._iteration = scrubber(
-            155,
+            138,
             self._session.seek,
             name=ITERATION,
             label="Iteration",
@@ -264,7 +264,7 @@ class Transport:
             help="Go back to any iteration done; at the right end it follows the run.",
         )
         self._instant = scrubber(
-            125,
+            118,
             self._choose_instant,
             self.play,
             name=INSTANT,

@@ -16,7 +16,7 @@ MOST_LAYERS = 5
 
 
 def seven_wire() -> CrossSection:
-    """Give a seven-wire strand of 15.7 mm and 150 mm2, as EN 10138-3 has it for prestressing.
+    """Give a seven-wire strand of 15.7 mm and 150 mm2, as prEN 10138-3 has it for prestressing.
 
     Six wires of 5.2 mm on one of 5.4 mm, with a lay length of 16 diameters (14 to 18 are allowed).
     """
