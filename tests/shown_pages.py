@@ -44,7 +44,15 @@ def run_of(ticket: int, scene: str, values: dict[str, Any], **options: Any) -> R
 
 
 class Shown:
-    """The runs of a page that paints at once.
+    """The runs of a page.
+
+    Parameters
+    ----------
+    look
+        What is looked at.
+    is_quick
+        Whether it paints in no time: every iterate is seen. One that is slow sees the first
+        iterates that there are after an order, and what they come to.
 
     Attributes
     ----------
@@ -54,7 +62,8 @@ class Shown:
         What the page has after each of them.
     """
 
-    def __init__(self, look: Look = ALL) -> None:
+    def __init__(self, look: Look = ALL, *, is_quick: bool = False) -> None:
+        self._is_quick, self._is_painting = is_quick, False
         self.pictures: list[Picture] = []
         self.files: list[list[Any]] = []
         self.said: list[str] = []
@@ -74,10 +83,19 @@ class Shown:
 
     def work(self) -> None:
         """Go on until there is nothing to do."""
-        while (rest := self.runs.rest()) is not None:
+        while (rest := self._rest()) is not None:
             time.sleep(rest)
             if not self.runs.paint():
                 self.runs.go_on()
+
+    def _rest(self) -> float | None:
+        """Give the seconds until there is something to do; a slow page has painted till then."""
+        rest = self.runs.rest()
+        if rest is None and self._is_painting:
+            self._is_painting = False
+            self.runs.obey(Ready())
+            rest = self.runs.rest()
+        return rest
 
     @property
     def page(self) -> Models:
@@ -115,7 +133,9 @@ class Shown:
         self.pictures.append(picture)
         before = self.models[-1] if self.models else {}
         self.models.append({**before, **self._unpack(picture.block)})
-        self.runs.obey(Ready())
+        if self._is_quick:
+            self.runs.obey(Ready())
+        self._is_painting = not self._is_quick
 
 
 def keys(drawing: Drawing | None) -> list[str]:

@@ -26,7 +26,7 @@ PAPER = {**SMALL["bar"], "method": "paper", "max_iterations": 12}
 def test_every_view_that_applies_is_painted_of_the_iterate_that_the_words_name(
     scene: str, stage: str
 ) -> None:
-    shown = Shown()
+    shown = Shown(is_quick=True)
     for ticket in (1, 2):
         values = {**SMALL[scene], "linear_stage": stage, "max_iterations": 6}
         shown.run(ticket, scene, {**values, "friction": 0.3 + 0.01 * ticket})
@@ -44,7 +44,7 @@ def test_every_view_that_applies_is_painted_of_the_iterate_that_the_words_name(
 
 @pytest.mark.parametrize("scene", ["bar", "block", "rope"])
 def test_what_is_painted_bit_by_bit_is_what_is_painted_afresh_and_much_less(scene: str) -> None:
-    shown = Shown()
+    shown = Shown(is_quick=True)
     shown.run(1, scene, {**SMALL[scene], "method": "paper", "max_iterations": 12})
     for phase in (0.3, 0.4, 0.8):
         shown.obey(Watch(replace(ALL, phase=phase)))

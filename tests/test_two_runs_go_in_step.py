@@ -34,14 +34,14 @@ def rougher(scene: str, values: dict[str, Any]) -> dict[str, Any]:
     return scene_settings(scene).checked({**values, "friction": 0.4}).values()
 
 
-def paired(pause_after: int | None = None, **options: Any) -> Shown:
-    shown = Shown()
+def paired(pause_after: int | None = None, *, is_quick: bool = False, **options: Any) -> Shown:
+    shown = Shown(is_quick=is_quick)
     shown.run(1, "bar", BRIEF, pause_after=pause_after, twin=LONG, **options)
     return shown
 
 
 def test_both_are_shown_at_equal_iterations_until_each_has_ended() -> None:
-    shown = paired()
+    shown = paired(is_quick=True)
     twin = shown.runs._twin
     assert twin is not None
     assert [picture.facts.iteration for picture in shown.pictures][-1] == 30

@@ -65,6 +65,6 @@ def test_a_page_that_waits_says_what_changed_and_marks_it() -> None:
 
 
 def test_a_run_that_does_not_wait_says_nothing_of_changes() -> None:
-    shown = Shown()
+    shown = Shown(is_quick=True)
     shown.run(1, "bar", {**SMALL["bar"], "method": "paper", "max_iterations": 9})
     assert all("over its bound" not in one["status"]["text"] for one in shown.models)

@@ -8,6 +8,7 @@ import io
 import json
 import re
 import struct
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,12 @@ def told(scene: str, **options: Any) -> Shown:
     return shown
 
 
+@cache
+def run_of(scene: str) -> Shown:
+    """Give a run that is looked at alone."""
+    return told(scene)
+
+
 def read(text: str) -> tuple[list[str], list[dict[str, str]]]:
     """Give the comments of a table, and its rows."""
     lines = text.splitlines(keepends=True)
@@ -43,7 +50,7 @@ def column(rows: list[dict[str, str]], run: str, name: str) -> list[float]:
 
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_a_program_gives_the_records_of_the_page_again(scene: str) -> None:
-    recording = told(scene).recording
+    recording = run_of(scene).recording
     found: dict[str, Any] = {}
     exec(snippet(recording.settings), found)
     records = found["solution"].records
@@ -63,7 +70,7 @@ def test_a_program_has_no_reference_where_the_page_has_none() -> None:
 @pytest.mark.parametrize("what", list(TABLES))
 @pytest.mark.parametrize("scene", list(CATALOGUE))
 def test_every_table_has_the_settings_in_front_and_equal_rows(scene: str, what: str) -> None:
-    shown = told(scene)
+    shown = run_of(scene)
     comments, rows = read(table(what, shown.scene()))
     first = comments.index("settings of LATIN:\n") + 1
     settings = settings_from_toml("".join(comments[first:]))
@@ -73,8 +80,7 @@ def test_every_table_has_the_settings_in_front_and_equal_rows(scene: str, what: 
 
 
 def test_points_are_those_of_the_chosen_instant() -> None:
-    shown = told("block")
-    scene = shown.scene(instant=9)
+    scene = run_of("block").scene(instant=9)
     _, rows = read(table("points", scene))
     fields, stand = scene.frame.fields, scene.run.stand
     assert scene.run.reference is not None

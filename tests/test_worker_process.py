@@ -39,8 +39,8 @@ def same(found: History, expected: list[Record]) -> bool:
     )
 
 
-def shown_run(values: dict[str, Any], **options: Any) -> Shown:
-    shown = Shown()
+def shown_run(values: dict[str, Any], *, is_quick: bool = False, **options: Any) -> Shown:
+    shown = Shown(is_quick=is_quick)
     shown.run(1, "bar", values, **options)
     return shown
 
@@ -62,7 +62,7 @@ def test_worker_gives_the_numbers_of_a_direct_solution(values: dict[str, Any]) -
 
 
 def test_the_answer_is_a_picture_of_its_own_beside_the_iterates() -> None:
-    shown = shown_run({"finish": "accuracy"})
+    shown = shown_run({"finish": "accuracy"}, is_quick=True)
     last, end = (picture.facts for picture in shown.pictures[-2:])
     done = shown.recording.searched
     assert (last.iteration, last.is_over) == (done, False)

@@ -45,7 +45,7 @@ def test_seek_out_of_range_shows_the_nearest_iterate(wanted: int, answer: int) -
 
 
 def test_newer_seek_takes_the_place_of_an_older() -> None:
-    shown = Shown()
+    shown = Shown(is_quick=True)
     shown.run(1, "bar", SHORT)
     shown.obey(Seek(1, 39), Seek(1, 3))
     assert shown.pictures[-1].facts.iteration == 3
