@@ -42,6 +42,12 @@ class Checked(param.Parameterized):
         return MappingProxyType(found)
 
     @classmethod
+    @cache
+    def _defaults(cls) -> Mapping[str, Any]:
+        found = {name: definition.default for name, definition in cls.definitions().items()}
+        return MappingProxyType(found)
+
+    @classmethod
     def checked(cls, values: Mapping[str, object]) -> Self:
         """Check values and make a settings object of them.
 
@@ -56,7 +62,7 @@ class Checked(param.Parameterized):
             For an unknown name, a wrong type, a value out of range, or values that do not fit
             together.
         """
-        definitions = cls.definitions()
+        definitions, defaults = cls.definitions(), cls._defaults()
         clean = {}
         for name, value in values.items():
             if name in cls.RETIRED:
@@ -65,8 +71,9 @@ class Checked(param.Parameterized):
             if name not in definitions:
                 raise unknown(name, value, definitions)
             clean[name] = checked_value(definitions[name], name, value)
-        chosen = clean.get("method", definitions["method"].default)
-        settings = cls(**{**cls.of_method(chosen), **clean})
+        values = {**cls.of_method(clean.get("method", defaults["method"])), **clean}
+        # To tell param of a default takes as long as to tell it of anything else.
+        settings = cls(**{name: one for name, one in values.items() if one is not defaults[name]})
         settings.check_together()
         return settings
 
@@ -84,8 +91,7 @@ class Checked(param.Parameterized):
     @classmethod
     def usual(cls, method: str) -> dict[str, Any]:
         """Give every setting's value where nothing is said but the method."""
-        defaults = {name: definition.default for name, definition in cls.definitions().items()}
-        return {**defaults, **cls.of_method(method)}
+        return {**cls._defaults(), **cls.of_method(method)}
 
     def check_together(self) -> None:
         """Check what no setting can check alone; a scene extends this."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from solver.settings import Settings
@@ -10,6 +11,7 @@ WATCH, ANSWER = "accuracy", "at-once"
 """Values of `finish`: the method's own iterates until they are near, or a solution at once."""
 
 
+@cache
 def usual_settings(kind: type[Settings]) -> Settings:
     """Give the settings that a page begins a scene with."""
     return kind.checked({"finish": WATCH})

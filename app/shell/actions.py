@@ -19,7 +19,7 @@ from app.session.session import Session
 from app.session.undo import Undo
 from app.session.uploads import load_in, saved
 from solver.definitions import SettingError
-from solver.files import settings_from_toml
+from solver.files import scene_settings, settings_from_toml
 from solver.settings import Settings
 
 LONGEST_NAME = 40
@@ -94,7 +94,7 @@ class Actions:
             "present": lambda _: present(),
             "link": lambda _: copy(),
             "save": lambda _: self._save(),
-            "defaults": lambda _: self._adopt(usual_settings(type(session.wanted))),
+            "defaults": lambda _: self._adopt(usual_settings(scene_settings(session.wanted.scene))),
             "open": lambda file: self._open(*file),
             "keep": self._keep,
             "compare": self._compare,
