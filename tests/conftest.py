@@ -9,8 +9,10 @@ import one_thread  # noqa: F401  # before NumPy, which asks but once
 import gc
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing
+from pathlib import Path
+from typing import Any
 
 import hypothesis.internal.conjecture.providers as draws
 import pytest
@@ -22,9 +24,11 @@ from playwright.sync_api import expect, sync_playwright
 from processes import PATIENCE
 from proxy import Proxy
 from worker_line import Line
+from xdist.scheduler import LoadFileScheduling
 
 from app.session.report_executor import ReportExecutor
 from app.session.report_job import ReportJob
+from solver.study.figures import paper_runs as runs_of_the_paper
 from solver.study.figures.paper_runs import PaperRuns
 
 LONGEST_FIRST = (
@@ -75,6 +79,15 @@ LONGEST_FIRST = (
 )
 """Files of some four seconds of a processor or more. A worker has a file to itself, so whoever
 came to one of these last would work on alone."""
+TOGETHER = {
+    "the paper's runs": (
+        "test_figures_command",
+        "test_page_paper_figures",
+        "test_paper_figures_3_and_4",
+        "test_paper_figures_5_to_8",
+    ),
+}
+"""Files that one worker has, one after the other, by what it keeps from each to the next."""
 
 # What the first process compiles is there for the hundreds after it, servers and commands too
 sys.dont_write_bytecode = False
@@ -93,6 +106,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take longest, and keep the order of all else."""
     places = {name: place for place, name in enumerate(LONGEST_FIRST)}
     items.sort(key=lambda item: places.get(item.path.stem, len(places)))
+
+
+class Together(LoadFileScheduling):
+    """Gives a worker a file at a time, or all files that share what one of them made."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = super()._split_scope(nodeid)
+        return next((name for name, files in TOGETHER.items() if Path(file).stem in files), file)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Together:
+    return Together(config, log)
 
 
 def pytest_collection_finish() -> None:
@@ -126,9 +152,29 @@ def chrome() -> Iterator[Chrome]:
 
 
 @pytest.fixture(scope="session")
-def paper_runs() -> PaperRuns:
+def solved() -> list[str]:
+    """Give what was called to solve the runs of the paper's figures, in order."""
+    return []
+
+
+@pytest.fixture(scope="session")
+def paper_runs(solved: list[str]) -> Iterator[PaperRuns]:
     """Give the runs behind the paper's figures, each solved when it is first asked for."""
-    return PaperRuns()
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("solve", "incremental"):
+            patch.setattr(runs_of_the_paper, name, counted(name, solved))
+        yield PaperRuns()
+
+
+def counted(name: str, calls: list[str]) -> Callable[..., object]:
+    """Give a function of these runs that also says that it was called."""
+    real = getattr(runs_of_the_paper, name)
+
+    def call(*given: object, **options: object) -> object:
+        calls.append(name)
+        return real(*given, **options)
+
+    return call
 
 
 @pytest.fixture

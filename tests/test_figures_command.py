@@ -13,7 +13,6 @@ import pytest
 from solver import report_commands
 from solver.cli import main
 from solver.study.chart import Panel, PanelAxis, PanelCurve
-from solver.study.figures import paper_runs
 from solver.study.figures.figure_data import Finding, PaperFigure
 from solver.study.figures.paper_figures import paper_figures
 
@@ -37,28 +36,9 @@ SMALL = PaperFigure(
 )
 
 
-def counted(name, calls):
-    real = getattr(paper_runs, name)
-
-    def call(*given, **options):
-        calls.append(name)
-        return real(*given, **options)
-
-    return call
-
-
 @pytest.fixture(scope="module")
-def solved():
-    """Give what was called to solve the runs of the figures, in order."""
-    return []
-
-
-@pytest.fixture(scope="module")
-def figures(solved):
-    with pytest.MonkeyPatch.context() as patch:
-        for name in ("solve", "incremental"):
-            patch.setattr(paper_runs, name, counted(name, solved))
-        return paper_figures()
+def figures(paper_runs):
+    return paper_figures(paper_runs)
 
 
 def test_all_figures_together_solve_nothing_twice(figures, solved):

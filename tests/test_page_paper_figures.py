@@ -27,6 +27,7 @@ from app.session.report_folder import SECTIONS, ReportFolder, said
 from app.session.report_job import Found, ReportJob
 from app.session.studies import figures_of_the_paper
 from solver.study.chart import Panel
+from solver.study.figures.paper_runs import PaperRuns
 from solver.study.page import PlotSection, Section
 
 
@@ -43,7 +44,12 @@ def seen() -> list[int]:
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: list[int]) -> Found:
+def found(
+    tmp_path_factory: pytest.TempPathFactory,
+    paper_runs: PaperRuns,
+    told: list[float],
+    seen: list[int],
+) -> Found:
     folder = tmp_path_factory.mktemp("figures")
 
     class Spied(ReportFolder):
@@ -56,6 +62,7 @@ def found(tmp_path_factory: pytest.TempPathFactory, told: list[float], seen: lis
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.session.studies.ReportFolder", Spied)
+        patch.setattr("app.session.studies.PaperRuns", lambda: paper_runs)
         figures_of_the_paper(folder)
     return Found("any", pickle.loads(said(folder, SECTIONS)))
 
@@ -84,10 +91,13 @@ def job() -> Iterator[ReportJob]:
 
 
 @pytest.fixture
-def view(job: ReportJob) -> PaperFigures:
+def view(job: ReportJob) -> Iterator[PaperFigures]:
     made = PaperFigures(job)
     made.view.visible = True
-    return made
+    yield made
+    # Or they would still be drawn beside the tests of other files.
+    for _, drawing in made._drawings:
+        drawing.cancel()
 
 
 def test_they_come_one_by_one_and_say_how_far_they_are(
