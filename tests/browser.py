@@ -132,6 +132,8 @@ class Server:
     def wait(self, seconds: float = PATIENCE) -> None:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
+            code = self._process.poll()
+            assert code is None, f"the server has ended with code {code}:\n{self.log}"
             try:
                 urllib.request.urlopen(self.health, timeout=1).close()
             except OSError:

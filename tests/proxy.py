@@ -6,6 +6,8 @@ import socket
 from contextlib import suppress
 from threading import Event, Thread
 
+from processes import PATIENCE
+
 TEXT = 0x81
 """Begins a frame of a WebSocket that is a text."""
 LONGER = 126
@@ -34,6 +36,7 @@ class Proxy:
         self._flows.set()
         self._opens = Event()
         self._opens.set()
+        self._torn = Event()
         self._sockets: list[socket.socket] = []
         self._silent: list[socket.socket] = []
         Thread(target=self._accept, daemon=True).start()
@@ -46,8 +49,13 @@ class Proxy:
         self.drop()
 
     def tear(self) -> None:
-        """Cut it in the midst of the server's next message: only its first frame passes."""
+        """Cut it in the midst of the server's next message: only its first frame passes.
+
+        Come back once it is cut: else a message that comes late would cut what was mended before.
+        """
+        self._torn.clear()
         self._is_to_tear = True
+        assert self._torn.wait(PATIENCE), "no message came that could be torn"
 
     def hush(self) -> None:
         """Keep all connections, and pass nothing on."""
@@ -109,6 +117,7 @@ class Proxy:
                     self._is_to_tear = False
                     sink.sendall(_first_frame(data))
                     self.cut()
+                    self._torn.set()
                     break
                 sink.sendall(data)
         for one in (source, sink):

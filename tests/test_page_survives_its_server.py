@@ -90,6 +90,8 @@ def test_a_page_whose_socket_broke_goes_on_where_it_was(network: Network) -> Non
         page.clock.run_for(16000)
         expect(status(page)).to_contain_text("not connected")
         mended()
+        # Whoever waits for a page in vain should know whether there was a server.
+        network.server.wait()
         expect(status(page)).to_contain_text("36 substructures")
         # Nothing is left of what Bokeh asked for, and keys are heard as often as before.
         comes_true(page, f"window.stayed && {PAGES} === 1")
