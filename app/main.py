@@ -7,6 +7,6 @@ root = str(Path(__file__).resolve().parents[1])
 if root not in sys.path:
     sys.path.insert(0, root)
 
-from app.server.serve import open_page  # noqa: E402  # the root is on the path only from here on
+from app.page import open_page  # noqa: E402  # the root is on the path only from here on
 
 open_page().servable()

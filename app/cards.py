@@ -1,0 +1,72 @@
+"""A card holds one view, and others as tabs, which take its place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.state import PageState
+from app.views.view import View
+
+TABS = {
+    "& .MuiTabs-root": {"minHeight": "28px"},
+    "& .MuiTab-root": {"minHeight": "28px", "padding": "2px 8px", "minWidth": 0, "textTransform": "none", "fontSize": "13px"},
+}
+
+
+class Card:
+    """The views of one card, of which one is in sight.
+
+    Parameters
+    ----------
+    kinds
+        The views that share the card.
+    state
+        Of the page.
+    changed
+        Called when another view comes in sight.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    """
+
+    def __init__(
+        self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
+    ) -> None:
+        self._all = [kind(state) for kind in kinds]
+        self._fitting: list[View] = []
+        self._changed = changed
+        self.view = pmui.Tabs(
+            dynamic=True, sizing_mode="stretch_both", min_height=170, margin=0, sx=TABS
+        )
+        self.view.param.watch(lambda event: self._turn(), "active")
+
+    @property
+    def seen(self) -> View | None:
+        """The view in sight."""
+        return self._fitting[self.view.active] if self._fitting else None
+
+    def fit(self, state: PageState) -> None:
+        """Offer the views that say anything about the present settings."""
+        fitting = [view for view in self._all if view.applies(state.settings)]
+        if fitting == self._fitting:
+            return
+        seen = self.seen
+        self._fitting = fitting
+        self.view.visible = bool(fitting)
+        active = fitting.index(seen) if seen in fitting else 0
+        self.view[:] = [(view.name, pn.Column(sizing_mode="stretch_both", margin=0)) for view in fitting]
+        self.view.active = active
+        self._turn()
+
+    def _turn(self) -> None:
+        """Make the figure of the view in sight, where it was not seen yet."""
+        view = self.seen
+        if view is not None and not self.view[self.view.active].objects:
+            pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+            self.view[self.view.active].append(pane)
+        self._changed()

@@ -1,0 +1,271 @@
+"""What the page knows of a run: `Run` is alike for all its iterates, a `Frame` is one iterate.
+
+All arrays are in SI, float32, space first and time last, thinned to what a screen shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.discrete.structure import Description
+from solver.latin import Status
+from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.settings import Settings
+
+Floats = NDArray[np.float32]
+Bytes = NDArray[np.int8]
+OPEN = 2
+"""Status of a point without contact; -1 is slip backward, 0 stick, +1 slip forward."""
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """What an interface is in every iterate.
+
+    Attributes
+    ----------
+    positions
+        Of its points along the bodies, shape (n_points,), m.
+    cuts
+        Where substructures meet, m.
+    bound
+        Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1) where it does
+        not change; None where it depends on the pressure.
+    coefficient
+        Coefficient of friction, shape (n_points, 1), where the bound depends on the pressure.
+    """
+
+    positions: Floats
+    cuts: Floats
+    bound: Floats | None
+    coefficient: Floats | None
+
+
+@dataclass(frozen=True, eq=False)
+class ContactFields:
+    """Contact at one interface.
+
+    Attributes
+    ----------
+    friction
+        Friction force on the body above, shape (n_points, n_instants), N/m along rods, Pa in the
+        plane.
+    pressure
+        Same shape, Pa; None where it is given.
+    status
+        -1, 0, +1 or `OPEN`, same shape.
+    """
+
+    friction: Floats
+    pressure: Floats | None
+    status: Bytes
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """The undeformed bodies as they are drawn.
+
+    Attributes
+    ----------
+    description
+        Bodies, what holds them and what acts on them.
+    nodes
+        Corners of the quadrilaterals, shape (n_nodes, 2), m; rods are drawn with a thickness.
+    quads
+        Nodes of each quadrilateral, shape (n_quads, 4).
+    parts
+        Substructure of each quadrilateral, shape (n_quads,).
+    points
+        Contact points, shape (n_points, 2), m.
+    chains
+        Number of the interface of each contact point, shape (n_points,).
+    seams
+        Lines on the bodies, as between the wires of a rope, broken by NaN, shape (n, 2), m.
+    """
+
+    description: Description
+    nodes: Floats
+    quads: NDArray[np.int32]
+    parts: NDArray[np.intp]
+    points: Floats
+    chains: NDArray[np.intp]
+    seams: Floats = field(default_factory=lambda: np.zeros((0, 2), dtype=np.float32))
+
+
+@dataclass(frozen=True, eq=False)
+class DeformedGeometry:
+    """How the bodies have moved, at every instant.
+
+    Attributes
+    ----------
+    nodes
+        Displacement of the nodes, shape (n_nodes, 2, n_instants), m.
+    points
+        Displacement of the contact points, shape (n_points, 2, n_instants), m.
+    status
+        Of the contact points, shape (n_points, n_instants).
+    quads
+        Status of every quadrilateral where these are wires that slip, shape (n_quads, n_instants);
+        else None.
+    """
+
+    nodes: Floats
+    points: Floats
+    status: Bytes
+    quads: Bytes | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What all frames of a run share.
+
+    Attributes
+    ----------
+    number
+        Counts the runs of a page, from 1.
+    settings
+        Of the run.
+    sentence
+        What the scene is and what acts on it.
+    instants
+        Shape (n_instants,), s.
+    interfaces
+        All interfaces with friction, by name.
+    geometry
+        The undeformed bodies.
+    across, up
+        Title and SI unit of the loop's displacement and force.
+    load
+        The load path, shape (n_instants,), in the unit of `up`; None where frames have it.
+    exact
+        Closed forms of the scene, at the same instants.
+    reference
+        Contact of the incremental solver, by interface; empty while there is none.
+    reference_loop
+        Its displacement and force, shape (2, n_instants).
+    reference_seconds
+        Time that it took, s.
+    is_idle
+        Whether nothing acts, so that nothing moves.
+    """
+
+    number: int
+    settings: Settings
+    sentence: str
+    instants: Floats
+    interfaces: Mapping[str, Interface]
+    geometry: Geometry
+    across: tuple[str, str]
+    up: tuple[str, str]
+    load: Floats | None
+    exact: tuple[ExactCurve, ...] = ()
+    reference: Mapping[str, ContactFields] = field(default_factory=dict)
+    reference_loop: Floats | None = None
+    reference_seconds: float = float("nan")
+    is_idle: bool = False
+
+    def known(self, quantity: str) -> list[ExactCurve]:
+        """Closed forms of one quantity."""
+        return [curve for curve in self.exact if curve.of == quantity]
+
+    def column(self, phase: float) -> int:
+        """Index of the instant at a share of the interval."""
+        time = phase * float(self.instants[-1])
+        return int(np.argmin(np.abs(self.instants - time)))
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One iterate of a run.
+
+    Attributes
+    ----------
+    run
+        What it belongs to.
+    iteration
+        Its number, from 1.
+    is_answer
+        Whether it is the certified solution, which is no iteration of the search.
+    contact
+        Contact fields by interface: the selected one, and all others where they are small.
+    deformed
+        How the bodies have moved.
+    loop
+        Displacement and force of the loop, shape (2, n_instants).
+    history
+        Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
+        (n_iterations,).
+    status
+        How the run ends, once it does.
+    energy
+        Energy lost in the whole interval, J.
+    extras
+        What only some views need, by name, as far as one of them was in sight.
+    readings
+        Quantities of the run that a lesson names, by name.
+    """
+
+    run: Run
+    iteration: int
+    is_answer: bool
+    contact: Mapping[str, ContactFields]
+    deformed: DeformedGeometry
+    loop: Floats
+    history: Mapping[str, Floats]
+    status: Status | None = None
+    energy: float = float("nan")
+    extras: Mapping[str, Any] = field(default_factory=dict)
+    readings: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of its arrays."""
+        fields = [a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)]
+        moved = self.deformed
+        arrays = [*fields, moved.nodes, moved.points, moved.status, moved.quads, self.loop]
+        return sum(array.nbytes for array in arrays if array is not None)
+
+    def last(self, name: str) -> float:
+        """The newest value of one of the history's scalars; NaN where there is none."""
+        values = self.history[name]
+        return float(values[-1]) if len(values) else float("nan")
+
+    @property
+    def error(self) -> float:
+        """Relative error of the contact force; estimated where there is no reference."""
+        measured = self.last("error_force")
+        return measured if np.isfinite(measured) else self.last("estimated_error")
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What is looked at.
+
+    Attributes
+    ----------
+    phase
+        The instant, as a share of the interval.
+    interface
+        Name of the selected interface.
+    substructure
+        Number of the selected substructure, from 0; None is the last.
+    place
+        Position along the bodies that is marked, m.
+    stress
+        Component of stress that colours the bodies.
+    """
+
+    phase: float = 0.75
+    interface: str = ""
+    substructure: int | None = None
+    place: float | None = None
+    stress: str = "von Mises"
+
+    def interface_of(self, run: Run) -> str:
+        """The selected interface of a run, or its default one."""
+        return self.interface if self.interface in run.interfaces else next(iter(run.interfaces))

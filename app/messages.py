@@ -1,0 +1,139 @@
+"""What the page and its worker process send each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from app.frame import Frame
+from solver.settings import Settings
+
+WHOLE = -1.0
+"""Pace at which the whole search takes three seconds."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Start a run.
+
+    Attributes
+    ----------
+    number
+        Of the run.
+    pace
+        Iterations a second; 0 waits, `WHOLE` takes three seconds for all, infinity is as fast as
+        it can.
+    is_dragged
+        Whether a slider is being dragged: the run hurries to its end before it is shown.
+    is_agreed
+        Whether it may take long or much memory.
+    """
+
+    number: int
+    settings: Settings
+    pace: float
+    is_dragged: bool = False
+    is_agreed: bool = False
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Go on at another pace."""
+
+    pace: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """Do some iterations and wait."""
+
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What frames shall carry.
+
+    Attributes
+    ----------
+    extras
+        Names of the extras that views in sight need.
+    interface
+        The selected interface.
+    substructure, place, stress
+        As in `Selection`.
+    readings
+        Names of quantities of the run.
+    """
+
+    extras: frozenset[str] = frozenset()
+    interface: str = ""
+    substructure: int | None = None
+    place: float | None = None
+    stress: str = "von Mises"
+    readings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Ready:
+    """The last picture is on the screen: the newest frame may be sent."""
+
+
+@dataclass(frozen=True)
+class Compute:
+    """Compute something of the newest iterate: a table, a file, a distance.
+
+    `function` is importable, and is called with the worker's `Runner` and `argument`.
+    """
+
+    function: Any
+    argument: Any = None
+
+
+Order = Start | Pace | Step | Needs | Ready | Compute
+
+
+@dataclass(frozen=True)
+class Began:
+    """A run was taken up."""
+
+    number: int
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A frame, and whether the run goes on."""
+
+    frame: Frame
+    goes_on: bool
+
+
+@dataclass(frozen=True)
+class Costly:
+    """A run was not begun, as it takes long or much memory."""
+
+    number: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Failed:
+    """A run broke."""
+
+    number: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Computed:
+    """What a `Compute` came to; an exception where it failed."""
+
+    result: Any
+
+
+@dataclass(frozen=True)
+class Alive:
+    """A sign of life."""
+
+
+Report = Began | Shown | Costly | Failed | Computed | Alive

@@ -1,0 +1,248 @@
+"""What a page shows: its settings, the frame on the screen, what is selected, how the run goes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import param
+
+from app.frame import Frame, Selection
+from app.history import History
+from app.messages import (
+    WHOLE,
+    Began,
+    Computed,
+    Costly,
+    Failed,
+    Needs,
+    Order,
+    Pace,
+    Ready,
+    Report,
+    Shown,
+    Start,
+    Step,
+)
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+
+SEARCH = {"start": "zero", "finish": "accuracy"}
+"""Settings with which one sees the search from nothing, as a page begins."""
+ANSWER = {"start": "nested", "finish": "at-once"}
+"""Settings with which the answer is there at once."""
+PACES = {
+    "whole in 3 s": WHOLE,
+    "1 a second": 1.0,
+    "5 a second": 5.0,
+    "20 a second": 20.0,
+    "fastest": math.inf,
+}
+
+
+def default_settings(scene: str) -> Settings:
+    """Settings with which a page begins a scene."""
+    return CATALOGUE[scene].settings.checked(SEARCH)
+
+
+class PageState(param.Parameterized):
+    """The state of a page, and what changes it.
+
+    Widgets set it, views and widgets watch it; `send` hands orders to the worker.
+    """
+
+    settings = param.ClassSelector(class_=Settings, allow_None=False, doc="Of the run, checked.")
+    selection = param.ClassSelector(class_=Selection, default=Selection(), doc="What is seen.")
+    frame = param.ClassSelector(class_=Frame, default=None, doc="The frame that is shown.")
+    newest = param.ClassSelector(class_=Frame, default=None, doc="The newest frame of the run.")
+    ghost = param.ClassSelector(class_=Frame, default=None, doc="Of the pinned or the last run.")
+    pinned = param.ClassSelector(class_=History, default=None, doc="Frames of the pinned run.")
+    iteration = param.Integer(default=None, doc="The one that is gone back to; None follows.")
+    running = param.Boolean(default=True, doc="Whether the run goes on by itself.")
+    pace = param.Selector(default="whole in 3 s", objects=list(PACES), doc="Iterations a second.")
+    needs = param.ClassSelector(class_=frozenset, default=frozenset(), doc="Extras in sight.")
+    readings = param.List(default=[], doc="Quantities that a lesson names.")
+    refusal = param.String(doc="What was refused and why.")
+    message = param.String(doc="What the page says of itself: a loss, a cost, a fault.")
+    is_costly = param.Boolean(default=False, doc="Whether the run waits to be agreed to.")
+
+    def __init__(self, settings: Settings, **values: Any) -> None:
+        super().__init__(settings=settings, **values)
+        self.send: Callable[[Order], None] = lambda order: None
+        self.history = History()
+        self.number = 0
+        self.began = 0
+        self._waiting: list[Callable[[Any], None]] = []
+        self.param.watch(self._on_needs, ["selection", "needs", "readings"])
+        self.param.watch(lambda event: self.send(Pace(PACES[event.new])), "pace")
+
+    # ------------------------------------------------------------------ settings
+
+    def change(self, **values: object) -> bool:
+        """Change settings and run; one that is refused is told, and nothing changes."""
+        try:
+            settings = self.settings
+            for name, value in values.items():
+                settings = settings.with_change(name, value)
+        except RefusedError as refused:
+            self.refusal = str(refused)
+            return False
+        self.adopt(settings)
+        return True
+
+    def drag(self, name: str, value: object) -> None:
+        """Follow a slider that is dragged: the answer alone is shown until it is let go."""
+        try:
+            settings = self.settings.with_change(name, value)
+        except RefusedError as refused:
+            self.refusal = str(refused)
+            return
+        with param.parameterized.batch_call_watchers(self):
+            self.refusal = ""
+            self.settings = settings
+        self._start(answer(settings), is_dragged=True)
+
+    def adopt(self, settings: Settings) -> None:
+        """Take settings over and run them."""
+        self.param.update(settings=settings, refusal="", running=True)
+        self.run()
+
+    # ----------------------------------------------------------------------- run
+
+    def run(self, *, is_agreed: bool = False) -> None:
+        """Run the settings from the start, at the pace."""
+        self.running = True
+        self._start(self.settings, is_agreed=is_agreed)
+
+    def pause(self) -> None:
+        """Have the run wait."""
+        self.running = False
+        self.send(Pace(0.0))
+
+    def go_on(self) -> None:
+        """Have the run go on; one that has ended begins anew."""
+        if self.newest is None or self.newest.status is not None or self.is_costly:
+            self.run(is_agreed=self.is_costly)
+            return
+        self.param.update(running=True, iteration=None)
+        self.send(Pace(PACES[self.pace]))
+
+    def step(self) -> None:
+        """Do one iteration and wait; of a run that has ended, show the next."""
+        shown, newest = self.frame, self.newest
+        if shown is not None and newest is not None and shown is not newest:
+            self.seek(shown.iteration + 1)
+            return
+        self.param.update(running=False, iteration=None)
+        self.send(Step())
+
+    def reset(self) -> None:
+        """Begin anew, and wait after the first iteration."""
+        self.running = False
+        self._start(self.settings, pace=0.0)
+
+    def seek(self, iteration: int) -> None:
+        """Show an earlier iterate of the run; beyond the last the newest."""
+        newest = self.newest
+        if newest is None:
+            return
+        if iteration > newest.iteration or (iteration == newest.iteration and not newest.is_answer):
+            self.param.update(iteration=None, frame=newest, ghost=self._ghost_at(newest))
+        else:
+            frame = self.history.at(max(iteration, 1))
+            assert frame is not None
+            self.param.update(iteration=frame.iteration, frame=frame, ghost=self._ghost_at(frame))
+
+    def _start(
+        self,
+        settings: Settings,
+        *,
+        pace: float | None = None,
+        is_dragged: bool = False,
+        is_agreed: bool = False,
+    ) -> None:
+        self.number += 1
+        self.param.update(is_costly=False, message="", iteration=None)
+        pace = PACES[self.pace] if pace is None else pace
+        self.send(Start(self.number, settings, pace, is_dragged, is_agreed))
+
+    # ------------------------------------------------------------------- compare
+
+    def pin(self) -> None:
+        """Keep the present run beside what follows; or let it go."""
+        self.pinned = None if self.pinned is not None else self.history
+        if self.frame is not None:
+            self.ghost = self._ghost_at(self.frame)
+
+    def _ghost_at(self, frame: Frame) -> Frame | None:
+        """The frame that a frame is compared with: of the pinned run at the same iteration."""
+        if self.pinned is None or self.pinned is self.history:
+            return self._last_run
+        return self.pinned.newest if frame.is_answer else self.pinned.at(frame.iteration)
+
+    _last_run: Frame | None = None
+
+    # ------------------------------------------------------------------- reports
+
+    def take(self, report: Report) -> None:
+        """Take what the worker reports."""
+        match report:
+            case Began(number):
+                self.began = number
+            case Shown(frame, _):
+                self._show(frame)
+            case Costly(number, text) if number == self.number:
+                self.is_costly = True
+                self.message = f"This would take about {text}: run anyway, or choose fewer elements, instants or bodies."
+            case Failed(number, text) if number == self.number:
+                self.message = text
+            case Computed(result) if self._waiting:
+                self._waiting.pop(0)(result)
+            case _:
+                pass
+
+    def _show(self, frame: Frame) -> None:
+        if frame.run.number != self.number:
+            self.send(Ready())
+            return
+        first = not len(self.history) or self.history.newest.run.number != self.number
+        if first:
+            if self.pinned is not self.history:
+                self._last_run = self.history.newest
+            self.history = History()
+        self.history.add(frame)
+        with param.parameterized.batch_call_watchers(self):
+            self.newest = frame
+            if self.iteration is None:
+                self.frame, self.ghost = frame, self._ghost_at(frame)
+            elif frame.status is not None or True:
+                self.param.trigger("frame")
+
+    def compute(self, order: Order, then: Callable[[Any], None]) -> None:
+        """Have the worker compute something of the newest iterate, and do something with it."""
+        self._waiting.append(then)
+        self.send(order)
+
+    def _on_needs(self, *events: Any) -> None:
+        chosen = self.selection
+        needs = Needs(
+            self.needs, chosen.interface, chosen.substructure, chosen.place, chosen.stress,
+            tuple(self.readings),
+        )
+        if needs != getattr(self, "_sent_needs", None):
+            self._sent_needs = needs
+            self.send(needs)
+
+    def select(self, **values: Any) -> None:
+        """Look at something else."""
+        self.selection = replace(self.selection, **values)
+
+
+def answer(settings: Settings) -> Settings:
+    """Settings with which the answer is there at once, of a search that would show itself."""
+    if settings.finish != SEARCH["finish"]:
+        return settings
+    return settings.replace(**ANSWER)

@@ -1,1 +1,0 @@
-"""Views of bodies: how they lie, what holds them, what acts on them, stress in them."""

@@ -1,1 +1,0 @@
-"""Views of how far a run is, over iterations and over time."""

@@ -1,1 +1,0 @@
-"""What all views draw with: curves, axes, colours, legends, strokes, units, figures."""

@@ -1,1 +1,0 @@
-"""Views of interfaces: pressure, friction, and where they slip."""

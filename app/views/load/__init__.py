@@ -1,1 +1,0 @@
-"""Views of the load: what acts over time, its loop, its cycles."""

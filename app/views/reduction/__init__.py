@@ -1,1 +1,0 @@
-"""Views of reduced bases: modes, singular values, fronts as clips."""

@@ -1,0 +1,166 @@
+"""The process of a page: it takes orders, and between them works at its page's run."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+import time
+from collections import deque
+from multiprocessing.connection import Connection
+
+import numpy as np
+
+from app.messages import (
+    Alive,
+    Began,
+    Compute,
+    Computed,
+    Costly,
+    Failed,
+    Needs,
+    Order,
+    Pace,
+    Ready,
+    Report,
+    Shown,
+    Start,
+    Step,
+)
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.refusal import RefusedError
+
+NICENESS = 5
+"""Below the server, so that pages stay alive; at 10 the first picture of a run waits 0.1 s."""
+HEARTBEAT = 2.0
+"""Seconds between two signs of life."""
+
+
+def main(connection: Connection) -> None:
+    """Take orders until the server, or the page, is gone."""
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # A run that diverges is told by its status.
+    np.seterr(over="ignore", invalid="ignore", divide="ignore")
+    with contextlib.suppress(OSError, EOFError):
+        Loop(connection).serve()
+
+
+class Loop:
+    """Orders in, reports out; one run at a time.
+
+    Parameters
+    ----------
+    connection
+        To the server.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._sending = threading.Lock()
+        self._orders: deque[Order] = deque()
+        self._references = ReferenceCache()
+        self._runner: Runner | None = None
+        self._number = 0
+        self._needs, self._is_ready = Needs(), True
+        threading.Thread(target=self._beat, daemon=True).start()
+
+    def serve(self) -> None:
+        """Take orders and work in between, without end."""
+        while True:
+            self._receive(0.0 if self._orders else self._rest())
+            while self._orders:
+                self._guard(self._obey, self._orders.popleft())
+            if self._runner is not None:
+                self._guard(self._work, self._runner)
+
+    def _work(self, runner: Runner) -> None:
+        if runner.rest() == 0.0:
+            runner.advance()
+        if self._is_ready and runner.is_presentable:
+            self._is_ready = False
+            goes_on = runner.status is None and runner.pacing.goes_on
+            self._send(Shown(runner.frame(self._needs), goes_on))
+
+    def _rest(self) -> float | None:
+        """Seconds to wait for an order."""
+        runner = self._runner
+        if runner is None:
+            return None
+        return 0.0 if self._is_ready and runner.is_presentable else runner.rest()
+
+    def _obey(self, order: Order) -> None:
+        runner = self._runner
+        match order:
+            case Start():
+                self._begin(order)
+            case Ready():
+                self._is_ready = True
+            case Needs():
+                self._needs = order
+                if runner is not None and runner.iterate is not None:
+                    runner.has_news = True
+            case Pace(pace) if runner is not None:
+                runner.pacing.change(pace)
+                runner.has_news = runner.iterate is not None
+            case Step(count) if runner is not None:
+                runner.pacing.step(count)
+            case Compute(function, argument) if runner is not None:
+                try:
+                    self._send(Computed(function(runner, argument)))
+                except Exception as problem:  # noqa: BLE001  # whoever asked is told
+                    self._send(Computed(problem))
+            case _:
+                pass
+
+    def _begin(self, start: Start) -> None:
+        self._send(Began(start.number))
+        self._number, self._runner = start.number, None
+        runner = Runner(start, self._references, self._is_superseded)
+        if runner.cost.is_to_be_agreed and not start.is_agreed:
+            self._send(Costly(start.number, str(runner.cost)))
+        else:
+            self._runner = runner
+
+    def _guard(self, action: object, argument: object) -> None:
+        """Do something; what breaks is told, and ends the run."""
+        try:
+            action(argument)  # type: ignore[operator]
+        except (RefusedError, FloatingPointError) as problem:
+            self._fail(str(problem))
+        except (OSError, EOFError):
+            raise
+        except Exception as problem:  # noqa: BLE001  # a page outlives a fault of the engine
+            text = f"The run broke ({type(problem).__name__}: {problem})."
+            self._fail(f"{text} Change a setting, or lower the numbers of elements and instants.")
+
+    def _fail(self, text: str) -> None:
+        self._runner = None
+        self._send(Failed(self._number, text))
+
+    def _is_superseded(self) -> bool:
+        """Whether another run is ordered."""
+        self._receive(0.0)
+        return any(isinstance(order, Start) for order in self._orders)
+
+    def _receive(self, timeout: float | None) -> None:
+        """Take what has been ordered; of several runs, only the last counts."""
+        while self._connection.poll(timeout):
+            order = self._connection.recv()
+            if isinstance(order, Start):
+                self._orders = deque(o for o in self._orders if isinstance(o, Ready | Needs))
+            self._orders.append(order)
+            timeout = 0.0
+
+    def _send(self, report: Report) -> None:
+        with self._sending:
+            self._connection.send(report)
+
+    def _beat(self) -> None:
+        with contextlib.suppress(OSError):
+            while True:
+                self._send(Alive())
+                time.sleep(HEARTBEAT)

@@ -1,0 +1,62 @@
+"""References of the last problems that a process has solved."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from solver.discrete import Problem
+from solver.reference.choice import reference_of
+from solver.reference.condensation import NoReferenceError
+from solver.reference.fingerprint import fingerprint
+from solver.reference.solution import Reference
+from solver.settings import Settings
+
+MOST_JUMPS = 1000
+"""Jumps up to which a reference takes no longer than a second or two; its time grows with their
+cube (measured: 8 s for 1900)."""
+ENTRIES = 8
+
+
+def has_reference(settings: Settings) -> bool:
+    """Whether a run is compared with an incremental solver."""
+    return settings.n_jumps <= MOST_JUMPS
+
+
+class ReferenceCache:
+    """The references last used, without their problems, whose matrices take most memory."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[bytes, Reference] = OrderedDict()
+
+    def of(
+        self, settings: Settings, problem: Problem, stop: Callable[[], bool]
+    ) -> Reference | None:
+        """The reference of a problem, or None where there is none.
+
+        Raises
+        ------
+        Interrupted
+            As soon as `stop` gives True.
+        """
+        if not has_reference(settings):
+            return None
+        key = fingerprint(problem)
+        reference = self._kept.pop(key, None) or _solve(problem, stop)
+        if reference is None:
+            return None
+        no_problem: Any = None
+        self._kept[key] = replace(reference, problem=no_problem)
+        if len(self._kept) > ENTRIES:
+            self._kept.popitem(last=False)
+        return replace(reference, problem=problem)
+
+
+def _solve(problem: Problem, stop: Callable[[], bool]) -> Reference | None:
+    try:
+        reference = reference_of(problem, stop)
+    except NoReferenceError:
+        return None
+    return reference if reference.converged.all() else None

@@ -1,0 +1,128 @@
+"""A run in the worker process: one small piece of work at a time, and frames of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from app.frame import Frame
+from app.messages import Needs, Start
+from app.worker.pacing import Pacing
+from app.worker.references import ReferenceCache, has_reference
+from app.worker.sampling import Sampler
+from solver.latin import Ending, Iterate, Record, Status, judged, record
+from solver.latin.run_cost import RunCost, run_cost
+from solver.reference.distance import Distance, distance_to
+from solver.reference.solution import Interrupted
+from solver.scenes import discretise
+from solver.scenes.method import method_of
+
+HURRY = 0.1
+"""Seconds that a run which follows a dragged slider has to end before it is shown."""
+
+
+class Runner:
+    """One run: its first iteration, then the reference, then the others as they are due.
+
+    Parameters
+    ----------
+    start
+        What to run.
+    references
+        Cache of the process.
+    interrupted
+        Whether an order waits that ends this run.
+
+    Attributes
+    ----------
+    sampler, iterate, history, status
+        The problem as it is shown, its newest iterate, a record of each, and how it ended.
+    pacing
+        When the next iteration is due.
+    has_news
+        Whether something has changed since the last frame.
+    """
+
+    def __init__(
+        self, start: Start, references: ReferenceCache, interrupted: Callable[[], bool]
+    ) -> None:
+        self.settings, self.is_dragged = start.settings, start.is_dragged
+        began = time.perf_counter()
+        problem, latin = discretise(start.settings), method_of(start.settings)
+        self.cost: RunCost = run_cost(
+            problem,
+            latin,
+            start.settings.max_iterations,
+            with_reference=has_reference(start.settings),
+        )
+        spent = time.perf_counter() - began
+        self.sampler = Sampler(problem, start.settings, start.number)
+        self.iterate: Iterate | None = None
+        self.history: list[Record] = []
+        self.status: Status | None = None
+        self.has_news = False
+        self.pacing = Pacing(start.pace)
+        self._iterates = judged(problem, latin, spent=spent, resumable=False)
+        self._references, self._interrupted = references, interrupted
+        self._is_compared = False
+        self._distance: Distance | None = None
+        self._hurries_until = time.monotonic() + (HURRY if start.is_dragged else 0.0)
+
+    @property
+    def hurries(self) -> bool:
+        """Whether it goes on to its end before it is shown."""
+        return self.status is None and time.monotonic() < self._hurries_until
+
+    @property
+    def is_presentable(self) -> bool:
+        """Whether there is something new to show."""
+        return self.has_news and self.iterate is not None and not self.hurries
+
+    def rest(self) -> float | None:
+        """Seconds until there is something to do; None waits for an order."""
+        if self.iterate is None or self.hurries:
+            return 0.0
+        if not self._is_compared and not (self.is_dragged and self.has_news):
+            return 0.0
+        return None if self.status is not None else self.pacing.rest()
+
+    def advance(self) -> None:
+        """Do one piece of work."""
+        if self.iterate is not None and not self._is_compared and not self.hurries:
+            self._compare()
+        else:
+            self._iterate()
+
+    def frame(self, needs: Needs) -> Frame:
+        """The newest iterate as it is shown."""
+        assert self.iterate is not None
+        self.has_news = False
+        return self.sampler.frame(self.iterate, self.history, self.status, needs)
+
+    def _iterate(self) -> None:
+        iterate, decision = next(self._iterates)
+        self.pacing.count(iterate.number)
+        self.status, self.has_news = decision.status, True
+        if self.status is not None and self.status.ending is Ending.DIVERGED:
+            return
+        self.iterate = iterate
+        self.history.append(record(iterate, decision, self._distance))
+
+    def _compare(self) -> None:
+        """Find the reference, and the errors of what was recorded before it."""
+        assert self.iterate is not None
+        problem = self.sampler.problem
+        try:
+            reference = self._references.of(self.settings, problem, self._interrupted)
+        except Interrupted:
+            return
+        self._is_compared = self.has_news = True
+        self.sampler.complete(reference)
+        if reference is not None:
+            self._distance = distance = distance_to(reference, problem)
+            self.history[-1] = replace(
+                self.history[-1],
+                error_displacement=distance.of_displacement(self.iterate),
+                error_force=distance.of_friction_force(self.iterate),
+            )

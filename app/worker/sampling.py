@@ -1,0 +1,171 @@
+"""From an iterate to the frame that the page is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+
+import numpy as np
+
+from app.frame import ContactFields, Floats, Frame, Interface, Run
+from app.messages import Needs
+from app.worker.extras import EXTRAS
+from app.worker.geometry import Drawn, DrawnMesh, DrawnRods, floats, thinned
+from solver.arrays import Array
+from solver.discrete import Problem
+from solver.discrete.contact_fields import ContactFields as NodalFields
+from solver.discrete.idle import nothing_acts
+from solver.discrete.loops import LoopFields
+from solver.discrete.rope.rope import Rope
+from solver.latin import Iterate, Record, Solution, Status
+from solver.latin.criteria.status import CANCELLED
+from solver.reference.solution import Reference
+from solver.scenes import exact_of, loop_of, structure_of, words_of
+from solver.settings import Settings
+from solver.study.quantities.finished import FinishedRun
+
+MOST_INSTANTS, MOST_POINTS = 401, 401
+"""Instants, and points of an interface, that a frame has at most."""
+MOST_VALUES = 100_000
+"""Values of a field up to which a frame has the contact of all interfaces, and not of one."""
+MOST_ITERATIONS = 1000
+"""Entries of the history that a frame has at most."""
+SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("reduction", "is_answer"))
+
+
+class Sampler:
+    """Thin the fields of one problem, and turn nodal forces into forces per length or area.
+
+    Attributes
+    ----------
+    run
+        What all frames share; `complete` adds the reference.
+    problem, settings, loop, columns, rows
+        What is solved, its loop, and the instants, and points by interface, that are shown.
+    drawn
+        The bodies as they are drawn.
+    """
+
+    def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
+        self.problem, self.settings = problem, settings
+        structure = structure_of(settings)
+        self.columns = thinned(problem.n_instants, MOST_INSTANTS)
+        self.rows = {
+            name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
+        }
+        self.loop = loop_of(settings, problem)
+        self.drawn = drawn_of(problem, structure, self.columns)
+        load = self.loop.force
+        self.run = Run(
+            number=number,
+            settings=settings,
+            sentence=words_of(settings),
+            instants=floats(problem.instants[self.columns]),
+            interfaces={name: self._interface(name) for name in problem.rubbing},
+            geometry=self.drawn.geometry,
+            across=self.loop.across,
+            up=self.loop.up,
+            load=floats(load[self.columns]) if isinstance(load, np.ndarray) else None,
+            is_idle=nothing_acts(problem),
+        )
+
+    def complete(self, reference: Reference | None) -> None:
+        """Add what is known without the search: the reference, and closed forms."""
+        curves = exact_of(self.settings, self.problem, reference)
+        exact = tuple(
+            replace(curve, across=curve.across[self.columns], up=curve.up[self.columns])
+            if curve.up.ndim == 1
+            else replace(curve, up=curve.up[:, self.columns])
+            for curve in curves
+        )
+        self.run = replace(self.run, exact=exact)
+        if reference is not None:
+            self.run = replace(
+                self.run,
+                reference=self._contact(reference, tuple(self.problem.rubbing)),
+                reference_loop=self._loop(reference),
+                reference_seconds=reference.seconds,
+            )
+
+    def frame(
+        self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
+    ) -> Frame:
+        """What is shown of an iterate, with the extras that views need."""
+        run = FinishedRun(
+            self.settings, Solution(iterate, [], status or CANCELLED), False, self.loop
+        )
+        return Frame(
+            run=self.run,
+            iteration=iterate.iterations,
+            is_answer=iterate.is_answer,
+            contact=self._contact(iterate, self._names(needs)),
+            deformed=self.drawn.deformed(iterate),
+            loop=self._loop(iterate),
+            history=_columns(history),
+            status=status,
+            energy=float(run.dissipated.sum()),
+            extras={
+                name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
+            },
+        )
+
+    def _names(self, needs: Needs) -> tuple[str, ...]:
+        """Interfaces whose contact a frame has."""
+        size = sum(len(rows) for rows in self.rows.values()) * len(self.columns)
+        if size <= MOST_VALUES:
+            return tuple(self.rows)
+        return (needs.interface if needs.interface in self.rows else next(iter(self.rows)),)
+
+    def _interface(self, name: str) -> Interface:
+        law, rows = self.problem.rubbing[name], self.rows[name]
+        bound = coefficient = None
+        if law.opens:
+            coefficient = floats(law.mean_by_point(law.tangential.friction)[rows, None])
+        else:
+            highest = law.by_point(law.tangential.highest)[rows]
+            highest = highest[:, self.columns] if highest.shape[1] > 1 else highest
+            bound = floats(highest * self.problem.scales.force / self.lengths(name)[:, None])
+        cuts = law.positions[np.bincount(law.points) > 1]
+        return Interface(floats(law.positions[rows]), floats(cuts), bound, coefficient)
+
+    def lengths(self, name: str) -> Array:
+        """Length or area that each shown point of an interface stands for."""
+        law = self.problem.rubbing[name]
+        return np.asarray(law.by_point(law.weights)[self.rows[name]])
+
+    def _contact(
+        self, shown: Iterate | Reference, names: Sequence[str]
+    ) -> Mapping[str, ContactFields]:
+        return {name: self._fields(name, shown.contact(name)) for name in names}
+
+    def _fields(self, name: str, nodal: NodalFields) -> ContactFields:
+        shown = np.ix_(self.rows[name], self.columns)
+        lengths = self.lengths(name)[:, None]
+        pressure = nodal.normal_force
+        return ContactFields(
+            floats(nodal.tangential_force[shown] / lengths),
+            None if pressure is None else floats(pressure[shown] / lengths),
+            np.ascontiguousarray(nodal.status[shown]),
+        )
+
+    def _loop(self, shown: LoopFields) -> Floats:
+        force = self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        both = self.loop.displacement(shown.displacement), force
+        return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
+
+
+def drawn_of(problem: Problem, structure: object, columns: Array) -> Drawn:
+    """The bodies of a structure as they are drawn."""
+    if isinstance(structure, Rope):
+        from app.worker.helices import DrawnRope
+
+        return DrawnRope(structure, columns)
+    description = structure.described()  # type: ignore[attr-defined]
+    kind = DrawnRods if problem.inside is None else DrawnMesh
+    return kind(problem, description, columns)
+
+
+def _columns(history: Sequence[Record]) -> dict[str, Floats]:
+    kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
+    columns = {name: np.array([getattr(entry, name) for entry in kept]) for name in SCALARS}
+    return {name: values.astype(np.float32) for name, values in columns.items()}
