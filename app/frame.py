@@ -199,7 +199,8 @@ class Frame:
         Displacement and force of the loop, shape (2, n_instants).
     history
         Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
-        (n_iterations,).
+        (n_iterations,). With separated bases also "modes", how many each substructure's has, of
+        shape (n_iterations, n_substructures), of 60 substructures at most.
     status
         How the run ends, once it does.
     energy
