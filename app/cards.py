@@ -12,7 +12,13 @@ from app.views.view import View
 
 TABS = {
     "& .MuiTabs-root": {"minHeight": "28px"},
-    "& .MuiTab-root": {"minHeight": "28px", "padding": "2px 8px", "minWidth": 0, "textTransform": "none", "fontSize": "13px"},
+    "& .MuiTab-root": {
+        "minHeight": "28px",
+        "padding": "2px 8px",
+        "minWidth": 0,
+        "textTransform": "none",
+        "fontSize": "13px",
+    },
 }
 
 
@@ -59,7 +65,9 @@ class Card:
         self._fitting = fitting
         self.view.visible = bool(fitting)
         active = fitting.index(seen) if seen in fitting else 0
-        self.view[:] = [(view.name, pn.Column(sizing_mode="stretch_both", margin=0)) for view in fitting]
+        self.view[:] = [
+            (view.name, pn.Column(sizing_mode="stretch_both", margin=0)) for view in fitting
+        ]
         self.view.active = active
         self._turn()
 

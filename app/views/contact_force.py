@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
@@ -54,11 +53,18 @@ class ContactForce(View):
         else:
             bound = interface.coefficient[:, 0] * fields.pressure[:, column]
         self.source.data = {
-            "x": x, "latin": latin, "reference": reference, "upper": bound, "lower": -bound,
+            "x": x,
+            "latin": latin,
+            "reference": reference,
+            "upper": bound,
+            "lower": -bound,
         }
         before = ghost.contact.get(name) if ghost is not None else None
         self.ghost.data = (
-            {"x": ghost.run.interfaces[name].positions, "y": before.friction[:, ghost.run.column(selection.phase)]}
+            {
+                "x": ghost.run.interfaces[name].positions,
+                "y": before.friction[:, ghost.run.column(selection.phase)],
+            }
             if before is not None
             else {"x": [], "y": []}
         )

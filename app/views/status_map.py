@@ -23,9 +23,7 @@ class StatusMap(View):
         made = plot("x, m", "t, s")
         self.status = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        made.image(
-            "image", x="x", y="y", dw="dw", dh="dh", source=self.status, color_mapper=colors
-        )
+        made.image("image", x="x", y="y", dw="dw", dh="dh", source=self.status, color_mapper=colors)
         self.now = source("x", "y")
         made.line("x", "y", source=self.now, color=ERROR, width=3)
         made.x_range.range_padding = made.y_range.range_padding = 0

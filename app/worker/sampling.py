@@ -104,6 +104,7 @@ class Sampler:
             history=_columns(history),
             status=status,
             energy=float(run.dissipated.sum()),
+            residual=iterate.residual,
             extras={
                 name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
             },
@@ -149,7 +150,9 @@ class Sampler:
         )
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        force = (
+            self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        )
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
 
