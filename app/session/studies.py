@@ -16,7 +16,17 @@ from solver.study.audit.units import invariance
 from solver.study.figures.figure_page import figure_sections
 from solver.study.figures.paper_figures import MAKERS
 from solver.study.figures.paper_runs import PaperRuns
-from solver.study.mesh import Refinement, answer, meshes_around, size_of, value_on
+from solver.study.mesh import (
+    AN_ELEMENT,
+    TIME_STEP,
+    Refinement,
+    answer,
+    instants_around,
+    meshes_around,
+    size_of,
+    value_on,
+    which_to_refine,
+)
 from solver.study.page import Section
 from solver.study.progress import Tell
 from solver.study.proof.case import HeldNumber, rows_of
@@ -30,6 +40,8 @@ from solver.study.speed.study_page import study_sections, write_study
 
 PARTS = {"curves": 1.0, "growth": 4.0, "map": 1.0}
 """Of a study, and how long each takes beside the others, roughly."""
+RUNS = 5
+"""On three meshes and with three numbers of instants, one of them in common."""
 SHOWN_EVERY = 0.5
 """Seconds: a table that grows is sent to the browser as a whole."""
 Work = Callable[[Path], None]
@@ -90,24 +102,31 @@ def proof_of(folder: Path) -> None:
 
 
 def mesh_of_run(scene: str, values: dict[str, Any], of: str, units: str, folder: Path) -> None:
-    """Take a quantity on three meshes, show each value as it comes, and say what they tell."""
+    """Take a quantity on three meshes and three numbers of instants, and show what they tell."""
     growing, settings, asked = (
         ReportFolder(folder),
         CATALOGUE[scene].settings.checked(values),
         reading(of),
     )
-    meshes, own = meshes_around(settings)
-    found, told, unit = list[float](), list[str](), asked.quantity.unit
-    for number, mesh in enumerate(meshes):
-        growing.tell(f"{size_of(mesh)} elements", number / len(meshes))
-        found.append(value_on(mesh, asked))
-        value = measured(found[-1], unit, units, 4)
-        told.append(f"{size_of(mesh)} elements: <b>{value}</b>")
-        growing.show([" · ".join(told)])
-    factor, name = scale_of(abs(found[-1]), unit, units)
-    first, second, third = (one / factor for one in found)
-    said = answer(Refinement((first, second, third), own), name)
-    growing.show([" · ".join(told), f"<br>{said}"])
+    told, values, unit = list[str](), dict[str, float](), asked.quantity.unit
+    factor, name, answers, refinements = 1.0, unit, list[str](), list[Refinement]()
+    around = {AN_ELEMENT: meshes_around(settings), TIME_STEP: instants_around(settings)}
+    for halved, (runs, own) in around.items():
+        for run in runs:
+            size = size_of(run)
+            if size not in values:
+                growing.tell(size, len(values) / RUNS)
+                values[size] = value_on(run, asked)
+                told.append(f"{size}: <b>{measured(values[size], unit, units, 4)}</b>")
+                growing.show([" · ".join(told), *answers])
+        if not refinements:
+            factor, name = scale_of(abs(values[size_of(runs[-1])]), unit, units)
+        coarse, middle, fine = (values[size_of(run)] / factor for run in runs)
+        refinements.append(Refinement((coarse, middle, fine), own))
+        answers.append(f"<br>{answer(refinements[-1], name, halved)}")
+    elements, instants = refinements
+    answers.append(f"<br>{which_to_refine(elements, instants)}")
+    growing.show([" · ".join(told), *answers])
 
 
 def figures_of_the_paper(folder: Path) -> None:

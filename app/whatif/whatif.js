@@ -75,8 +75,8 @@ export function render({model}) {
   const start = button("Start", "Run all of it.", () => tell("start"))
   start.className = "start"
   const cancel = button("Cancel", "End it; what has come stays.", () => tell("cancel"))
-  const mesh = button("Is the mesh fine enough?", "Take the quantity on three meshes: half as " +
-    "fine, as it is, and twice as fine.", () => tell("mesh"))
+  const mesh = button("Is the mesh fine enough?", "Take the quantity on three meshes, and " +
+    "with three numbers of instants: half as fine, as it is, and twice as fine.", () => tell("mesh"))
   const rest = make("span"), meshes = make("div", {className: "meshes", ariaLive: "polite"})
   const asked = make("div", {className: "row"}, make("b", {}, "Show"), quantity, words, at, start,
     cancel, mesh, rest, refused)
