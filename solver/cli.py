@@ -200,7 +200,9 @@ def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> Non
         print(json.dumps({**plain, "settings": settings.values()}))
     else:
         for name, value in figures.items():
-            print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
+            lines = value if isinstance(value, list) else [value]
+            for line in lines:
+                print(f"{name:<20} {line:.6g}" if isinstance(line, float) else f"{name:<20} {line}")
 
 
 def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:
