@@ -44,9 +44,15 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.sweep_command import add_sweep
 
+OUT_OF_MEMORY, INTERRUPTED = 3, 130
+"""Exit codes; the other is what shells have for a program that is ended by Ctrl-C."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; give the exit code: 0 converged, 1 stopped otherwise, 2 refused input."""
+    """Run one command; give the exit code.
+
+    0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended by Ctrl-C.
+    """
     parser = _parser()
     chosen, options = parser.parse_known_args(arguments)
     if options and not hasattr(chosen, "passed_on"):
@@ -69,6 +75,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"slipfront: nothing can be printed: {why(trouble)}", file=sys.stderr)
         return REFUSED
+    except (MemoryError, RuntimeError) as trouble:
+        if isinstance(trouble, RuntimeError) and "MALLOC" not in str(trouble):  # that of SuperLU
+            raise
+        remedy = "take a coarser mesh or fewer instants, or for `run` --no-reference"
+        print(f"slipfront: this takes more memory than there is: {remedy}", file=sys.stderr)
+        return OUT_OF_MEMORY
+    except KeyboardInterrupt:
+        print("slipfront: ended; files that are written stay", file=sys.stderr)
+        return INTERRUPTED
     return code
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -199,3 +200,34 @@ def test_the_module_runs_as_a_program(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["status"] == "converged"
     assert (tmp_path / "bar.npz").is_file()
+
+
+@pytest.mark.parametrize(
+    ("trouble", "code", "message"),
+    [
+        (MemoryError(), 3, "a coarser mesh"),
+        (RuntimeError("SUPERLU_MALLOC fails for buf in intCalloc()"), 3, "a coarser mesh"),
+        (KeyboardInterrupt(), 130, "ended"),
+    ],
+)
+def test_what_ends_a_command_from_outside_takes_a_line_and_has_its_code(
+    trouble, code, message, monkeypatch, capsys
+):
+    def fail(*given, **options):
+        raise trouble
+
+    monkeypatch.setattr("solver.cli.solve", fail)
+    assert main(["run", "bar", *SMALL]) == code
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
+    said = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert re.search(rf"Exit code 0: converged;.* {code}: ", said)
+
+
+def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
+    def fail(*given, **options):
+        raise RuntimeError("of another kind")
+
+    monkeypatch.setattr("solver.cli.solve", fail)
+    with pytest.raises(RuntimeError, match="of another kind"):
+        main(["run", "bar", *SMALL])
