@@ -215,9 +215,14 @@ def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> Non
         print(json.dumps({**plain, "settings": settings.values()}))
     else:
         for name, value in figures.items():
-            lines = value if isinstance(value, list) else [value]
-            for line in lines:
-                print(f"{name:<20} {line:.6g}" if isinstance(line, float) else f"{name:<20} {line}")
+            for line in value if isinstance(value, list) else [value]:
+                print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+
+
+def _number(name: str, value: float) -> str:
+    """Write a relative error, or the ratio of squares that the indicator is: rounding as 0."""
+    rounding = float(np.finfo(float).eps) ** (2 if name == "indicator" else 1)
+    return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
 def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:

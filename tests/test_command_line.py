@@ -45,6 +45,15 @@ def test_run_prints_the_key_figures_and_exits_0_when_converged(capsys):
     assert err == ""
 
 
+def test_what_rounding_leaves_of_an_error_is_printed_as_0(capsys):
+    assert main(["run", "block", "--set", "elements=12", "--set", "elements_up=6"]) == 0
+    figures = printed_figures(capsys.readouterr().out)
+    for name in ("indicator", "behaviour", "error_displacement", "error_force"):
+        assert figures[name] == "0" or float(figures[name]) > 2e-16, name
+    assert figures["indicator"] == "0"
+    assert float(figures["residual"]) > 0.0
+
+
 def test_the_papers_method_ends_where_its_indicator_says_and_gives_no_certificate(capsys):
     assert main(["run", "bar", *SMALL, *PAPER]) == 0
     figures = printed_figures(capsys.readouterr().out)
