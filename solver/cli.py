@@ -44,9 +44,15 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.sweep_command import add_sweep
 
+OUT_OF_MEMORY, INTERRUPTED = 3, 130
+"""Exit codes; the other is what shells have for a program that is ended by Ctrl-C."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; give the exit code: 0 converged, 1 stopped otherwise, 2 refused input."""
+    """Run one command; give the exit code.
+
+    0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended by Ctrl-C.
+    """
     parser = _parser()
     chosen, options = parser.parse_known_args(arguments)
     if options and not hasattr(chosen, "passed_on"):
@@ -69,6 +75,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"slipfront: nothing can be printed: {why(trouble)}", file=sys.stderr)
         return REFUSED
+    except (MemoryError, RuntimeError) as trouble:
+        if isinstance(trouble, RuntimeError) and "MALLOC" not in str(trouble):  # that of SuperLU
+            raise
+        remedy = "take a coarser mesh or fewer instants, or for `run` --no-reference"
+        print(f"slipfront: this takes more memory than there is: {remedy}", file=sys.stderr)
+        return OUT_OF_MEMORY
+    except KeyboardInterrupt:
+        print("slipfront: ended; files that are written stay", file=sys.stderr)
+        return INTERRUPTED
     return code
 
 
@@ -200,7 +215,14 @@ def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> Non
         print(json.dumps({**plain, "settings": settings.values()}))
     else:
         for name, value in figures.items():
-            print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
+            for line in value if isinstance(value, list) else [value]:
+                print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+
+
+def _number(name: str, value: float) -> str:
+    """Write a relative error, or the ratio of squares that the indicator is: rounding as 0."""
+    rounding = float(np.finfo(float).eps) ** (2 if name == "indicator" else 1)
+    return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
 def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:

@@ -17,6 +17,7 @@ from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces, held_instants
+from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.tables import resolve
@@ -126,6 +127,7 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "scene": settings.scene,
         "status": str(solution.status.ending),
         "advice": solution.status.advice,
+        "remarks": remarks_on(settings, solution.iterate),
         "iterations": solution.iterate.iterations,
         "indicator": last.indicator if last else None,
         "behaviour": last.behaviour if last else None,

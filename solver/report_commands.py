@@ -32,7 +32,15 @@ from solver.study.speed.crossover_report import crossover_notes, crossover_table
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.growth import growth
 from solver.study.speed.study_page import write_study
-from solver.study.speed.study_report import aligned, conditions, growth_table, table, winners
+from solver.study.speed.study_report import (
+    aligned,
+    conditions,
+    growth_table,
+    table,
+    winners,
+    write_curves,
+    write_growth,
+)
 
 REFUSED = 2
 """Exit code of refused input."""
@@ -170,8 +178,11 @@ def _study(chosen: argparse.Namespace) -> int:
     settings = settings_from_command(chosen.scene, chosen.changes)
     _check_repeats(chosen)
     with writing(chosen.out):
+        # What is measured is written at once: the rest takes longer, and somebody may end it.
         found = error_against_time(settings, chosen.repeats)
+        write_curves(found, chosen.out)
         sizes = growth(settings) if chosen.growth else []
+        write_growth(sizes, chosen.out)
         who = crossover(settings, large=chosen.large)
         files, note = write_study(found, sizes, who, chosen.out)
     print("\n".join(conditions(found)), end="\n\n")

@@ -31,6 +31,7 @@ LAYERS = [
     ["settings"],
     ["loads"],
     ["scenes"],
+    ["remarks"],
     ["files"],
     ["prepared"],
     ["running"],
