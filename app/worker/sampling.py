@@ -20,6 +20,7 @@ from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.criteria.status import CANCELLED
 from solver.reference.solution import Reference
+from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
@@ -105,6 +106,7 @@ class Sampler:
             status=status,
             energy=float(run.dissipated.sum()),
             residual=iterate.residual,
+            remarks=tuple(remarks_on(self.settings, iterate)) if status else (),
             extras={
                 name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
             },
