@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 
 from solver.checked import dump
+from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables
 from solver.settings import Settings
 from solver.study.other_programs.brought import CAN, Brought, read_brought
-from solver.tables import heads_of, read_table
+from solver.tables import read_table
 
 WARM_NOTE = """\
 # The run on the page started from the solution of the run before it, so its iterations and times
@@ -36,15 +37,15 @@ def brought_in(source: str, text: str | None, settings: Settings) -> Brought:
     return read_brought(text, source, settings)
 
 
-def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
+def load_in(data: bytes | str, source: str, settings: Settings) -> tuple[Settings, str]:
     """Read a table for the load path that its head names, or for the only one that applies.
 
     The run then lasts until the last table ends.
 
     Parameters
     ----------
-    text, source
-        CSV of time and value, and the name of its file.
+    data, source
+        CSV of time and value, its bytes or text, and the name of its file.
     settings
         Those in force, which say what applies.
 
@@ -65,27 +66,24 @@ def load_in(text: str, source: str, settings: Settings) -> tuple[Settings, str]:
         and definition.abscissa == "time"
         and settings.applies(name)
     }
-    names = ", ".join(paths)
+
+    def refuse(remedy: str, can: str = "a table of time and value") -> SettingError:
+        return SettingError("the table", source, can, remedy)
+
     if not paths:
-        raise SettingError(
-            "the table",
-            source,
-            "a load path, of which none applies",
-            "have a side displaced or loaded first",
-        )
-    chosen = _meant(paths, heads_of(text))
+        can = "a load path, of which none applies"
+        raise refuse("have a side displaced or loaded first", can)
+    table = read_table(data, refuse)
+    chosen = _meant(paths, {column.key for column in table.columns})
     if len(chosen) != 1:
-        raise SettingError(
-            "the table",
-            source,
-            f"a table of one of {names}",
-            f"name the one in its first line, as in time,{next(iter(paths))}",
-        )
+        remedy = f"name the one in its first line, as in time,{next(iter(paths))}"
+        raise refuse(remedy, f"a table of one of {', '.join(paths)}")
     (name,) = chosen
-    found = settings.replace(**{name: read_table(text, paths[name], name, source)})
+    curve = curve_of(table, paths[name], name, settings.curve_units(name))
+    found = settings.replace(**{name: curve.points})
     ends = max(ends_of_tables(found).values())
     found = found.replace(duration=ends) if ends > 0.0 else found
-    return found, _said_of(found, name)
+    return found, _said_of(found, name, curve.message)
 
 
 def _meant(paths: Mapping[str, CurveParameter], heads: Container[str]) -> list[str]:
@@ -106,9 +104,9 @@ def cut_off(settings: Settings) -> str:
     )
 
 
-def _said_of(settings: Settings, name: str) -> str:
+def _said_of(settings: Settings, name: str, message: str) -> str:
     """Say what a table has become, and what a run does not see of it."""
     values = settings.values()
-    points, title = len(values[name]), about(settings.definitions()[name]).title
-    said = f"{title}: {points:,} points. The run lasts {values['duration']:g} s".replace(",", " ")
+    title = about(settings.definitions()[name]).title
+    said = f"{title}: {message}. The run lasts {values['duration']:g} s"
     return f"{said}, and reads them at {values['instants']} instants."
