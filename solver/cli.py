@@ -9,7 +9,7 @@ import math
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -33,6 +33,7 @@ from solver.latin import Ending, Seconds, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.mesh_command import add_mesh
+from solver.prepared import print_tables
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
@@ -134,10 +135,11 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     if chosen.out is not None:
         _check_file(chosen.out)
     limit = _limit(chosen)
+    print_tables(tables)
     for remark in remarks(settings, chosen.changes):
         print(f"slipfront: {remark}", file=sys.stderr)
     began = time.perf_counter()
@@ -167,7 +169,7 @@ def _run(chosen: argparse.Namespace) -> int:
             file=sys.stderr,
         )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
-        _print_figures(settings, solution, chosen.json)
+        _print_figures(settings, solution, tables, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
@@ -205,14 +207,16 @@ def _refused_file(path: Path, problem: OSError) -> SettingError:
     return SettingError("--out", str(path), allowed_file, why(problem))
 
 
-def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> None:
+def _print_figures(
+    settings: Settings, solution: Solution, tables: Mapping[str, str], as_json: bool
+) -> None:
     figures = summary(settings, solution)
     if as_json:
         plain = {
             name: None if isinstance(value, float) and not math.isfinite(value) else value
             for name, value in figures.items()
         }
-        print(json.dumps({**plain, "settings": settings.values()}))
+        print(json.dumps({**plain, "tables": tables, "settings": settings.values()}))
     else:
         for name, value in figures.items():
             for line in value if isinstance(value, list) else [value]:

@@ -9,6 +9,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.files import settings_from_command
 from solver.latin.run_cost import run_cost
+from solver.prepared import print_tables
 from solver.scenes import discretise
 from solver.scenes.method import method_of
 from solver.settings import Settings
@@ -38,10 +39,12 @@ def add_mesh(commands: Any) -> None:
 
 
 def _mesh(chosen: argparse.Namespace) -> int:
-    settings, asked = settings_from_command(chosen.scene, chosen.changes), reading(chosen.of)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    asked = reading(chosen.of)
     if not decides(settings, asked):
         can = "a quantity of what a run comes to, that this scene has"
         raise SettingError("--of", chosen.of, can, "`python -m solver sweep` lists them")
+    print_tables(tables)
     values: dict[str, float] = {}
     refinements = []
     for runs, own in (meshes_around(settings), instants_around(settings)):

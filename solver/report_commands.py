@@ -11,6 +11,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
+from solver.prepared import print_tables
 from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, Trial, audit
 from solver.study.audit.report import HEAD, line, prepare
@@ -175,8 +176,9 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 
 def _study(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     _check_repeats(chosen)
+    print_tables(tables)
     with writing(chosen.out):
         # What is measured is written at once: the rest takes longer, and somebody may end it.
         found = error_against_time(settings, chosen.repeats)

@@ -83,7 +83,7 @@ def test_json_is_strict_and_says_the_same_as_the_text(capsys):
         raise AssertionError(f"{word} is no JSON")
 
     found = json.loads(capsys.readouterr().out, parse_constant=refuse)
-    assert list(found) == [*FIGURES[:3], "remarks", *FIGURES[3:], "settings"]
+    assert list(found) == [*FIGURES[:3], "remarks", *FIGURES[3:], "tables", "settings"]
     assert found["remarks"] == []
     assert found["iterations"] == int(figures["iterations"])
     assert found["indicator"] == pytest.approx(float(figures["indicator"]), rel=1e-5)

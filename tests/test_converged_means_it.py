@@ -42,7 +42,7 @@ HARD = [
 
 def from_words(command, **changes):
     scene, *assignments = command.split()
-    return settings_from_command(scene, assignments).replace(**changes)
+    return settings_from_command(scene, assignments)[0].replace(**changes)
 
 
 def outcome_of(settings):
