@@ -10,7 +10,7 @@ import panel_material_ui as pmui
 import param
 
 from app.state import PageState, default_settings
-from app.units import Unit, unit_of
+from app.units import unit_of
 from solver.definitions import CurveParameter, Parameter, about
 from solver.scenes import CATALOGUE, chief_of
 
@@ -46,7 +46,13 @@ class Control:
 
     def _make(self) -> Any:
         definition, kind = self._definition, about(self._definition)
-        more = {"label": kind.title, "description": definition.doc, "size": "small", "width": WIDTH, "margin": (4, 8)}
+        more = {
+            "label": kind.title,
+            "description": definition.doc,
+            "size": "small",
+            "width": WIDTH,
+            "margin": (4, 8),
+        }
         if isinstance(definition, CurveParameter):
             self._field = pmui.Select(options=list(definition.presets), **more)
         elif isinstance(definition, param.Boolean):
@@ -67,10 +73,19 @@ class Control:
         low, high = (self._to_slider(end) for end in definition.softbounds)
         step = 1 if is_whole and not kind.logarithmic else (high - low) / STEPS
         self._slider = pmui.FloatSlider(
-            start=low, end=high, step=step, value=low, show_value=False, size="small", width=120, margin=(8, 8)
+            start=low,
+            end=high,
+            step=step,
+            value=low,
+            show_value=False,
+            size="small",
+            width=120,
+            margin=(8, 8),
         )
         self._slider.param.watch(lambda event: self._drag(event.new), "value")
-        self._slider.param.watch(lambda event: self._change(self._from_slider(event.new)), "value_throttled")
+        self._slider.param.watch(
+            lambda event: self._change(self._from_slider(event.new)), "value_throttled"
+        )
         self._field.param.watch(lambda event: self._change(event.new * self._unit.factor), "value")
         return pn.Row(self._field, self._slider, margin=0, align="center")
 
@@ -123,7 +138,10 @@ class Controls:
         self._state = state
         self._controls: list[Control] = []
         self._scene = pmui.Select(
-            label="Scene", options={e.title: n for n, e in CATALOGUE.items()}, size="small", width=WIDTH
+            label="Scene",
+            options={e.title: n for n, e in CATALOGUE.items()},
+            size="small",
+            width=WIDTH,
         )
         self._scene.param.watch(lambda event: self._choose(event.new), "value")
         self._chief, self._groups = pn.Column(margin=0), pmui.Accordion(margin=0, width=WIDTH + 16)
@@ -144,7 +162,9 @@ class Controls:
         settings = self._state.settings
         self._built = self._scene.value = settings.scene
         definitions, chief = settings.definitions(), chief_of(type(settings))
-        self._controls = [Control(n, definitions[n], self._state) for n in chief if n in definitions]
+        self._controls = [
+            Control(n, definitions[n], self._state) for n in chief if n in definitions
+        ]
         self._chief[:] = [control.view for control in self._controls]
 
     def _choose(self, scene: str) -> None:

@@ -205,6 +205,10 @@ class Frame:
         How the run ends, once it does.
     energy
         Energy lost in the whole interval, J.
+    residual
+        KKT residual of a certified solution; None of all other iterates.
+    remarks
+        What is to be said of the answer, in plain sentences.
     extras
         What only some views need, by name, as far as one of them was in sight.
     readings
@@ -220,6 +224,8 @@ class Frame:
     history: Mapping[str, Floats]
     status: Status | None = None
     energy: float = float("nan")
+    residual: float | None = None
+    remarks: tuple[str, ...] = ()
     extras: Mapping[str, Any] = field(default_factory=dict)
     readings: Mapping[str, float] = field(default_factory=dict)
 

@@ -54,7 +54,7 @@ class View:
         self.state = state
 
     @staticmethod
-    def applies(settings: Settings) -> bool:
+    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
         """Whether it says anything about such a run."""
         return True
 

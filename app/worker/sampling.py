@@ -20,6 +20,7 @@ from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.criteria.status import CANCELLED
 from solver.reference.solution import Reference
+from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
@@ -104,6 +105,8 @@ class Sampler:
             history=_columns(history),
             status=status,
             energy=float(run.dissipated.sum()),
+            residual=iterate.residual,
+            remarks=tuple(remarks_on(self.settings, iterate)) if status else (),
             extras={
                 name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
             },
@@ -149,7 +152,9 @@ class Sampler:
         )
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        force = (
+            self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        )
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
 
