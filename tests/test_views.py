@@ -1,4 +1,4 @@
-"""Views show what a frame has: the first iterate, the last one, the answer, a ghost, a reference."""
+"""Views show what a frame has: an iterate, the answer, a ghost, a reference."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)
     assert list(view.answer.data["x"]) == [answer.iteration]
-    assert len(view.curves["force error"].data["x"]) == len(answer.history["iteration"]) - 1
+    assert len(view.curves["force"].data["x"]) == len(answer.history["iteration"]) - 1
 
 
 def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
@@ -206,7 +206,7 @@ def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
     view = view_of(Convergence, last)
     view.update(first, Selection(), None)
     assert list(view.shown.data["x"]) == [first.iteration]
-    assert len(view.curves["indicator η"].data["x"]) == len(last.history["iteration"])
+    assert len(view.curves["η"].data["x"]) == len(last.history["iteration"])
 
 
 def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:

@@ -14,11 +14,11 @@ LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
 """What is seen at least, which indicators do not widen, and the smallest error that is seen."""
 SHORTEST = 20
 CURVES = {
-    "indicator η": ("indicator", REFERENCE, 1.2, "solid"),
-    "k-free indicator": ("behaviour", PRESSURE, 1.2, "solid"),
-    "estimated error": ("estimated_error", BESIDE, 1.5, "dashed"),
-    "displacement error": ("error_displacement", DISPLACEMENT, 2.0, "solid"),
-    "force error": ("error_force", ERROR, 3.5, "solid"),
+    "η": ("indicator", REFERENCE, 1.2, "solid"),
+    "k-free": ("behaviour", PRESSURE, 1.2, "solid"),
+    "estimate": ("estimated_error", BESIDE, 1.5, "dashed"),
+    "displ.": ("error_displacement", DISPLACEMENT, 2.0, "solid"),
+    "force": ("error_force", ERROR, 3.5, "solid"),
 }
 """Column, colour, width and dash of each; the last is drawn on top."""
 
@@ -30,7 +30,7 @@ class Convergence(View):
 
     def make(self) -> figure:
         """A new figure."""
-        made = plot("iteration", "relative", y_axis_type="log", y_range=(LEAST, MOST))
+        made = plot("iteration", "error", y_axis_type="log", y_range=(LEAST, MOST))
         whole(made.xaxis[0])
         self._x, self._y = Axis(made, "x", "iteration"), Axis(made, "y", "error")
         self.ghost, self.newest = source("x", "y"), source("x", "y")
@@ -63,7 +63,7 @@ class Convergence(View):
         x = newest.history["iteration"][:searched]
         for title, (column, *_) in CURVES.items():
             curve(self.curves[title], x, newest.history[column][:searched])
-        error = self.curves["force error"].data
+        error = self.curves["force"].data
         put(self.newest, x=error["x"][-1:], y=error["y"][-1:])
         column = "error_force" if len(error["x"]) else "estimated_error"
         if ghost is None:
@@ -71,7 +71,7 @@ class Convergence(View):
         else:
             n = _searched(ghost)
             curve(self.ghost, ghost.history["iteration"][:n], ghost.history[column][:n])
-        seen = [y for source in (self.curves["force error"], self.ghost) for y in source.data["y"]]
+        seen = [y for source in (self.curves["force"], self.ghost) for y in source.data["y"]]
         low, high = min(seen, default=LEAST), max(seen, default=MOST)
         self._y.decades(run.number, min(max(low, FLOOR), LEAST), max(high, MOST))
         end = max(float(newest.iteration), *map(float, self.ghost.data["x"][-1:]), SHORTEST)

@@ -12,8 +12,8 @@ from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
-from app.views.colors import ERROR, RANKS
-from app.views.view import TEXT, Axis, Key, View, extent, plot, put, source, whole
+from app.views.colors import CUT, ERROR, RANKS
+from app.views.view import Axis, Key, View, extent, mark, plot, put, source, whole
 from app.worker.extras import MOST_MODES
 from solver.scenes import kind_of
 from solver.settings import Settings
@@ -34,7 +34,7 @@ class Modes(View):
             for each, color in list(zip(self.modes, RANKS, strict=False))[::-1]
         ][::-1]
         entries = {str(n): [line] for n, line in enumerate(lines)}
-        self._key = Key(made, {**entries, "text": [made.scatter([], [], alpha=0)]})
+        self._key = Key(made, {**entries, "text": [mark(made, CUT, alpha=0.0)]})
         return made
 
     def _draw(self, x: Floats, values: Floats, names: list[str], text: str) -> None:
@@ -128,8 +128,6 @@ class BasisSizes(View):
         made.hspan("y", source=self.chosen, color=ERROR, line_width=2)
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         bar = ColorBar(color_mapper=self._colors, ticker=ticker, width=6, padding=4, title="modes")
-        bar.title_text_font_size = bar.major_label_text_font_size = TEXT
-        bar.title_text_font_style, bar.background_fill_alpha = "normal", 0
         made.add_layout(bar, "right")
         made.on_event(Tap, self._select)
         return made

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
 from app.views.colors import CUT, ERROR, EXACT, STATUS
-from app.views.view import Axis, Key, View, extent, plot, put, source
+from app.views.view import Axis, Key, View, extent, mark, plot, put, source
 from solver.settings import Settings
 
 ENTRIES = {"slip −": -1, "stick": 0, "slip +": 1, "open": 2}
@@ -42,10 +42,7 @@ class StatusMap(View):
         ghost = made.segment("x0", "y0", "x1", "y1", source=self.ghost, color="#000000", width=1)
         made.hspan("t", source=self.now, color=ERROR, line_width=2)
         made.vspan("x", source=self.place, color=ERROR, alpha=0.7, line_width=1)
-        squares = {
-            title: [made.scatter([], [], marker="square", size=10, color=STATUS[status])]
-            for title, status in ENTRIES.items()
-        }
+        squares = {title: [mark(made, STATUS[status])] for title, status in ENTRIES.items()}
         self._key = Key(made, {**squares, "closed form": [front], "ghost": [ghost]})
         made.on_event(Tap, self._select)
         self._ghost_of: object = None
