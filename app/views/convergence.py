@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import Axis, Key, View, curve, hover, plot, put, source, whole
+from app.views.view import Axis, Key, View, curve, extent, hover, plot, put, source, whole
 
 LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
 """What is seen at least, which indicators do not widen, and the smallest error that is seen."""
@@ -71,9 +71,8 @@ class Convergence(View):
         else:
             n = _searched(ghost)
             curve(self.ghost, ghost.history["iteration"][:n], ghost.history[column][:n])
-        seen = [y for source in (self.curves["force"], self.ghost) for y in source.data["y"]]
-        low, high = min(seen, default=LEAST), max(seen, default=MOST)
-        self._y.decades(run.number, min(max(low, FLOOR), LEAST), max(high, MOST))
+        low, high = extent([[LEAST, MOST], error["y"], self.ghost.data["y"]])
+        self._y.decades(run.number, max(low, FLOOR), high)
         end = max(float(newest.iteration), *map(float, self.ghost.data["x"][-1:]), SHORTEST)
         self._x.hold(run.number, 0.0, _round_up(end))
         back = [frame.iteration] if frame is not newest and not frame.is_answer else []

@@ -117,7 +117,7 @@ class Fretting(View):
 
     def make(self) -> figure:
         """A new figure."""
-        made = plot("", "last cycle / peak", y_range=Range1d(0.0, 1.1))
+        made = plot("", "share of peak", y_range=Range1d(0.0, 1.1))
         self._x = Axis(made, "x", "x", "m")
         self.values = source("x", "slip", "work")
         work = made.line("x", "work", source=self.values, color=ERROR, width=4, alpha=0.7)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
@@ -33,12 +34,15 @@ from solver.settings import Settings
 TOOLS = "pan,box_zoom,wheel_zoom,reset,save,fullscreen"
 TEXT = "12px"
 """Size of text in plots, of which the theme takes shares."""
+LONGEST = 16
+"""Letters in a line of the title beside a plot: a small one is no higher."""
 CLOSE = """
 .bk-grid { gap: 6px 8px !important; }
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
-"""Lets a legend of seven entries stand in one line; the theme keeps them farther apart."""
+"""Lets a legend of seven entries stand in one line, from the left end of the figure on; the theme
+keeps them farther apart."""
 
 
 class View:
@@ -154,7 +158,7 @@ class Axis:
         if self._side == "x":
             self._made.below[-1].text = text
         else:
-            self._made.yaxis.axis_label = text
+            self._made.yaxis.axis_label = textwrap.fill(text, LONGEST)
 
 
 class Key:
@@ -253,7 +257,7 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
         margin=0,
         label_height=12,
         click_policy="hide",
-        styles={"font-size": TEXT},
+        styles={"font-size": TEXT, "margin-left": "-44px"},
         stylesheets=[CLOSE],
     )
     made.add_layout(box, "above")
