@@ -77,13 +77,6 @@ class Card:
         self._is_fitting = False
         self._turn()
 
-    def show(self, name: str) -> bool:
-        """Bring a view in sight, if it is offered here; whether it is."""
-        names = [view.name for view in self._fitting]
-        if name in names:
-            self.view.active = names.index(name)
-        return name in names
-
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen

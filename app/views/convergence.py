@@ -81,7 +81,7 @@ class Convergence(View):
         is_answer = [newest.iteration] if newest.is_answer else []
         put(self.answer, x=is_answer, y=[1.6 * foot for _ in is_answer])
         entries: dict[str, bool | str] = {
-            title: bool(len(source.data["x"])) for title, source in self.curves.items()
+            title: len(source.data["x"]) > 1 for title, source in self.curves.items()
         }
         past = self.ghost_name if len(self.ghost.data["x"]) else ""
         self._key.show({**entries, "answer": newest.is_answer, "ghost": past})

@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.views.colors import scaled
-from app.views.view import Axis, View, plot, put, source, whole
+from app.views.view import Axis, View, hover, plot, put, source, whole
 from solver.settings import Settings
 
 LEAST = 1e-4
@@ -32,7 +32,8 @@ class Spectra(View):
         whole(made.xaxis[0])
         self._x = Axis(made, "x", "mode")
         self.values = source("xs", "ys", "color")
-        made.multi_line("xs", "ys", color="color", source=self.values, width=1.8)
+        lines = made.multi_line("xs", "ys", color="color", source=self.values, width=1.8)
+        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         self._bar = ColorBar(

@@ -254,10 +254,10 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
         orientation="horizontal",
         location="top_left",
         padding=0,
-        margin=0,
+        margin=2,
         label_height=12,
         click_policy="hide",
-        styles={"font-size": TEXT, "margin-left": "-44px"},
+        styles={"font-size": TEXT, "margin-left": "-44px", "top": "-3px"},
         stylesheets=[CLOSE],
     )
     made.add_layout(box, "above")
