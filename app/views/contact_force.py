@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
