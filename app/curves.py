@@ -65,22 +65,20 @@ class CurveDialog:
         self._message = pn.pane.Markdown("", margin=(0, 5))
         self._figure = self._plot()
         self.view = pmui.Dialog(
+            pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),
+            "Drag a point; tap to add one, tap it and press Backspace to take it away.",
+            self.text,
+            self._file,
+            self._message,
             title=f"{about(definition).title}: points",
             show_close_button=True,
             close_on_click=True,
             width_option="sm",
         )
+        self.update()
 
     def open(self) -> None:
         """Show the points, those of the preset where there are none yet."""
-        if not self.view.objects:
-            self.view[:] = [
-                pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),
-                "Drag a point; tap to add one, tap it and press Backspace to take it away.",
-                self.text,
-                self._file,
-                self._message,
-            ]
         self.update()
         self.view.open = True
 

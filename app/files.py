@@ -74,11 +74,14 @@ def with_points(
         changed = changed.replace(duration=ends) if ends > 0.0 else changed
     (first, *_), (last, *_) = points[0], points[-1]
     values = [value for _, value in points]
-    across, up = definition.units
-    return changed, (
+    across, up = (f" {unit}".rstrip() for unit in definition.units)
+    message = (
         f"{about(definition).title}: {len(points)} points, {definition.abscissa} from {first:g} to "
-        f"{last:g} {across}, {definition.ordinate} from {min(values):g} to {max(values):g} {up}"
-    ).strip() + "."
+        f"{last:g}{across}, {definition.ordinate} from {min(values):g} to {max(values):g}{up}."
+    )
+    if definition.abscissa == "time":
+        message += f" The run lasts {changed.duration:g} s."
+    return changed, message
 
 
 def text_of(source: str, data: bytes) -> str:
