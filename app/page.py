@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
 
 import panel as pn
 import panel_material_ui as pmui
@@ -10,8 +10,9 @@ import panel_material_ui as pmui
 from app.cards import Card
 from app.controls import Controls
 from app.display import Display
+from app.link import Link, read, show, wait_at
 from app.messages import Report
-from app.state import PageState, default_settings
+from app.state import PageState
 from app.views.catalogue import CARDS
 from app.views.scene import Scene
 from app.views.timeline import Timeline
@@ -21,14 +22,22 @@ from app.worker.process import Worker
 class Page:
     """One page: its state, its worker, its widgets and views.
 
+    Parameters
+    ----------
+    state
+        Of the page.
+    iteration
+        At which the first run waits; 0 has it go on.
+
     Attributes
     ----------
     template
         What is served.
     """
 
-    def __init__(self, state: PageState) -> None:
-        self.state = state
+    def __init__(self, state: PageState, iteration: int = 0) -> None:
+        self.state, self._iteration = state, iteration
+        self._link = Link(state)
         self._document = pn.state.curdoc
         self._worker: Worker | None = None
         self._status = pn.pane.HTML("starting", css_classes=["status"], margin=(8, 8))
@@ -79,7 +88,10 @@ class Page:
     def loaded(self) -> None:
         """Start the worker and the first run, now that a browser is there."""
         self._start_worker()
-        self.state.run()
+        if self._iteration:
+            wait_at(self.state, self._iteration)
+        else:
+            self.state.run()
 
     def end(self) -> None:
         """Leave nothing behind."""
@@ -116,8 +128,13 @@ class Page:
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
-    args: dict[str, Any] = {k: v[0].decode() for k, v in pn.state.session_args.items()}
-    page = Page(PageState(default_settings(args.get("scene", "bar"))))
+    location = pn.state.location
+    place, refusal = read(location.search if location is not None else "")
+    state = PageState(place.settings, refusal=refusal)
+    show(state, replace(place, iteration=0))
+    page = Page(state, place.iteration)
+    if place.theme:
+        page.template.dark_theme = place.theme == "dark"
     pn.state.onload(page.loaded)
     pn.state.on_session_destroyed(lambda context: page.end())
     return page.template
