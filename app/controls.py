@@ -3,35 +3,92 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import Any
+from urllib.parse import quote
 
 import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.state import PageState, default_settings
-from app.units import unit_of
+from app.curves import CurveDialog
+from app.state import PageState
+from app.units import typed, unit_of
 from solver.definitions import CurveParameter, Parameter, about
-from solver.scenes import CATALOGUE, chief_of
+from solver.scenes import CATALOGUE, chief_of, ends_of
+from solver.scenes.entry import Emblem
 
-WIDTH = 290
-STEPS = 200
+WIDTH = 286
+STEPS = 80
+"""Steps of a slider at least."""
+POINTS = "points"
+GROUPS = (
+    *("Load", "Top", "Left", "Right", "Contact", "Bar", "Strand", "Body", "Body force"),
+    *("Decomposition", "Method", "Stop"),
+)
+"""Order of the groups: what the scene is, then how it is solved."""
+FIELD = {
+    "& .MuiInputBase-input": {"fontWeight": 600, "paddingBottom": "3px"},
+    "& .MuiInput-root::before": {"display": "none"},
+}
+ON_UNDERLINE = {"padding": "8px 0", "& .MuiFormLabel-root": {"display": "none"}}
+"""A slider stands in place of the line under its field, whose label is its name too."""
+GROUP = {
+    "& .MuiAccordionSummary-root": {"minHeight": "36px", "padding": "0 4px"},
+    "& .MuiAccordionSummary-content": {"margin": "4px 0 !important"},
+    "& .MuiAccordionDetails-root": {"padding": "0 0 8px"},
+}
+PICTURES = {
+    "& .MuiToggleButtonGroup-root": {"display": "grid", "gridTemplateColumns": "repeat(4, 1fr)"},
+    "&.MuiToggleButtonGroup-root": {"display": "grid", "gridTemplateColumns": "repeat(4, 1fr)"},
+    "& .MuiToggleButton-root": {
+        "flexDirection": "column",
+        "textTransform": "none",
+        "fontSize": "11px",
+        "lineHeight": 1.2,
+        "padding": "3px 0",
+        "border": 0,
+        "borderRadius": "4px",
+    },
+    "& .MuiToggleButton-root::before": {
+        "content": '""',
+        "width": "48px",
+        "height": "32px",
+        "backgroundColor": "currentColor",
+    },
+}
 
 
 class Control:
     """The widget of one setting.
 
+    Parameters
+    ----------
+    name
+        Of the setting, one of the present scene.
+    state
+        Is changed by the widget, and shown by it.
+
     Attributes
     ----------
+    field
+        The widget that takes the value; of a number a text field, which has a slider too.
+    slider
+        Of a number; else None.
     view
         What stands on the page.
     """
 
-    def __init__(self, name: str, definition: Parameter, state: PageState) -> None:
-        self._name, self._definition, self._state = name, definition, state
-        self._is_updating = False
-        self._unit = unit_of(definition)
-        self.view = self._make()
+    def __init__(self, name: str, state: PageState) -> None:
+        self.name, self._state = name, state
+        self._definition: Parameter = state.settings.definitions()[name]
+        self._about = about(self._definition)
+        self._unit = unit_of(self._definition)
+        self._is_updating = self._is_dragged = False
+        self._dialog: CurveDialog | None = None
+        self.slider: pmui.FloatSlider | None = None
+        self.field, self.view = self._make()
+        self.field.param.watch(lambda event: self._on_field(event.new), "value")
         self.update()
 
     def update(self) -> None:
@@ -39,94 +96,173 @@ class Control:
         settings = self._state.settings
         self._is_updating = True
         try:
-            self.view.visible = settings.applies(self._name)
-            self._show(getattr(settings, self._name))
+            self.view.visible = settings.applies(self.name)
+            self._show(getattr(settings, self.name))
+            self._tell("")
         finally:
             self._is_updating = False
 
-    def _make(self) -> Any:
-        definition, kind = self._definition, about(self._definition)
-        more = {
-            "label": kind.title,
-            "description": definition.doc,
-            "size": "small",
-            "width": WIDTH,
-            "margin": (4, 8),
-        }
-        if isinstance(definition, CurveParameter):
-            self._field = pmui.Select(options=list(definition.presets), **more)
-        elif isinstance(definition, param.Boolean):
-            self._field = pmui.Switch(label=kind.title, width=WIDTH)
-        elif isinstance(definition, param.Selector):
-            self._field = pmui.Select(options=list(definition.objects), **more)
-        else:
-            return self._make_number(more)
-        self._field.param.watch(lambda event: self._change(event.new), "value")
-        return self._field
+    # ------------------------------------------------------------------- widgets
 
-    def _make_number(self, more: dict[str, Any]) -> pn.Row:
-        """A field and a slider for a number, in the unit of its setting."""
-        definition, kind = self._definition, about(self._definition)
-        is_whole = isinstance(definition, param.Integer)
-        more |= {"label": self._unit.titled(kind.title), "width": 150, "margin": (4, 4, 4, 8)}
-        self._field = (pmui.IntInput if is_whole else pmui.FloatInput)(**more)
-        low, high = (self._to_slider(end) for end in definition.softbounds)
-        step = 1 if is_whole and not kind.logarithmic else (high - low) / STEPS
-        self._slider = pmui.FloatSlider(
+    def _make(self) -> tuple[Any, Any]:
+        definition = self._definition
+        more: dict[str, Any] = {"description": definition.doc, "size": "small"}
+        more |= {"width": WIDTH, "margin": (4, 0), "label": self._unit.titled(self._about.title)}
+        if isinstance(definition, CurveParameter):
+            field = pmui.Select(options=list(definition.presets), variant="standard", **more)
+            edit = pmui.Button(
+                label="Edit points",
+                icon="show_chart",
+                variant="text",
+                size="small",
+                margin=(-4, 0, 0, 0),
+                on_click=lambda event: self._edit(),
+            )
+            self._edit_button = edit
+            return field, pn.Column(field, edit, margin=0)
+        if isinstance(definition, param.Boolean):
+            field = pmui.Switch(**more)
+            return field, field
+        if isinstance(definition, param.Selector):
+            field = pmui.Select(options=list(definition.objects), variant="standard", **more)
+            return field, field
+        default = self._written(definition.default)
+        more |= {"margin": 0, "variant": "standard", "sx": FIELD}
+        field = pmui.TextInput(placeholder=f"{default} by default", **more)
+        self.slider = self._make_slider()
+        return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
+
+    def _make_slider(self) -> pmui.FloatSlider:
+        low, high = (self._to_slider(end) for end in self._definition.softbounds)
+        step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
+        if isinstance(self._definition, param.Integer) and not self._about.logarithmic:
+            step = 1
+        slider = pmui.FloatSlider(
+            label=self._about.title,
             start=low,
             end=high,
             step=step,
             value=low,
             show_value=False,
+            tooltips=False,
             size="small",
-            width=120,
-            margin=(8, 8),
+            width=WIDTH,
+            height=20,
+            margin=(-10, 0, 0, 0),
+            sx=ON_UNDERLINE,
         )
-        self._slider.param.watch(lambda event: self._drag(event.new), "value")
-        self._slider.param.watch(
-            lambda event: self._change(self._from_slider(event.new)), "value_throttled"
-        )
-        self._field.param.watch(lambda event: self._change(event.new * self._unit.factor), "value")
-        return pn.Row(self._field, self._slider, margin=0, align="center")
+        slider.param.watch(lambda event: self._drag(event.new), "value")
+        slider.param.watch(lambda event: self._release(event.new), "value_throttled")
+        return slider
 
     def _to_slider(self, value: float) -> float:
-        if about(self._definition).logarithmic:
+        if self._about.logarithmic:
             return math.log10(max(value, 1e-300))
-        return value / self._unit.factor
+        return float(f"{value / self._unit.factor:.10g}")
 
     def _from_slider(self, place: float) -> float:
-        value = 10.0**place if about(self._definition).logarithmic else place * self._unit.factor
+        """The value of a place, as round as a hand can mean it."""
+        value = 10.0**place if self._about.logarithmic else place * self._unit.factor
         if isinstance(self._definition, param.Integer):
             return round(value)
-        return float(f"{value:.4g}")
+        return float(f"{value:.{3 if self._about.logarithmic else 10}g}")
+
+    def _written(self, value: float) -> str:
+        return f"{value / self._unit.factor:.10g}"
+
+    # --------------------------------------------------------------------- shown
 
     def _show(self, value: Any) -> None:
-        if not isinstance(self._definition, param.Number):
-            if isinstance(value, tuple):
-                self._field.options = [*self._definition.presets, "points"]
-                value = "points"
-            self._field.value = value
-            return
-        whole = isinstance(self._definition, param.Integer)
-        self._field.value = value if whole else float(f"{value / self._unit.factor:.10g}")
-        place = self._to_slider(value)
-        self._slider.value = min(max(place, self._slider.start), self._slider.end)
+        if isinstance(self._definition, CurveParameter):
+            self.field.options = [*self._definition.presets, POINTS]
+            self.field.value = POINTS if isinstance(value, tuple) else value
+            self._edit_button.visible = isinstance(value, tuple)
+            if self._dialog is not None:
+                self._dialog.update()
+        elif self.slider is None:
+            self.field.value = value
+        else:
+            self.field.value = self._written(value)
+            if not self._is_dragged:
+                self._show_on_slider(value)
 
-    def _change(self, value: Any) -> None:
+    def _show_on_slider(self, value: float) -> None:
+        assert self.slider is not None
+        end = self._definition.softbounds[1]
+        most = ends_of(self._state.settings).get(self.name, end)
+        high = self._to_slider(max(min(most, end), self._definition.softbounds[0] + 1))
+        if most < end or high != self.slider.end:
+            self.slider.end = high if most < end else self._to_slider(end)
+        place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
+        with param.edit_constant(self.slider):
+            self.slider.param.update(value=place, value_throttled=place)
+
+    def _tell(self, refusal: str) -> None:
+        if hasattr(self.field, "helper_text"):
+            self.field.param.update(helper_text=refusal, error_state=bool(refusal))
+
+    # ------------------------------------------------------------------- changed
+
+    def _on_field(self, value: Any) -> None:
         if self._is_updating or value is None:
             return
-        if isinstance(self._definition, param.Integer):
-            value = round(value)
-        if not self._state.change(**{self._name: value}):
-            self.update()
+        if value == POINTS and isinstance(self._definition, CurveParameter):
+            self._edit()
+        elif self.slider is not None:
+            self._take_text(value)
+        else:
+            self._change(value)
+
+    def _take_text(self, text: str) -> None:
+        """Take what is typed; nothing means the default."""
+        try:
+            value = typed(text, self._unit, self._about.unit) if text else self._definition.default
+        except ValueError as problem:
+            self._state.refusal = f"{self._about.title} cannot be “{text[:40]}”: {problem}."
+            self._refuse()
+            return
+        self._change(value)
+
+    def _change(self, value: Any) -> None:
+        if not self._state.change(**{self.name: value}):
+            self._refuse()
+
+    def _refuse(self) -> None:
+        """Show the value that holds again, and why the other does not."""
+        refusal = self._state.refusal
+        self.update()
+        self._tell(refusal)
 
     def _drag(self, place: float) -> None:
         if not self._is_updating:
-            self._state.drag(self._name, self._from_slider(place))
+            self._is_dragged = True
+            self._state.drag(self.name, self._from_slider(place))
+
+    def _release(self, place: float) -> None:
+        """Run what the slider is let go at; where that is refused, the nearest that holds."""
+        if self._is_updating:
+            return
+        self._is_dragged = False
+        self._change(self._from_slider(place))
+        if self._state.is_dragged:
+            self._state.run()
+
+    def _edit(self) -> None:
+        """Open the points of a path."""
+        if self._dialog is None:
+            self._dialog = CurveDialog(self.name, self._state)
+            self.view.append(self._dialog.view)
+        self.update()
+        self._dialog.open()
 
 
 class Controls:
-    """All controls of the present scene.
+    """All controls of the present scene: the chief ones, and groups that open.
+
+    Parameters
+    ----------
+    state
+        Is changed and shown.
 
     Attributes
     ----------
@@ -137,15 +273,31 @@ class Controls:
     def __init__(self, state: PageState) -> None:
         self._state = state
         self._controls: list[Control] = []
-        self._scene = pmui.Select(
-            label="Scene",
-            options={e.title: n for n, e in CATALOGUE.items()},
-            size="small",
+        self._closed: dict[int, list[str]] = {}
+        self._scene = pmui.RadioButtonGroup(
+            options={name.capitalize(): name for name in CATALOGUE},
+            value=state.settings.scene,
             width=WIDTH,
+            margin=0,
+            size="small",
+            sx=PICTURES
+            | {
+                f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
+                for number, entry in enumerate(CATALOGUE.values(), start=1)
+            },
         )
         self._scene.param.watch(lambda event: self._choose(event.new), "value")
-        self._chief, self._groups = pn.Column(margin=0), pmui.Accordion(margin=0, width=WIDTH + 16)
-        self.view = pn.Column(self._scene, self._chief, self._groups, margin=0)
+        self._chief = pn.Column(margin=0)
+        self._groups = pmui.Accordion(
+            margin=(10, 0),
+            width=WIDTH,
+            title_variant="body2",
+            disable_gutters=True,
+            elevation=0,
+            sx=GROUP,
+        )
+        self._groups.param.watch(lambda event: self._open(), "active")
+        self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
         self.update()
@@ -153,20 +305,54 @@ class Controls:
     def update(self) -> None:
         """Show the settings as they are, those of another scene in place of the present ones."""
         settings = self._state.settings
-        if settings.scene != self._built:
-            self._build()
-        for control in self._controls:
-            control.update()
+        with pn.io.hold():
+            if settings.scene != self._built:
+                self._build()
+            for control in self._controls:
+                control.update()
 
     def _build(self) -> None:
         settings = self._state.settings
         self._built = self._scene.value = settings.scene
-        definitions, chief = settings.definitions(), chief_of(type(settings))
-        self._controls = [
-            Control(n, definitions[n], self._state) for n in chief if n in definitions
-        ]
+        self._scene.label = CATALOGUE[settings.scene].title
+        chief, groups = _groups_of(type(settings))
+        self._controls = [Control(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
+        self._closed = dict(enumerate(groups.values()))
+        self._groups.active = []
+        self._groups[:] = [(title, pn.Column(margin=0)) for title in groups]
+
+    def _open(self) -> None:
+        """Build the controls of groups that are opened for the first time."""
+        for place in set(self._groups.active) & self._closed.keys():
+            controls = [Control(name, self._state) for name in self._closed.pop(place)]
+            self._controls += controls
+            self._groups[place][:] = [control.view for control in controls]
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:
-            self._state.adopt(default_settings(scene))
+            self._state.choose_scene(scene)
+
+
+@cache
+def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
+    """The chief settings of a scene, and all others by group; without those of a single value."""
+    definitions = kind.definitions()
+    chief = [name for name in chief_of(kind) if name in definitions]
+    groups: dict[str, list[str]] = {group: [] for group in GROUPS}
+    for name, definition in definitions.items():
+        if name not in chief and len(getattr(definition, "objects", "any")) > 1:
+            groups.setdefault(about(definition).group, []).append(name)
+    return chief, {group: names for group, names in groups.items() if names}
+
+
+def _picture(emblem: Emblem) -> dict[str, str]:
+    """The small picture of a scene as a mask, which takes the colour of its text."""
+    line = 'fill="none" stroke="#000" stroke-width="1.4" stroke-linejoin="round"'
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 48 32">'
+        f'<path d="{emblem.body}" fill-opacity=".25" stroke="#000" stroke-width="1"/>'
+        f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/>'
+        f'<path d="{emblem.load}" {line}/></svg>'
+    )
+    return {"mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'}

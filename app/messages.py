@@ -7,6 +7,7 @@ from typing import Any
 
 from app.frame import Frame
 from solver.settings import Settings
+from solver.study.other_programs.brought import Brought
 
 WHOLE = -1.0
 """Pace at which the whole search takes three seconds."""
@@ -64,6 +65,8 @@ class Needs:
         As in `Selection`.
     readings
         Names of quantities of the run.
+    brought
+        Results of another program, to be laid beside it.
     """
 
     extras: frozenset[str] = frozenset()
@@ -72,6 +75,7 @@ class Needs:
     place: float | None = None
     stress: str = "von Mises"
     readings: tuple[str, ...] = ()
+    brought: Brought | None = None
 
 
 @dataclass(frozen=True)

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
-import param
 
 from app.cards import Card
 from app.controls import Controls
 from app.display import Display
 from app.keys import listen
-from app.state import PageState
+from app.link import Link, read, show, wait_at
+from app.pages import FULL, PAGES
+from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.supervisor import Supervisor
 from app.transport import Transport
@@ -27,7 +29,6 @@ HEADER = 52
 """Pixels that the header takes."""
 COMPACT = {"& .MuiToolbar-root": {"minHeight": f"{HEADER}px !important"}}
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
-TABS = ("Live", "What if", "Reports")
 IN_HEADER = {
     "& button": {
         "color": "#fff",
@@ -43,8 +44,15 @@ IN_HEADER = {
 }
 
 
-class Page(param.Parameterized):
+class Page:
     """One page: its state, its worker, its widgets and views.
+
+    Parameters
+    ----------
+    state
+        Of the page.
+    iteration
+        At which the first run waits; 0 has it go on.
 
     Attributes
     ----------
@@ -52,12 +60,9 @@ class Page(param.Parameterized):
         What is served.
     """
 
-    tab = param.Selector(default=TABS[0], objects=list(TABS))
-    is_presenting = param.Boolean(default=False)
-
-    def __init__(self, state: PageState, **values: Any) -> None:
-        super().__init__(**values)
-        self.state = state
+    def __init__(self, state: PageState, iteration: int = 0) -> None:
+        self.state, self._iteration = state, iteration
+        Link(state)
         document = pn.state.curdoc
         self._supervisor = Supervisor(state, document)
         self._status = words("status", margin=(8, 6))
@@ -85,16 +90,23 @@ class Page(param.Parameterized):
         self._fit()
         keys = {**self._transport.keys(), "p": self._present}
         listen(document, keys)
-        self.param.watch(lambda event: self._turn(event.new), "tab")
-        self.param.watch(lambda event: self._dress(), "is_presenting")
+        state.param.watch(lambda event: self._turn(event.new), "tab")
+        state.param.watch(lambda event: self._dress(), "view")
+        self._turn(state.tab)
+        self._dress()
 
     def loaded(self) -> None:
         """Start the worker and the first run, now that a browser is there."""
         self._supervisor.begin()
+        if self._iteration:
+            wait_at(self.state, self._iteration)
+        else:
+            self.state.run()
 
-    def end(self) -> None:
+    def end(self, _context: Any) -> None:
         """Leave nothing behind."""
         self._supervisor.end()
+        PAGES.leave()
 
     def _make_live(self) -> pn.Column:
         pane = lambda view, **more: pn.pane.Bokeh(view.figure, margin=0, **more)  # noqa: E731
@@ -133,7 +145,7 @@ class Page(param.Parameterized):
 
     def _header(self) -> pn.Row:
         tabs = pmui.RadioButtonGroup.from_param(
-            self.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
+            self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
         )
         present = pmui.IconButton(icon="slideshow", description="Presenter view (p)", color="light")
         present.on_click(lambda event: self._present())
@@ -148,7 +160,7 @@ class Page(param.Parameterized):
     def _look(self) -> None:
         """Have the views in sight updated, and no others."""
         seen: list[View] = []
-        if self.tab == TABS[0]:
+        if self.state.tab == TABS[0]:
             cards = getattr(self, "_cards", [])
             seen = [self._scene, self._timeline, *(v for card in cards if (v := card.seen))]
         self.display.views = seen
@@ -163,12 +175,12 @@ class Page(param.Parameterized):
         self._look()
 
     def _present(self) -> None:
-        self.is_presenting = not self.is_presenting
+        self.state.view = "present" if self.state.view == "page" else "page"
 
     def _dress(self) -> None:
-        self.template.param.update(
-            sx=BARE if self.is_presenting else COMPACT, sidebar_open=not self.is_presenting
-        )
+        """Have nothing around the plots in the views for a projector and for a frame."""
+        is_bare = self.state.view != "page"
+        self.template.param.update(sx=BARE if is_bare else COMPACT, sidebar_open=not is_bare)
 
     def _say(self) -> None:
         """Bring the words of the run up to the frame."""
@@ -186,11 +198,16 @@ def words(role: str, **more: Any) -> pn.pane.HTML:
 
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
-    from app.state import default_settings
-
     pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
-    args: dict[str, Any] = {k: v[0].decode() for k, v in pn.state.session_args.items()}
-    page = Page(PageState(default_settings(args.get("scene", "bar"))))
+    if not PAGES.enter():
+        return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
+    location = pn.state.location
+    place, refusal = read(location.search if location is not None else "")
+    state = PageState(place.settings, refusal=refusal)
+    show(state, replace(place, iteration=0))
+    page = Page(state, place.iteration)
+    if place.theme:
+        page.template.dark_theme = place.theme == "dark"
     pn.state.onload(page.loaded)
-    pn.state.on_session_destroyed(lambda context: page.end())
+    pn.state.on_session_destroyed(page.end)
     return page.template

@@ -26,9 +26,11 @@ from app.messages import (
     Start,
     Step,
 )
+from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
+from solver.study.other_programs.brought import Brought
 
 SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings with which one sees the search from nothing, as a page begins."""
@@ -41,6 +43,10 @@ PACES = {
     "20 a second": 20.0,
     "fastest": math.inf,
 }
+
+TABS = ["Live", "What if", "Reports"]
+VIEWS = ["page", "present", "embed"]
+"""With controls, for a projector, for a frame in another page."""
 
 
 def default_settings(scene: str) -> Settings:
@@ -65,6 +71,13 @@ class PageState(param.Parameterized):
     pace = param.Selector(default="whole in 3 s", objects=list(PACES), doc="Iterations a second.")
     needs = param.ClassSelector(class_=frozenset, default=frozenset(), doc="Extras in sight.")
     readings = param.List(default=[], doc="Quantities that a lesson names.")
+    is_dragged = param.Boolean(doc="Whether a slider is being dragged.")
+    lesson = param.String(doc="Name of the lesson.")
+    tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
+    view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
+    plots = param.List(default=[], item_type=str, doc="Views on top of their cards, by name.")
+    room = param.String(doc="Code of the class that is followed.")
+    brought = param.ClassSelector(class_=Brought, default=None, doc="Another program's results.")
     refusal = param.String(doc="What was refused and why.")
     message = param.String(doc="What the page says of itself: a loss, a cost, a fault.")
     is_costly = param.Boolean(default=False, doc="Whether the run waits to be agreed to.")
@@ -73,44 +86,49 @@ class PageState(param.Parameterized):
         super().__init__(settings=settings, **values)
         self.send: Callable[[Order], None] = lambda order: None
         self.history = History()
+        self.kept = {settings.scene: settings}
         self.number = 0
         self.began = self.failed_in = 0
         self._sent: Needs | None = None
         self._last_run: Frame | None = None
         self._waiting: list[Callable[[Any], None]] = []
         self.param.watch(
-            lambda *events: self.send_needs(is_news=False), ["selection", "needs", "readings"]
+            lambda *events: self.send_needs(is_news=False),
+            ["selection", "needs", "readings", "brought"],
         )
         self.param.watch(lambda event: self.send(Pace(PACES[event.new])), "pace")
 
     def change(self, **values: object) -> bool:
         """Change settings and run; one that is refused is told, and nothing changes."""
-        try:
-            settings = self.settings
-            for name, value in values.items():
+        settings = self.settings
+        for name, value in values.items():
+            try:
                 settings = settings.with_change(name, value)
-        except RefusedError as refused:
-            self.refusal = str(refused)
-            return False
+            except RefusedError as refused:
+                self.refusal = message_of(refused, settings, name, value)
+                return False
         self.adopt(settings)
         return True
 
-    def drag(self, name: str, value: object) -> None:
-        """Follow a slider that is dragged: the answer alone is shown until it is let go."""
+    def drag(self, name: str, value: float) -> None:
+        """Follow a slider as far as is allowed; the answer alone is shown until it is let go."""
         try:
             settings = self.settings.with_change(name, value)
-        except RefusedError as refused:
-            self.refusal = str(refused)
-            return
-        with param.parameterized.batch_call_watchers(self):
-            self.refusal = ""
-            self.settings = settings
+        except RefusedError:
+            allowed = nearest_allowed(self.settings, name, value)
+            settings = self.settings.with_change(name, allowed)
+        self.param.update(refusal="", settings=settings, is_dragged=True)
         self._start(answer(settings), is_dragged=True)
 
     def adopt(self, settings: Settings) -> None:
         """Take settings over and run them."""
+        self.kept[settings.scene] = settings
         self.param.update(settings=settings, refusal="", running=True)
         self.run()
+
+    def choose_scene(self, scene: str) -> None:
+        """Go to a scene, as it was left."""
+        self.adopt(self.kept.get(scene) or default_settings(scene))
 
     def run(self, *, is_agreed: bool = False) -> None:
         """Run the settings from the start, at the pace."""
@@ -171,7 +189,7 @@ class PageState(param.Parameterized):
         is_agreed: bool = False,
     ) -> None:
         self.number += 1
-        self.param.update(is_costly=False, message="", iteration=None)
+        self.param.update(is_costly=False, message="", iteration=None, is_dragged=is_dragged)
         pace = PACES[self.pace] if pace is None else pace
         self.send(Start(self.number, settings, pace, is_dragged, is_agreed))
 
@@ -239,6 +257,7 @@ class PageState(param.Parameterized):
             chosen.place,
             chosen.stress,
             tuple(self.readings),
+            self.brought,
         )
         if is_news or needs != self._sent:
             self._sent = needs

@@ -38,11 +38,10 @@ class Supervisor:
         self._callback: Any = None
 
     def begin(self) -> None:
-        """Start the worker, and the run of the page's settings."""
+        """Start the worker."""
         self._callback = self._document.add_periodic_callback(self._look, LOOK)
         self._state.send = self.send
         self._start()
-        self._state.run()
 
     def end(self) -> None:
         """End the worker."""

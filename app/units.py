@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
+from functools import cache
 
 import param
 
-from solver.definitions import Parameter, about
+from solver.definitions import CurveParameter, Parameter, about
+from solver.scenes import CATALOGUE, points_of
 
 PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^3", "N·m", "N·m/m", "rad")
@@ -15,6 +18,8 @@ PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^3", "N·m", "N·m/m", "rad")
 TIMES = {"s": 1.0, "h": 3600.0, "d": 86400.0}
 LATER = {"GPa": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
 """Where a unit begins that is not taken from 1 on: a stress of 3000 MPa is read as that."""
+TYPED = re.compile(r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE)
+"""A number as one types it, and what stands behind it."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -34,15 +39,17 @@ class Unit:
         return f"{title}, {self.name}" if self.name else title
 
 
-def unit_for(size: float, unit: str) -> Unit:
-    """The unit in which values up to a size, in SI, are read."""
+def sizes_of(unit: str) -> dict[str, float]:
+    """The units, smallest first, that are multiples of an SI unit, and their sizes in it."""
     name = unit.replace("^2", "²").replace("^3", "³")
     if unit == "s":
-        steps = TIMES
-    elif unit in PREFIXED:
-        steps = {prefix + name: factor for prefix, factor in PREFIXES.items()}
-    else:
-        return Unit(name)
+        return TIMES
+    return {p + name: f for p, f in PREFIXES.items()} if unit in PREFIXED else {name: 1.0}
+
+
+def unit_for(size: float, unit: str) -> Unit:
+    """The unit in which values up to a size, in SI, are read."""
+    steps = sizes_of(unit)
     if not (math.isfinite(size) and size > 0.0):
         size = 1.0
     rounded = float(f"{size:.3g}") * (1.0 + 1e-9)
@@ -57,6 +64,37 @@ def unit_of(definition: Parameter) -> Unit:
         return Unit(unit)
     size = abs(definition.default) or max(map(abs, definition.softbounds))
     return unit_for(size, unit)
+
+
+@cache
+def units_of_points(scene: str, name: str) -> tuple[Unit, Unit]:
+    """The units of both columns of a path's points, by the scene's defaults; times are in s."""
+    settings = CATALOGUE[scene].settings.checked({})
+    definition = settings.definitions()[name]
+    assert isinstance(definition, CurveParameter)
+    columns = zip(*points_of(settings, name), strict=True)
+    sizes = [max(map(abs, column)) for column in columns]
+    across, up = (unit_for(size, unit) for size, unit in zip(sizes, definition.units, strict=True))
+    return (Unit("s") if definition.abscissa == "time" else across), up
+
+
+def typed(text: str, unit: Unit, si: str) -> float:
+    """The value in SI of a number as it is typed: in a unit, or in the one that stands behind it.
+
+    Raises
+    ------
+    ValueError
+        For what is no number, or another unit.
+    """
+    match = TYPED.fullmatch(text.strip().replace("−", "-").replace("μ", "µ"))
+    if match is None:
+        raise ValueError("write a number")
+    digits, behind = match[1].replace(",", "."), match[2].replace("um", "µm")
+    sizes = {**sizes_of(si), "": unit.factor, unit.name: unit.factor}
+    size = sizes.get(behind.replace("^2", "²").replace("^3", "³"))
+    if size is None:
+        raise ValueError(f"write a number in {unit.name or 'no unit'}")
+    return float(f"{float(digits) * size:.15g}")
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -1,0 +1,348 @@
+"""The address of a page: what it says is shown, and what is shown it says."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from typing import Any
+from urllib.parse import parse_qsl, quote
+
+import panel as pn
+from bokeh.core.properties import String
+from bokeh.model import DataModel
+from bokeh.models import CustomJS
+
+from app.frame import Selection
+from app.messages import Step
+from app.refusals import message_of
+from app.state import PACES, TABS, VIEWS, PageState, default_settings
+from app.views.catalogue import CARDS
+from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
+from solver.lessons.lesson import Lesson
+from solver.lessons.reading import lesson_from_file
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+
+LESSONS = Path(__file__).parent / "lessons"
+LONGEST = 1500
+"""Characters of a value in an address; mail, chat and proxies cut what is much longer."""
+MOST_TOLD = 3
+"""Refusals that are told of one address."""
+BACK = """
+if (back.search != null) { addEventListener("popstate", () => { back.search = location.search }) }
+"""
+
+
+@dataclass(frozen=True)
+class Place:
+    """What an address says.
+
+    Attributes
+    ----------
+    settings
+        Of the run.
+    lesson, tab, pace, view
+        As in `PageState`.
+    instant
+        As a share of the interval; None leaves it.
+    iteration
+        At which the run waits; 0 has it go on.
+    plots
+        Views on top of their cards, separated by commas.
+    room
+        Code of the class that is followed; "class" in an address.
+    theme
+        "light" or "dark"; empty is that of the browser.
+    """
+
+    settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))
+    lesson: str = ""
+    tab: str = TABS[0]
+    instant: float | None = None
+    iteration: int = 0
+    pace: str = next(iter(PACES))
+    plots: str = ""
+    view: str = VIEWS[0]
+    room: str = ""
+    theme: str = ""
+
+
+def _choice(options: Any) -> Any:
+    return choice(next(iter(options)), options, "", group="", title="")
+
+
+_PLOTS = [view.name for card in CARDS for view in card]
+_PLACE: dict[str, Any] = {
+    "tab": _choice(TABS),
+    "instant": quantity(0.0, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
+    "iteration": count(0, (0, 100_000), (0, 100_000), "", group="", title=""),
+    "pace": _choice(PACES),
+    "view": _choice(VIEWS),
+    "theme": _choice(["light", "dark"]),
+}
+"""What an address may say beside settings, scene, lesson, class and plots."""
+
+
+class Back(DataModel):
+    """The address that the browser has gone back, or on, to."""
+
+    search: str = String(default="")  # type: ignore[assignment]
+
+
+class Link:
+    """Keeps the address of a page, and brings the page to an address that one goes back to.
+
+    Each change is an entry of the browser's history, so that Back undoes it; but for one that is
+    dragged, and instants and iterations.
+
+    Parameters
+    ----------
+    state
+        Of the page.
+    """
+
+    def __init__(self, state: PageState) -> None:
+        self._state, self._location = state, pn.state.location
+        self._query = query_of(place_of(state))
+        self.back = Back(name="back")
+        self.back.on_change("search", lambda name, old, new: self.go(new))
+        document = pn.state.curdoc
+        if document is not None:
+            document.add_root(self.back)
+            document.js_on_event("document_ready", CustomJS(args={"back": self.back}, code=BACK))
+        watched = ["settings", "is_dragged", "lesson", "tab", "pace", "plots", "view", "room"]
+        state.param.watch(lambda *events: self.write(), watched)
+
+    def write(self) -> None:
+        """Have the address say what is shown."""
+        query = query_of(place_of(self._state))
+        if self._state.is_dragged or query == self._query:
+            return
+        self._query = query
+        if self._location is not None:
+            # After going back the location has not heard where the browser is.
+            is_same = self._location.search == query
+            self._location.search = f"{query}&" if is_same else query
+
+    def go(self, query: str) -> None:
+        """Bring the page to an address."""
+        place, refusal = read(query, self._state.settings)
+        self._query = query_of(place)
+        show(self._state, place)
+        self._state.refusal = refusal
+
+
+def show(state: PageState, place: Place) -> None:
+    """Show what an address says."""
+    plots = [name for name in place.plots.split(",") if name]
+    state.param.update(
+        lesson=place.lesson,
+        tab=place.tab,
+        pace=place.pace,
+        view=place.view,
+        room=place.room,
+        plots=plots,
+    )
+    if place.instant is not None:
+        state.select(phase=place.instant)
+    if (
+        place.settings.values() != state.settings.values()
+        or place.settings.scene != state.settings.scene
+    ):
+        state.adopt(place.settings)
+    if place.iteration:
+        wait_at(state, place.iteration)
+
+
+def wait_at(state: PageState, iteration: int) -> None:
+    """Run up to an iteration and wait there."""
+    state.reset()
+    number = state.number
+
+    def step(event: Any) -> None:
+        state.param.unwatch(watcher)
+        first = event.new
+        if number == state.number and first is not None and first.iteration < iteration:
+            state.send(Step(iteration - first.iteration))
+
+    watcher = state.param.watch(step, "newest")
+
+
+def place_of(state: PageState) -> Place:
+    """What is shown, without the instant and the iteration."""
+    return Place(
+        settings=state.settings,
+        lesson=state.lesson,
+        tab=state.tab,
+        pace=state.pace,
+        plots=",".join(state.plots),
+        view=state.view,
+        room=state.room,
+    )
+
+
+def link_of(state: PageState) -> tuple[str, str]:
+    """The whole link to what is shown, instant and iteration too, and what it had to leave out."""
+    frame, newest = state.frame, state.newest
+    is_waiting = frame is not None and not frame.is_answer
+    is_waiting = is_waiting and (not state.running or frame is not newest)
+    place = replace(
+        place_of(state),
+        instant=round(state.selection.phase, 4),
+        iteration=frame.iteration if is_waiting else 0,
+    )
+    location = pn.state.location
+    root = f"{location.protocol}//{location.hostname}" if location is not None else ""
+    if location is not None:
+        root += f":{location.port}" * bool(location.port) + location.pathname
+    long = too_long(state.settings)
+    titles = ", ".join(state.settings.definitions()[n].metadata["about"].title for n in long)
+    message = f"Too long for a link, so that a saved file has it alone: {titles}." if long else ""
+    return root + query_of(place), message
+
+
+def query_of(place: Place) -> str:
+    """The address that says what differs from the defaults, or from the settings of a lesson."""
+    if place.room:
+        return f"?class={quote(place.room)}"
+    lesson = lesson_of(place.lesson)
+    base = lesson.settings if lesson else default_settings(place.settings.scene)
+    pairs = {"lesson": place.lesson} if lesson else {"scene": place.settings.scene}
+    changed = place.settings.changed(base)
+    long = too_long(place.settings)
+    pairs |= {
+        name: json.dumps(value, separators=(",", ":"))
+        for name, value in changed.items()
+        if name not in long
+    }
+    pairs |= {"file": ",".join(long)} if long else {}
+    first = Place(place.settings, instant=lesson.instant if lesson else Selection().phase)
+    for name in ("tab", "instant", "iteration", "pace", "plots", "view", "theme"):
+        value = getattr(place, name)
+        if value != getattr(first, name) and value is not None:
+            pairs[name] = str(value)
+    return "?" + "&".join(f"{name}={quote(text, safe=',:[]')}" for name, text in pairs.items())
+
+
+def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
+    """Read an address.
+
+    Parameters
+    ----------
+    query
+        What stands behind the path, from the question mark on.
+    present
+        Settings that hold: these have what is too long for an address.
+
+    Returns
+    -------
+    What it says, where it says nothing the defaults; and what of it was refused and why, or "".
+    """
+    pairs = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
+    refused: list[str] = []
+    lesson = _lesson(pairs.pop("lesson", ""), refused)
+    base = _base(lesson, pairs.pop("scene", ""), refused)
+    given: dict[str, Any] = {}
+    if lesson is not None:
+        given = {"lesson": lesson.name, "instant": lesson.instant}
+    given["room"] = pairs.pop("class", "")
+    given["plots"] = _plots(pairs.pop("plots", ""), refused)
+    for name in _PLACE.keys() & pairs.keys():
+        text = pairs.pop(name)
+        try:
+            value = parse(text) if name in ("instant", "iteration") else text
+            given[name] = checked_value(_PLACE[name], name, value)
+        except SettingError as refusal:
+            refused.append(str(refusal))
+    for name in filter(None, pairs.pop("file", "").split(",")):
+        if present is not None and present.scene == base.scene and name in base.definitions():
+            base = base.replace(**{name: getattr(present, name)})
+        else:
+            refused.append(f"{name[:40]} is too long for it: open its file")
+    settings = _together(base, {name: parse(text) for name, text in pairs.items()}, refused)
+    return Place(settings, **given), _message(refused)
+
+
+def _message(refused: list[str]) -> str:
+    if not refused:
+        return ""
+    more = len(refused) - MOST_TOLD
+    told = "; ".join(text.rstrip(".") for text in refused[:MOST_TOLD])
+    return f"From the address: {told}{f'; and {more} more' if more > 0 else ''}."
+
+
+def _lesson(name: str, refused: list[str]) -> Lesson | None:
+    lesson = lesson_of(name)
+    if name and lesson is None:
+        refused.append(f"there is no lesson {name[:40]}")
+    return lesson
+
+
+def _base(lesson: Lesson | None, scene: str, refused: list[str]) -> Settings:
+    """Settings from which an address says what differs."""
+    if lesson is not None:
+        if scene not in ("", lesson.settings.scene):
+            refused.append(f"the lesson has a scene of its own, {lesson.settings.scene}")
+        return lesson.settings
+    if scene and scene not in CATALOGUE:
+        refused.append(f"there is no scene {scene[:40]}: choose {', '.join(CATALOGUE)}")
+    return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE)))
+
+
+def _plots(text: str, refused: list[str]) -> str:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    unknown = [name for name in names if name not in _PLOTS]
+    refused.extend(f"there is no plot {name[:40]}" for name in unknown)
+    return ",".join(name for name in names if name in _PLOTS)
+
+
+def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> Settings:
+    """Settings with as many values as hold together; the others are refused."""
+    try:
+        return base.replace(**values)
+    except RefusedError:
+        pass
+    taken: dict[str, Any] = {}
+    messages: dict[str, str] = {}
+    left = dict(values)
+    while left:
+        # One that was refused may hold beside one that came later.
+        messages = {}
+        for name, value in left.items():
+            try:
+                base.replace(**taken, **{name: value})
+                taken[name] = value
+            except RefusedError as refusal:
+                messages[name] = _refused(refusal, base, name, value)
+        if len(messages) == len(left):
+            break
+        left = {name: left[name] for name in messages}
+    refused.extend(messages.values())
+    return base.replace(**taken)
+
+
+def _refused(refusal: RefusedError, settings: Settings, name: str, value: Any) -> str:
+    if name in settings.definitions() or name in settings.RETIRED:
+        return message_of(refusal, settings, name, value)
+    near = get_close_matches(name, settings.definitions(), n=1)
+    return f"there is no setting {name[:40]}" + (f": did you mean {near[0]}?" if near else "")
+
+
+def too_long(settings: Settings) -> list[str]:
+    """Names of the settings whose values are too long for an address."""
+    values = settings.values().items()
+    return [
+        n for n, value in values if isinstance(value, tuple) and len(json.dumps(value)) > LONGEST
+    ]
+
+
+@cache
+def lesson_of(name: str) -> Lesson | None:
+    """The lesson of a name, if there is one."""
+    names = {path.stem: path for path in LESSONS.glob("*.toml")}
+    return lesson_from_file(names[name]) if name in names else None
