@@ -48,7 +48,7 @@ class Card:
         self._fitting: list[View] = []
         self._chosen: View | None = None
         self._is_fitting = False
-        self._changed = changed
+        self._state, self._changed = state, changed
         self.view = pmui.Tabs(
             dynamic=True, sizing_mode="stretch_both", min_height=170, margin=0, sx=TABS
         )
@@ -83,9 +83,11 @@ class Card:
             self._turn()
 
     def _turn(self) -> None:
-        """Make the figure of the view in sight, where it was not seen yet."""
-        view = self.seen
+        """Make the figure of the view in sight, where it was not seen yet, and show the frame."""
+        view, state = self.seen, self._state
         if view is not None and not self.view[self.view.active].objects:
             pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+            if state.frame is not None:
+                view.update(state.frame, state.selection, state.ghost)
             self.view[self.view.active].append(pane)
         self._changed()

@@ -261,3 +261,13 @@ def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> 
     state.settings = default_settings("strand")
     card.fit(state)
     assert isinstance(card.seen, AxialForce)
+
+
+def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
+    frame = frames_of("bar")[1]
+    state = PageState(frame.run.settings, frame=frame, newest=frame)
+    card = Card((ContactForce, HysteresisLoop), state, lambda: None)
+    card.fit(state)
+    card.view.active = 1
+    assert isinstance(card.seen, HysteresisLoop)
+    assert len(card.seen.sources["latin"].data["x"]) == len(frame.run.instants)

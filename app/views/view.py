@@ -68,7 +68,7 @@ class View:
         self.state = state
 
     @staticmethod
-    def applies(settings: Settings) -> bool:  # most say something of any
+    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
         """Whether it says anything about such a run."""
         return True
 
