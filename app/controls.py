@@ -12,6 +12,7 @@ import panel_material_ui as pmui
 import param
 
 from app.curves import CurveDialog
+from app.files import FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
 from solver.definitions import CurveParameter, Parameter, about
@@ -39,8 +40,8 @@ GROUP = {
     "& .MuiAccordionDetails-root": {"padding": "0 0 8px"},
 }
 PICTURES = {
-    "& .MuiToggleButtonGroup-root": {"display": "grid", "gridTemplateColumns": "repeat(4, 1fr)"},
-    "&.MuiToggleButtonGroup-root": {"display": "grid", "gridTemplateColumns": "repeat(4, 1fr)"},
+    "display": "grid",
+    "gridTemplateColumns": "repeat(4, 1fr)",
     "& .MuiToggleButton-root": {
         "flexDirection": "column",
         "textTransform": "none",
@@ -297,6 +298,7 @@ class Controls:
             sx=GROUP,
         )
         self._groups.param.watch(lambda event: self._open(), "active")
+        self._files = pn.Column(margin=0)
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
@@ -320,7 +322,10 @@ class Controls:
         self._chief[:] = [control.view for control in self._controls]
         self._closed = dict(enumerate(groups.values()))
         self._groups.active = []
-        self._groups[:] = [(title, pn.Column(margin=0)) for title in groups]
+        self._groups[:] = [
+            *((title, pn.Column(margin=0)) for title in groups),
+            ("Files", self._files),
+        ]
 
     def _open(self) -> None:
         """Build the controls of groups that are opened for the first time."""
@@ -328,6 +333,8 @@ class Controls:
             controls = [Control(name, self._state) for name in self._closed.pop(place)]
             self._controls += controls
             self._groups[place][:] = [control.view for control in controls]
+        if len(self._groups) - 1 in self._groups.active and not self._files.objects:
+            self._files.append(FilesPanel(self._state, WIDTH).view)
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:
@@ -352,6 +359,7 @@ def _picture(emblem: Emblem) -> dict[str, str]:
     svg = (
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 48 32">'
         f'<path d="{emblem.body}" fill-opacity=".25" stroke="#000" stroke-width="1"/>'
-        f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/><path d="{emblem.load}" {line}/></svg>'
+        f'<path d="{emblem.ground}" {line} stroke-opacity=".7"/>'
+        f'<path d="{emblem.load}" {line}/></svg>'
     )
     return {"mask": f'url("data:image/svg+xml,{quote(svg)}") center / contain no-repeat'}

@@ -121,6 +121,33 @@ class DeformedGeometry:
 
 
 @dataclass(frozen=True, eq=False)
+class BesideRun:
+    """Results of another program beside an iterate.
+
+    Attributes
+    ----------
+    source
+        Name of their file.
+    quantity
+        "friction force", N/m along rods and Pa in the plane, or "displacement", m.
+    interface
+        The one whose friction is compared.
+    x, t, values
+        Of every row, shape (n_rows,); m, s.
+    distance
+        Of the iterate to them, relative; NaN where both share too few rows.
+    """
+
+    source: str
+    quantity: str
+    interface: str
+    x: Floats
+    t: Floats
+    values: Floats
+    distance: float
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
     """What all frames of a run share.
 

@@ -33,8 +33,13 @@ LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
 MOST_TOLD = 3
 """Refusals that are told of one address."""
+COPY = """
+if (page.copied) {
+  navigator.clipboard?.writeText(page.copied).catch(() => prompt("The link", page.copied))
+}
+"""
 BACK = """
-if (back.search != null) { addEventListener("popstate", () => { back.search = location.search }) }
+addEventListener("popstate", () => { page.search = location.search })
 """
 
 
@@ -88,10 +93,11 @@ _PLACE: dict[str, Any] = {
 """What an address may say beside settings, scene, lesson, class and plots."""
 
 
-class Back(DataModel):
-    """The address that the browser has gone back, or on, to."""
+class Browser(DataModel):
+    """The address that the browser has gone back, or on, to; and the link that it copies."""
 
     search: str = String(default="")  # type: ignore[assignment]
+    copied: str = String(default="")  # type: ignore[assignment]
 
 
 class Link:
@@ -108,31 +114,39 @@ class Link:
 
     def __init__(self, state: PageState) -> None:
         self._state, self._location = state, pn.state.location
-        self._query = query_of(place_of(state))
-        self.back = Back(name="back")
-        self.back.on_change("search", lambda name, old, new: self.go(new))
+        self.query = query_of(place_of(state))
+        self.browser = Browser(name="browser")
+        self.browser.on_change("search", lambda name, old, new: self.go(new))
+        args = {"page": self.browser}
+        self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
         document = pn.state.curdoc
         if document is not None:
-            document.add_root(self.back)
-            document.js_on_event("document_ready", CustomJS(args={"back": self.back}, code=BACK))
+            document.add_root(self.browser)
+            document.js_on_event("document_ready", CustomJS(args=args, code=BACK))
         watched = ["settings", "is_dragged", "lesson", "tab", "pace", "plots", "view", "room"]
         state.param.watch(lambda *events: self.write(), watched)
 
     def write(self) -> None:
         """Have the address say what is shown."""
         query = query_of(place_of(self._state))
-        if self._state.is_dragged or query == self._query:
+        if self._state.is_dragged or query == self.query:
             return
-        self._query = query
+        self.query = query
         if self._location is not None:
             # After going back the location has not heard where the browser is.
             is_same = self._location.search == query
             self._location.search = f"{query}&" if is_same else query
 
+    def copy(self) -> str:
+        """Have the browser copy the whole link; what it had to leave out."""
+        self.browser.copied = ""
+        self.browser.copied, message = link_of(self._state)
+        return message
+
     def go(self, query: str) -> None:
         """Bring the page to an address."""
         place, refusal = read(query, self._state.settings)
-        self._query = query_of(place)
+        self.query = query_of(place)
         show(self._state, place)
         self._state.refusal = refusal
 

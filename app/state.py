@@ -262,4 +262,5 @@ def answer(settings: Settings) -> Settings:
     """Settings with which the answer is there at once, of a search that would show itself."""
     if settings.finish != SEARCH["finish"]:
         return settings
-    return settings.replace(**ANSWER)
+    definitions = settings.definitions()
+    return settings.replace(**{n: v for n, v in ANSWER.items() if v in definitions[n].objects})
