@@ -103,14 +103,13 @@ class Control:
         finally:
             self._is_updating = False
 
-    # ------------------------------------------------------------------- widgets
-
     def _make(self) -> tuple[Any, Any]:
         definition = self._definition
         more: dict[str, Any] = {"description": definition.doc, "size": "small"}
         more |= {"width": WIDTH, "margin": (4, 0), "label": self._unit.titled(self._about.title)}
         if isinstance(definition, CurveParameter):
-            field = pmui.Select(options=list(definition.presets), variant="standard", **more)
+            options = [*definition.presets, POINTS]
+            field = pmui.Select(options=options, variant="standard", **more)
             edit = pmui.Button(
                 label="Edit points",
                 icon="show_chart",
@@ -171,11 +170,8 @@ class Control:
     def _written(self, value: float) -> str:
         return f"{value / self._unit.factor:.10g}"
 
-    # --------------------------------------------------------------------- shown
-
     def _show(self, value: Any) -> None:
         if isinstance(self._definition, CurveParameter):
-            self.field.options = [*self._definition.presets, POINTS]
             self.field.value = POINTS if isinstance(value, tuple) else value
             self._edit_button.visible = isinstance(value, tuple)
             if self._dialog is not None:
@@ -189,20 +185,19 @@ class Control:
 
     def _show_on_slider(self, value: float) -> None:
         assert self.slider is not None
-        end = self._definition.softbounds[1]
-        most = ends_of(self._state.settings).get(self.name, end)
-        high = self._to_slider(max(min(most, end), self._definition.softbounds[0] + 1))
-        if most < end or high != self.slider.end:
-            self.slider.end = high if most < end else self._to_slider(end)
+        low, high = self._definition.softbounds
+        most = ends_of(self._state.settings).get(self.name, high)
+        self.slider.end = self._to_slider(max(min(most, high), low + 1) if most < high else high)
         place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
+        if (self.slider.value, self.slider.value_throttled) == (place, place):
+            return
+        # What the browser let go at last is reset, since it sends that only when it is new.
         with param.edit_constant(self.slider):
             self.slider.param.update(value=place, value_throttled=place)
 
     def _tell(self, refusal: str) -> None:
-        if hasattr(self.field, "helper_text"):
+        if getattr(self.field, "helper_text", refusal) != refusal:
             self.field.param.update(helper_text=refusal, error_state=bool(refusal))
-
-    # ------------------------------------------------------------------- changed
 
     def _on_field(self, value: Any) -> None:
         if self._is_updating or value is None:

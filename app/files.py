@@ -169,7 +169,7 @@ class FilesPanel:
             label="Open settings or a table", accept=f".toml,{TABLES}", description=HELP, **more
         )
         self.file.param.watch(lambda event: self._open(), "value")
-        self.message = pn.pane.Str("", width=width, margin=0, styles={"white-space": "normal"})
+        self.message = pmui.Typography("", variant="body2", width=width, margin=0)
         self._remove = pmui.Button(icon="close", on_click=lambda event: self._forget(), **more)
         self.view = pn.Column(save, self.file, self.message, self._remove, default, margin=0)
         state.param.watch(lambda event: self._show(), "brought")

@@ -21,7 +21,8 @@ from app.messages import Step
 from app.refusals import message_of
 from app.state import PACES, TABS, VIEWS, PageState, default_settings
 from app.views.catalogue import CARDS
-from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
+from solver.checked import dump
+from solver.definitions import SettingError, about, checked_value, choice, count, parse, quantity
 from solver.lessons.lesson import Lesson
 from solver.lessons.reading import lesson_from_file
 from solver.refusal import RefusedError
@@ -29,6 +30,8 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 LESSONS = Path(__file__).parent / "lessons"
+SHARED = "lesson", "tab", "pace", "plots", "view", "room"
+"""What an address has of a page's state beside settings."""
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
 MOST_TOLD = 3
@@ -51,16 +54,12 @@ class Place:
     ----------
     settings
         Of the run.
-    lesson, tab, pace, view
-        As in `PageState`.
+    lesson, tab, pace, plots, view, room
+        As in `PageState`; the room is "class" in an address.
     instant
         As a share of the interval; None leaves it.
     iteration
         At which the run waits; 0 has it go on.
-    plots
-        Views on top of their cards, separated by commas.
-    room
-        Code of the class that is followed; "class" in an address.
     theme
         "light" or "dark"; empty is that of the browser.
     """
@@ -110,6 +109,11 @@ class Link:
     ----------
     state
         Of the page.
+
+    Attributes
+    ----------
+    query
+        The address, from the question mark on.
     """
 
     def __init__(self, state: PageState) -> None:
@@ -123,8 +127,7 @@ class Link:
         if document is not None:
             document.add_root(self.browser)
             document.js_on_event("document_ready", CustomJS(args=args, code=BACK))
-        watched = ["settings", "is_dragged", "lesson", "tab", "pace", "plots", "view", "room"]
-        state.param.watch(lambda *events: self.write(), watched)
+        state.param.watch(lambda *events: self.write(), ["settings", "is_dragged", *SHARED])
 
     def write(self) -> None:
         """Have the address say what is shown."""
@@ -153,21 +156,10 @@ class Link:
 
 def show(state: PageState, place: Place) -> None:
     """Show what an address says."""
-    plots = [name for name in place.plots.split(",") if name]
-    state.param.update(
-        lesson=place.lesson,
-        tab=place.tab,
-        pace=place.pace,
-        view=place.view,
-        room=place.room,
-        plots=plots,
-    )
+    state.param.update(**{name: getattr(place, name) for name in SHARED})
     if place.instant is not None:
         state.select(phase=place.instant)
-    if (
-        place.settings.values() != state.settings.values()
-        or place.settings.scene != state.settings.scene
-    ):
+    if dump(place.settings) != dump(state.settings):
         state.adopt(place.settings)
     if place.iteration:
         wait_at(state, place.iteration)
@@ -189,15 +181,7 @@ def wait_at(state: PageState, iteration: int) -> None:
 
 def place_of(state: PageState) -> Place:
     """What is shown, without the instant and the iteration."""
-    return Place(
-        settings=state.settings,
-        lesson=state.lesson,
-        tab=state.tab,
-        pace=state.pace,
-        plots=",".join(state.plots),
-        view=state.view,
-        room=state.room,
-    )
+    return Place(state.settings, **{name: getattr(state, name) for name in SHARED})
 
 
 def link_of(state: PageState) -> tuple[str, str]:
@@ -215,7 +199,7 @@ def link_of(state: PageState) -> tuple[str, str]:
     if location is not None:
         root += f":{location.port}" * bool(location.port) + location.pathname
     long = too_long(state.settings)
-    titles = ", ".join(state.settings.definitions()[n].metadata["about"].title for n in long)
+    titles = ", ".join(about(state.settings.definitions()[name]).title for name in long)
     message = f"Too long for a link, so that a saved file has it alone: {titles}." if long else ""
     return root + query_of(place), message
 
@@ -266,7 +250,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
         given = {"lesson": lesson.name, "instant": lesson.instant}
     given["room"] = pairs.pop("class", "")
     given["plots"] = _plots(pairs.pop("plots", ""), refused)
-    for name in _PLACE.keys() & pairs.keys():
+    for name in [name for name in _PLACE if name in pairs]:
         text = pairs.pop(name)
         try:
             value = parse(text) if name in ("instant", "iteration") else text

@@ -1,4 +1,4 @@
-"""What an address says is shown, what is shown it says, and a part that is refused leaves the rest."""
+"""An address says what is shown, and a part of it that is refused leaves the rest."""
 
 from __future__ import annotations
 
@@ -78,7 +78,8 @@ def test_a_lesson_is_its_name_and_what_was_changed(name: str) -> None:
 def test_a_part_that_is_refused_is_told_and_the_rest_holds(query: str, told: str) -> None:
     place, refusal = read(f"?peak=1100&{query}&view=embed")
     assert told in refusal
-    assert refusal.startswith("From the address: ") and refusal.endswith(".")
+    assert refusal.startswith("From the address: ")
+    assert refusal.endswith(".")
     assert (place.settings.peak, place.view) == (1100.0, "embed")
 
 
@@ -128,7 +129,8 @@ def test_an_address_with_an_iteration_runs_up_to_it() -> None:
     assert state.selection.phase == 0.5
     wait_at(state, 7)
     start = orders[-1]
-    assert isinstance(start, Start) and start.pace == 0.0
+    assert isinstance(start, Start)
+    assert start.pace == 0.0
     runner = Runner(start, ReferenceCache(), lambda: False)
     runner.advance()
     state._show(runner.frame(Needs()))

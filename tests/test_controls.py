@@ -100,7 +100,8 @@ def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_hol
     assert state.refusal == parts.field.helper_text
     parts.field.value = "20"
     parts.update()
-    assert not parts.field.error_state and not state.refusal
+    assert not parts.field.error_state
+    assert not state.refusal
 
 
 def test_an_empty_field_is_the_default() -> None:
@@ -179,7 +180,8 @@ def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_d
     control = Control("load", state)
     control.field.value = POINTS
     dialog = control._dialog
-    assert dialog is not None and dialog.view.open
+    assert dialog is not None
+    assert dialog.view.open
     assert control.field.value == "sine"
     dialog.text.value = "time [s],force [kN]\n0,0\n1,0.9\n1.5,0"
     assert held(state, "load") == ((0.0, 0.0), (1.0, 900.0), (1.5, 0.0))
@@ -189,7 +191,8 @@ def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_d
     dialog.source.data = {"x": [0.0, 2.0, 1.0], "y": [0.0, 0.0, 500.0]}
     assert held(state, "load") == ((0.0, 0.0), (1.0, 500.0), (2.0, 0.0))
     dialog.text.value = "time,force\n0,0\n1,x"
-    assert dialog.text.error_state and "line 3" in dialog.text.helper_text
+    assert dialog.text.error_state
+    assert "line 3" in dialog.text.helper_text
     assert held(state, "load")[-1] == (2.0, 0.0)
 
 
@@ -222,7 +225,8 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
     assert state.settings.duration == 2.0
     rows = "".join(f"{x},{t},{x * t}\n" for x in (0.2, 0.4) for t in (0.5, 1.0))
     assert "4 rows" in open_file("other.csv", f"x,t,friction force\n{rows}")
-    assert state.brought is not None and state.brought.source == "other.csv"
+    assert state.brought is not None
+    assert state.brought.source == "other.csv"
     assert "outside of the body" in open_file("far.csv", "x,t,friction force\n3,0,0\n")
     assert state.brought.source == "other.csv"
     open_file("bar.toml", saved)
