@@ -11,8 +11,15 @@ from app.state import PageState
 from app.views.view import View
 
 TABS = {
-    "& .MuiTabs-root": {"minHeight": "28px"},
-    "& .MuiTab-root": {"minHeight": "28px", "padding": "2px 8px", "minWidth": 0, "textTransform": "none", "fontSize": "13px"},
+    "& .MuiTabs-root": {"minHeight": "26px"},
+    "& .MuiTab-root": {
+        "minHeight": "26px",
+        "minWidth": 0,
+        "padding": "2px 10px",
+        "textTransform": "none",
+        "fontSize": "13px",
+    },
+    "& .MuiTabs-scrollButtons": {"width": "20px"},
 }
 
 
@@ -39,11 +46,13 @@ class Card:
     ) -> None:
         self._all = [kind(state) for kind in kinds]
         self._fitting: list[View] = []
+        self._chosen: View | None = None
+        self._is_fitting = False
         self._changed = changed
         self.view = pmui.Tabs(
             dynamic=True, sizing_mode="stretch_both", min_height=170, margin=0, sx=TABS
         )
-        self.view.param.watch(lambda event: self._turn(), "active")
+        self.view.param.watch(lambda event: self._choose(), "active")
 
     @property
     def seen(self) -> View | None:
@@ -51,17 +60,34 @@ class Card:
         return self._fitting[self.view.active] if self._fitting else None
 
     def fit(self, state: PageState) -> None:
-        """Offer the views that say anything about the present settings."""
+        """Offer the views that say anything about the present settings.
+
+        The one that was chosen last is in sight, wherever it is offered.
+        """
         fitting = [view for view in self._all if view.applies(state.settings)]
         if fitting == self._fitting:
             return
-        seen = self.seen
+        self._is_fitting = True
         self._fitting = fitting
         self.view.visible = bool(fitting)
-        active = fitting.index(seen) if seen in fitting else 0
-        self.view[:] = [(view.name, pn.Column(sizing_mode="stretch_both", margin=0)) for view in fitting]
-        self.view.active = active
+        self.view.active = 0
+        panes = (pn.Column(sizing_mode="stretch_both", margin=0) for _ in fitting)
+        self.view[:] = [(view.name, pane) for view, pane in zip(fitting, panes, strict=True)]
+        self.view.active = fitting.index(self._chosen) if self._chosen in fitting else 0
+        self._is_fitting = False
         self._turn()
+
+    def show(self, name: str) -> bool:
+        """Bring a view in sight, if it is offered here; whether it is."""
+        names = [view.name for view in self._fitting]
+        if name in names:
+            self.view.active = names.index(name)
+        return name in names
+
+    def _choose(self) -> None:
+        if not self._is_fitting:
+            self._chosen = self.seen
+            self._turn()
 
     def _turn(self) -> None:
         """Make the figure of the view in sight, where it was not seen yet."""

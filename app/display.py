@@ -1,7 +1,8 @@
-"""Paints the views in sight, one picture at a time: the next follows once the browser says painted."""
+"""Paints the views in sight: the next picture follows once the browser has painted the last."""
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
@@ -17,6 +18,7 @@ from app.state import PageState
 if TYPE_CHECKING:
     from app.views.view import View
 
+log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
 PAINTED = "requestAnimationFrame(() => requestAnimationFrame(() => { pulse.painted = pulse.sent }))"
@@ -48,7 +50,7 @@ class Display:
     def __init__(self, state: PageState, also: Callable[[], None]) -> None:
         self._state, self._also = state, also
         self._views: Sequence[View] = ()
-        self._is_due, self._frame = False, state.frame
+        self._is_due = False
         self._sent_at = 0.0
         self.pulse = Pulse(name="pulse")
         self.pulse.js_on_change("sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED))
@@ -69,7 +71,9 @@ class Display:
     @property
     def is_waiting(self) -> bool:
         """Whether a picture is on its way to the screen."""
-        return bool(self.pulse.painted < self.pulse.sent) and time.monotonic() < self._sent_at + LOST
+        return (
+            bool(self.pulse.painted < self.pulse.sent) and time.monotonic() < self._sent_at + LOST
+        )
 
     def update(self) -> None:
         """Paint what there is, now or once the last picture is on the screen."""
@@ -84,7 +88,11 @@ class Display:
             return
         with pn.io.hold():
             for view in self._views:
-                view.update(frame, state.selection, state.ghost)
+                try:
+                    view.update(frame, state.selection, state.ghost)
+                except Exception:
+                    # The other views, and the page, outlive it.
+                    log.exception("The view %s failed.", view.name)
             self._also()
             self._sent_at = time.monotonic()
             self.pulse.sent += 1

@@ -11,12 +11,13 @@ import panel_material_ui as pmui
 from app.refusals import message_of
 from app.state import PageState, default_settings
 from solver.checked import dump
+from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables, settings_from_toml
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.other_programs.brought import Brought, read_brought
-from solver.tables import heads_of, read_table
+from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
 
@@ -48,14 +49,14 @@ def opened(source: str, data: bytes, settings: Settings) -> Opened:
     SettingError
         For what is none of these, or is refused.
     """
-    text = text_of(source, data)
     if source.lower().endswith(".toml"):
-        read = settings_from_toml(text, source=source)
+        read = settings_from_toml(text_of(source, data), source=source)
         return Opened(read, f"{source}: settings of the scene {read.scene}.")
-    if heads_of(text) & {"x", "position"}:
-        brought = read_brought(text, source, settings)
-        return Opened(brought, f"{source}: {brought.quantity} at {len(brought.values)} rows.")
-    return Opened(*with_points(settings, _path_of(text, source, settings), text, source))
+    table = _table(data, source)
+    if {"x", "position"} & {column.key for column in table.columns}:
+        brought = read_brought(data, source, settings)
+        return Opened(brought, f"{source}: {brought.message}.")
+    return Opened(*_with_path(settings, _path_of(table, source, settings), table))
 
 
 def with_points(
@@ -77,22 +78,18 @@ def with_points(
     SettingError
         If the table is refused.
     """
+    return _with_path(settings, name, _table(table, source))
+
+
+def _with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
     definition = settings.definitions()[name]
     assert isinstance(definition, CurveParameter)
-    text = table if isinstance(table, str) else text_of(source, table)
-    points = read_table(text, definition, name, source)
-    changed = settings.replace(**{name: points})
+    curve = curve_of(table, definition, name, settings.curve_units(name))
+    changed = settings.replace(**{name: curve.points})
+    message = f"{about(definition).title}: {curve.message}."
     if definition.abscissa == "time":
         ends = max(ends_of_tables(changed).values(), default=0.0)
         changed = changed.replace(duration=ends) if ends > 0.0 else changed
-    (first, *_), (last, *_) = points[0], points[-1]
-    values = [value for _, value in points]
-    across, up = (f" {unit}".rstrip() for unit in definition.units)
-    message = (
-        f"{about(definition).title}: {len(points)} points, {definition.abscissa} from {first:g} to "
-        f"{last:g}{across}, {definition.ordinate} from {min(values):g} to {max(values):g}{up}."
-    )
-    if definition.abscissa == "time":
         message += f" The run lasts {changed.duration:g} s."
     return changed, message
 
@@ -112,7 +109,14 @@ def text_of(source: str, data: bytes) -> str:
         raise SettingError("the file", source, "a text", remedy) from None
 
 
-def _path_of(text: str, source: str, settings: Settings) -> str:
+def _table(data: bytes | str, source: str) -> Table:
+    def refuse(remedy: str) -> SettingError:
+        return SettingError("the table", source, "a table of time and value", remedy)
+
+    return read_table(data, refuse)
+
+
+def _path_of(table: Table, source: str, settings: Settings) -> str:
     """The path over time that the head of a table names, or the only one, or that of the load."""
     paths = {
         name: definition
@@ -121,7 +125,7 @@ def _path_of(text: str, source: str, settings: Settings) -> str:
         and definition.abscissa == "time"
         and settings.applies(name)
     }
-    named = paths.keys() & heads_of(text)
+    named = paths.keys() & {column.key for column in table.columns}
     loads = [name for name, definition in paths.items() if about(definition).group == "Load"]
     chosen = list(named or (paths if len(paths) == 1 else loads))
     if len(chosen) == 1:

@@ -121,33 +121,6 @@ class DeformedGeometry:
 
 
 @dataclass(frozen=True, eq=False)
-class BesideRun:
-    """Results of another program beside an iterate.
-
-    Attributes
-    ----------
-    source
-        Name of their file.
-    quantity
-        "friction force", N/m along rods and Pa in the plane, or "displacement", m.
-    interface
-        The one whose friction is compared.
-    x, t, values
-        Of every row, shape (n_rows,); m, s.
-    distance
-        Of the iterate to them, relative; NaN where both share too few rows.
-    """
-
-    source: str
-    quantity: str
-    interface: str
-    x: Floats
-    t: Floats
-    values: Floats
-    distance: float
-
-
-@dataclass(frozen=True, eq=False)
 class Run:
     """What all frames of a run share.
 
@@ -226,11 +199,16 @@ class Frame:
         Displacement and force of the loop, shape (2, n_instants).
     history
         Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
-        (n_iterations,).
+        (n_iterations,). With separated bases also "modes", how many each substructure's has, of
+        shape (n_iterations, n_substructures), of 60 substructures at most.
     status
         How the run ends, once it does.
     energy
         Energy lost in the whole interval, J.
+    residual
+        KKT residual of a certified solution; None of all other iterates.
+    remarks
+        What is to be said of the answer, in plain sentences.
     extras
         What only some views need, by name, as far as one of them was in sight.
     readings
@@ -246,6 +224,8 @@ class Frame:
     history: Mapping[str, Floats]
     status: Status | None = None
     energy: float = float("nan")
+    residual: float | None = None
+    remarks: tuple[str, ...] = ()
     extras: Mapping[str, Any] = field(default_factory=dict)
     readings: Mapping[str, float] = field(default_factory=dict)
 

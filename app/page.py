@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
@@ -10,13 +12,36 @@ import panel_material_ui as pmui
 from app.cards import Card
 from app.controls import Controls
 from app.display import Display
+from app.keys import listen
 from app.link import Link, read, show, wait_at
-from app.messages import Report
-from app.state import PageState
+from app.pages import FULL, PAGES
+from app.state import TABS, PageState
+from app.status import figures_line, status_line
+from app.supervisor import Supervisor
+from app.transport import Transport
 from app.views.catalogue import CARDS
 from app.views.scene import Scene
 from app.views.timeline import Timeline
-from app.worker.process import Worker
+from app.views.view import View
+
+STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
+HEADER = 52
+"""Pixels that the header takes."""
+COMPACT = {"& .MuiToolbar-root": {"minHeight": f"{HEADER}px !important"}}
+BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
+IN_HEADER = {
+    "& button": {
+        "color": "#fff",
+        "borderColor": "#ffffff80",
+        "textTransform": "none",
+        "padding": "3px 10px",
+        "whiteSpace": "nowrap",
+    },
+    "& button.Mui-selected, & button.Mui-selected:hover": {
+        "color": "#0b3d66",
+        "backgroundColor": "#fff",
+    },
+}
 
 
 class Page:
@@ -37,97 +62,145 @@ class Page:
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state, self._iteration = state, iteration
-        self._link = Link(state)
-        self._document = pn.state.curdoc
-        self._worker: Worker | None = None
-        self._status = pn.pane.HTML("starting", css_classes=["status"], margin=(8, 8))
+        Link(state)
+        document = pn.state.curdoc
+        self._supervisor = Supervisor(state, document)
+        self._status = words("status", margin=(8, 6))
+        self._sentence, self._figures = words("sentence"), words("figures", width_policy="min")
         self.display = Display(state, self._say)
-        self._document.add_root(self.display.pulse)
+        document.add_root(self.display.pulse)
         state.param.watch(lambda *e: self._say(), ["running", "message", "refusal", "is_costly"])
         self._scene, self._timeline = Scene(state), Timeline(state)
         self._cards = [Card(kinds, state, self._look) for kinds in CARDS]
+        self._transport = Transport(state, document)
         state.param.watch(lambda event: self._fit(), "settings")
+        self.controls = Controls(state)
+        self.live = self._make_live()
+        self._main = pn.Column(self.live, sizing_mode="stretch_width", margin=0)
+        self._built: dict[str, Any] = {TABS[0]: self.live}
+        self.template = pmui.Page(
+            title="Slipfront",
+            sidebar=[self.controls.view],
+            sidebar_width=320,
+            header=[self._header()],
+            main=[self._main],
+            busy_indicator=None,
+            sx=COMPACT,
+        )
         self._fit()
-        run = pmui.Button(label="Run", on_click=lambda event: state.go_on())
-        step = pmui.Button(label="Step", on_click=lambda event: state.step())
-        pace = pmui.Select.from_param(state.param.pace, size="small", width=140)
-        scene = pn.pane.Bokeh(self._scene.figure, sizing_mode="stretch_both", margin=0)
-        timeline = pn.pane.Bokeh(self._timeline.figure, sizing_mode="stretch_width", height=56, margin=0)
-        live = pn.Column(
-            pn.Row(run, step, pace, self._status, margin=0),
-            pn.Column(scene, sizing_mode="stretch_width", margin=0, styles={"flex": "2 1 0", "min-height": "110px"}),
-            timeline,
-            pn.Column(
-                *(card.view for card in self._cards),
-                sizing_mode="stretch_width",
-                margin=0,
-                styles={
-                    "flex": "5 1 0",
-                    "display": "grid",
-                    "grid-template-columns": "repeat(auto-fit, minmax(min(100%, 400px), 1fr))",
-                    "grid-auto-rows": "minmax(170px, 1fr)",
-                    "gap": "4px",
-                },
-            ),
+        keys = {**self._transport.keys(), "p": self._present}
+        listen(document, keys)
+        state.param.watch(lambda event: self._turn(event.new), "tab")
+        state.param.watch(lambda event: self._dress(), "view")
+        self._turn(state.tab)
+        self._dress()
+
+    def loaded(self) -> None:
+        """Start the worker and the first run, now that a browser is there."""
+        self._supervisor.begin()
+        if self._iteration:
+            wait_at(self.state, self._iteration)
+        else:
+            self.state.run()
+
+    def end(self, _context: Any) -> None:
+        """Leave nothing behind."""
+        self._supervisor.end()
+        PAGES.leave()
+
+    def _make_live(self) -> pn.Column:
+        pane = lambda view, **more: pn.pane.Bokeh(view.figure, margin=0, **more)  # noqa: E731
+        above = pn.Row(self._transport.view, self._status, sizing_mode="stretch_width", margin=0)
+        below = pn.FlexBox(self._sentence, self._figures, justify_content="space-between", margin=0)
+        scene = pn.Column(
+            pane(self._scene, sizing_mode="stretch_both"),
+            sizing_mode="stretch_width",
+            css_classes=["scene"],
+            margin=0,
+        )
+        timeline = pn.Row(
+            self._transport.play_button,
+            pane(self._timeline, sizing_mode="stretch_width", height=56),
             sizing_mode="stretch_width",
             margin=0,
-            styles={"height": "calc(100vh - 68px)", "overflow": "auto"},
         )
-        self.template = pmui.Page(title="Slipfront", sidebar=[Controls(state).view], main=[live])
+        plots = pn.Column(
+            *(card.view for card in self._cards),
+            sizing_mode="stretch_width",
+            css_classes=["plots"],
+            margin=0,
+            stylesheets=[STYLE],
+        )
+        return pn.Column(
+            above,
+            below,
+            scene,
+            timeline,
+            plots,
+            sizing_mode="stretch_width",
+            css_classes=["live"],
+            margin=0,
+            stylesheets=[STYLE],
+        )
+
+    def _header(self) -> pn.Row:
+        tabs = pmui.RadioButtonGroup.from_param(
+            self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
+        )
+        present = pmui.IconButton(icon="slideshow", description="Presenter view (p)", color="light")
+        present.on_click(lambda event: self._present())
+        return pn.Row(
+            tabs, pn.layout.HSpacer(), present, sizing_mode="stretch_width", align="center"
+        )
 
     def _fit(self) -> None:
         for card in self._cards:
             card.fit(self.state)
 
     def _look(self) -> None:
-        """Have the views in sight updated."""
-        cards = getattr(self, "_cards", [])
-        seen = [view for card in cards if (view := card.seen) is not None]
-        self.display.views = [self._scene, self._timeline, *seen]
+        """Have the views in sight updated, and no others."""
+        seen: list[View] = []
+        if self.state.tab == TABS[0]:
+            cards = getattr(self, "_cards", [])
+            seen = [self._scene, self._timeline, *(v for card in cards if (v := card.seen))]
+        self.display.views = seen
 
-    def loaded(self) -> None:
-        """Start the worker and the first run, now that a browser is there."""
-        self._start_worker()
-        if self._iteration:
-            wait_at(self.state, self._iteration)
-        else:
-            self.state.run()
+    def _turn(self, tab: str) -> None:
+        """Show a tab, which is built when it is first opened."""
+        if tab not in self._built:
+            self._built[tab] = pn.pane.Markdown(tab)
+            self._main.append(self._built[tab])
+        for name, view in self._built.items():
+            view.visible = name == tab
+        self._look()
 
-    def end(self) -> None:
-        """Leave nothing behind."""
-        if self._worker is not None:
-            self._worker.end()
+    def _present(self) -> None:
+        self.state.view = "present" if self.state.view == "page" else "page"
 
-    def _start_worker(self) -> None:
-        self._worker = Worker(self._hear)
-        self.state.send = self._worker.send
-
-    def _hear(self, report: Report | None) -> None:
-        self._document.add_next_tick_callback(lambda: self._take(report))
-
-    def _take(self, report: Report | None) -> None:
-        if report is None:
-            self.state.message = "The solver's process has ended; it is started anew."
-            self._start_worker()
-            self.state.run()
-        else:
-            self.state.take(report)
+    def _dress(self) -> None:
+        """Have nothing around the plots in the views for a projector and for a frame."""
+        is_bare = self.state.view != "page"
+        self.template.param.update(sx=BARE if is_bare else COMPACT, sidebar_open=not is_bare)
 
     def _say(self) -> None:
-        state, newest = self.state, self.state.newest
-        if newest is None:
-            text = "starting"
-        elif newest.status is None:
-            text = f"<b>iteration {newest.iteration}</b>"
-        else:
-            sure = "certified" if newest.is_answer else ""
-            text = f"<b>{newest.iteration} iterations</b> {sure} {100 * newest.error:.2g} % wrong"
-        self._status.object = " ".join(filter(None, [text, state.message, state.refusal]))
+        """Bring the words of the run up to the frame."""
+        frame = self.state.frame
+        self._status.object = status_line(self.state)
+        if frame is not None:
+            self._figures.object = figures_line(frame, self.state.selection)
+            self._sentence.object = frame.run.sentence
+
+
+def words(role: str, **more: Any) -> pn.pane.HTML:
+    """A pane of words, which tests and style sheets know by its role."""
+    return pn.pane.HTML(css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more})
 
 
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
+    if not PAGES.enter():
+        return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
     location = pn.state.location
     place, refusal = read(location.search if location is not None else "")
     state = PageState(place.settings, refusal=refusal)
@@ -136,5 +209,5 @@ def open_page() -> pmui.Page:
     if place.theme:
         page.template.dark_theme = place.theme == "dark"
     pn.state.onload(page.loaded)
-    pn.state.on_session_destroyed(lambda context: page.end())
+    pn.state.on_session_destroyed(page.end)
     return page.template

@@ -88,12 +88,15 @@ class PageState(param.Parameterized):
         self.history = History()
         self._left: dict[str, Settings] = {}
         self.number = 0
-        self.began = 0
+        self.began = self.failed_in = 0
+        self._sent: Needs | None = None
+        self._last_run: Frame | None = None
         self._waiting: list[Callable[[Any], None]] = []
-        self.param.watch(self._on_needs, ["selection", "needs", "readings", "brought"])
+        self.param.watch(
+            lambda *events: self.send_needs(is_news=False),
+            ["selection", "needs", "readings", "brought"],
+        )
         self.param.watch(lambda event: self.send(Pace(PACES[event.new])), "pace")
-
-    # ------------------------------------------------------------------ settings
 
     def change(self, **values: object) -> bool:
         """Change settings and run; one that is refused is told, and nothing changes."""
@@ -127,12 +130,16 @@ class PageState(param.Parameterized):
         """Go to a scene, as it was left."""
         self.adopt(self._left.get(scene) or default_settings(scene))
 
-    # ----------------------------------------------------------------------- run
-
     def run(self, *, is_agreed: bool = False) -> None:
         """Run the settings from the start, at the pace."""
         self.running = True
         self._start(self.settings, is_agreed=is_agreed)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the run that was ordered last has ended."""
+        newest = self.newest
+        return newest is not None and newest.run.number == self.number and newest.status is not None
 
     def pause(self) -> None:
         """Have the run wait."""
@@ -141,7 +148,7 @@ class PageState(param.Parameterized):
 
     def go_on(self) -> None:
         """Have the run go on; one that has ended begins anew."""
-        if self.newest is None or self.newest.status is not None or self.is_costly:
+        if self.is_over or self.is_costly:
             self.run(is_agreed=self.is_costly)
             return
         self.param.update(running=True, iteration=None)
@@ -186,8 +193,6 @@ class PageState(param.Parameterized):
         pace = PACES[self.pace] if pace is None else pace
         self.send(Start(self.number, settings, pace, is_dragged, is_agreed))
 
-    # ------------------------------------------------------------------- compare
-
     def pin(self) -> None:
         """Keep the present run beside what follows; or let it go."""
         self.pinned = None if self.pinned is not None else self.history
@@ -200,10 +205,6 @@ class PageState(param.Parameterized):
             return self._last_run
         return self.pinned.newest if frame.is_answer else self.pinned.at(frame.iteration)
 
-    _last_run: Frame | None = None
-
-    # ------------------------------------------------------------------- reports
-
     def take(self, report: Report) -> None:
         """Take what the worker reports."""
         match report:
@@ -213,7 +214,10 @@ class PageState(param.Parameterized):
                 self._show(frame)
             case Costly(number, text) if number == self.number:
                 self.is_costly = True
-                self.message = f"This would take about {text}: run anyway, or choose fewer elements, instants or bodies."
+                self.message = (
+                    f"This run would take about {text}: press Run to run it anyway, or choose "
+                    "fewer elements, instants or bodies."
+                )
             case Failed(number, text) if number == self.number:
                 self.message = text
             case Computed(result) if self._waiting:
@@ -235,22 +239,28 @@ class PageState(param.Parameterized):
             self.newest = frame
             if self.iteration is None:
                 self.frame, self.ghost = frame, self._ghost_at(frame)
-            elif frame.status is not None or True:
-                self.param.trigger("frame")
+            else:
+                self.send(Ready())
 
     def compute(self, order: Order, then: Callable[[Any], None]) -> None:
         """Have the worker compute something of the newest iterate, and do something with it."""
         self._waiting.append(then)
         self.send(order)
 
-    def _on_needs(self, *events: Any) -> None:
+    def send_needs(self, *, is_news: bool = True) -> None:
+        """Tell the worker what frames shall carry."""
         chosen = self.selection
         needs = Needs(
-            self.needs, chosen.interface, chosen.substructure, chosen.place, chosen.stress,
-            tuple(self.readings), self.brought,
+            self.needs,
+            chosen.interface,
+            chosen.substructure,
+            chosen.place,
+            chosen.stress,
+            tuple(self.readings),
+            self.brought,
         )
-        if needs != getattr(self, "_sent_needs", None):
-            self._sent_needs = needs
+        if is_news or needs != self._sent:
+            self._sent = needs
             self.send(needs)
 
     def select(self, **values: Any) -> None:

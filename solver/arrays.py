@@ -13,6 +13,8 @@ Indices = NDArray[np.intp]
 Flags = NDArray[np.bool_]
 ROUNDING = 64.0 * float(np.finfo(float).eps)
 """Share of the largest of some dozens of numbers that rounding leaves of their sum."""
+RESIDUE = 1e-12
+"""Share of what is summed up to which a sum is shown as zero: a solution has no more digits."""
 
 
 def space_time(n_rows: int, n_instants: int) -> Array:
@@ -38,3 +40,16 @@ def in_rows(fields: Sequence[NDArray[Any]]) -> NDArray[Any]:
 def at_instant(field: Array, instant: int) -> Array:
     """Give what a field has at an instant, shape (n, 1); a single column is of all instants."""
     return field if field.shape[1] == 1 else field[:, instant : instant + 1]
+
+
+def without_residue(values: Array, terms: Array) -> Array:
+    """Set to zero what rounding alone leaves of sums over time.
+
+    Parameters
+    ----------
+    values
+        The sums, shape (n_instants,).
+    terms
+        Of the sizes of what is summed, same shape.
+    """
+    return np.where(np.abs(values) <= RESIDUE * np.max(terms, initial=0.0), 0.0, values)

@@ -130,6 +130,11 @@ class Checked(param.Parameterized):
         """Change one setting and bring along those that could not stand beside it."""
         return self.replace(**{name: value})
 
+    def curve_units(self, name: str) -> tuple[str, str]:
+        """Units of a curve's abscissa and ordinate under the present values."""
+        units: tuple[str, str] = self.param[name].units
+        return units
+
     def applies(self, name: str) -> bool:
         """Tell whether a setting does anything under the present values."""
         return about(self.definitions()[name]).applies(self)

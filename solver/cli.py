@@ -9,7 +9,7 @@ import math
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -33,6 +33,7 @@ from solver.latin import Ending, Seconds, Solution, solve, solve_in_slabs
 from solver.latin.run_cost import RunCost, run_cost
 from solver.lessons.command import add_lesson
 from solver.mesh_command import add_mesh
+from solver.prepared import print_tables
 from solver.reference.choice import reference_of
 from solver.reference.condensation import NoReferenceError
 from solver.reference.distance import Distance, distance_to, held_instants
@@ -44,9 +45,15 @@ from solver.scenes.method import method_of
 from solver.settings import Settings
 from solver.sweep_command import add_sweep
 
+OUT_OF_MEMORY, INTERRUPTED = 3, 130
+"""Exit codes; the other is what shells have for a program that is ended by Ctrl-C."""
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; give the exit code: 0 converged, 1 stopped otherwise, 2 refused input."""
+    """Run one command; give the exit code.
+
+    0: converged. 1: stopped otherwise. 2: refused input. 3: out of memory. 130: ended by Ctrl-C.
+    """
     parser = _parser()
     chosen, options = parser.parse_known_args(arguments)
     if options and not hasattr(chosen, "passed_on"):
@@ -69,6 +76,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         print(f"slipfront: nothing can be printed: {why(trouble)}", file=sys.stderr)
         return REFUSED
+    except (MemoryError, RuntimeError) as trouble:
+        if isinstance(trouble, RuntimeError) and "MALLOC" not in str(trouble):  # that of SuperLU
+            raise
+        remedy = "take a coarser mesh or fewer instants, or for `run` --no-reference"
+        print(f"slipfront: this takes more memory than there is: {remedy}", file=sys.stderr)
+        return OUT_OF_MEMORY
+    except KeyboardInterrupt:
+        print("slipfront: ended; files that are written stay", file=sys.stderr)
+        return INTERRUPTED
     return code
 
 
@@ -119,10 +135,11 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     if chosen.out is not None:
         _check_file(chosen.out)
     limit = _limit(chosen)
+    print_tables(tables)
     for remark in remarks(settings, chosen.changes):
         print(f"slipfront: {remark}", file=sys.stderr)
     began = time.perf_counter()
@@ -152,7 +169,7 @@ def _run(chosen: argparse.Namespace) -> int:
             file=sys.stderr,
         )
     with contextlib.suppress(BrokenPipeError):  # whoever reads has enough
-        _print_figures(settings, solution, chosen.json)
+        _print_figures(settings, solution, tables, chosen.json)
     return 0 if solution.status.ending is Ending.CONVERGED else 1
 
 
@@ -190,17 +207,26 @@ def _refused_file(path: Path, problem: OSError) -> SettingError:
     return SettingError("--out", str(path), allowed_file, why(problem))
 
 
-def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> None:
+def _print_figures(
+    settings: Settings, solution: Solution, tables: Mapping[str, str], as_json: bool
+) -> None:
     figures = summary(settings, solution)
     if as_json:
         plain = {
             name: None if isinstance(value, float) and not math.isfinite(value) else value
             for name, value in figures.items()
         }
-        print(json.dumps({**plain, "settings": settings.values()}))
+        print(json.dumps({**plain, "tables": tables, "settings": settings.values()}))
     else:
         for name, value in figures.items():
-            print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
+            for line in value if isinstance(value, list) else [value]:
+                print(f"{name:<20} {_number(name, line) if isinstance(line, float) else line}")
+
+
+def _number(name: str, value: float) -> str:
+    """Write a relative error, or the ratio of squares that the indicator is: rounding as 0."""
+    rounding = float(np.finfo(float).eps) ** (2 if name == "indicator" else 1)
+    return f"{0.0 if abs(value) < rounding else value:.6g}"
 
 
 def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:

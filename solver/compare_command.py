@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from solver.definitions import SettingError
-from solver.disk import read_text, why
+from solver.disk import read_bytes, why
 from solver.files import settings_from_command
 from solver.latin import Ending, solve
 from solver.prepared import prepared
@@ -31,13 +31,14 @@ def add_compare(commands: Any) -> None:
 
 
 def _compare(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     try:
-        text = read_text(chosen.file)
+        data = read_bytes(chosen.file)
     except (OSError, ValueError) as problem_there:
         raise SettingError("--with", str(chosen.file), CAN, why(problem_there)) from None
-    brought = read_brought(text, chosen.file.name, settings)
-    problem = prepared(settings, chosen.changes)
+    brought = read_brought(data, chosen.file.name, settings)
+    tables = {**tables, brought.source: brought.message}
+    problem = prepared(settings, chosen.changes, tables)
     if chosen.interface and chosen.interface not in problem.rubbing:
         known = ", ".join(problem.rubbing)
         raise SettingError("--interface", chosen.interface, known, "choose one of these")
@@ -54,6 +55,7 @@ def _compare(chosen: argparse.Namespace) -> int:
         "rows": rows,
         "rows_compared": beside.counted,
         "status": str(solution.status.ending),
+        "tables": tables,
     }
     said = f"{brought.quantity}: {100.0 * found:.4g} % from {brought.source}"
     print(json.dumps(figures) if chosen.json else f"{said}, at {beside.counted} of {rows} rows")

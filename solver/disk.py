@@ -15,8 +15,23 @@ LARGEST = 4_000_000
 TOO_LARGE = f"it has more than {LARGEST // 1_000_000} MB"
 
 
+def read_bytes(path: Path) -> bytes:
+    """Read a file; of one that is too large, or has no end, no more than it takes to know.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read, or is too large.
+    """
+    with path.open("rb") as file:
+        data = file.read(LARGEST + 1)
+    if len(data) > LARGEST:
+        raise OSError(errno.EFBIG, TOO_LARGE)
+    return data
+
+
 def read_text(path: Path) -> str:
-    """Read a file of text; of one that is too large, or has no end, no more than it takes to know.
+    """Read a file of text as above.
 
     Raises
     ------
@@ -25,11 +40,7 @@ def read_text(path: Path) -> str:
     UnicodeDecodeError
         If it is no text in UTF-8.
     """
-    with path.open("rb") as file:
-        found = file.read(LARGEST + 1)
-    if len(found) > LARGEST:
-        raise OSError(errno.EFBIG, TOO_LARGE)
-    return found.decode("utf-8-sig").replace("\r\n", "\n")
+    return read_bytes(path).decode("utf-8-sig").replace("\r\n", "\n")
 
 
 @contextmanager

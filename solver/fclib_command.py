@@ -37,13 +37,13 @@ def add_fclib(commands: Any) -> None:
 
 
 def _fclib(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     check_writer()
     try:
         check_place(chosen.out)
     except OSError as problem_there:
         raise _refused(chosen.out, problem_there) from None
-    problem = prepared(settings, chosen.changes)
+    problem = prepared(settings, chosen.changes, tables)
     instants = problem.instants
     time = float(instants[-1]) if chosen.instant is None else chosen.instant
     contacts, instant = contacts_of(problem), instant_at(time, instants)

@@ -11,28 +11,25 @@ from typing import Any
 
 import numpy as np
 
+from solver.curves import messages, read_tables
 from solver.definitions import CurveParameter, SettingError, parse
 from solver.discrete.inside import Inside
 from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces, held_instants
+from solver.remarks import remarks_on
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
-from solver.tables import resolve
 
 
-def settings_from_toml(
-    text: str, folder: Path | None = None, source: str = "settings file"
-) -> Settings:
-    """Read a saved settings file.
+def settings_from_toml(text: str, source: str = "settings file") -> Settings:
+    """Read a saved settings file, whose curves name no other files.
 
     Parameters
     ----------
     text
         TOML: a scene's name under `scene`, and settings by name.
-    folder
-        Where CSV files named by a curve are sought; without it files are not read.
     source
         Where the text comes from, used in messages.
 
@@ -41,45 +38,53 @@ def settings_from_toml(
     SettingError
         For text that is no TOML, an unknown scene, or a refused setting.
     """
+    kind, values = _scene_and_values(text, source)
+    return kind.checked(values)
+
+
+def _scene_and_values(text: str, source: str) -> tuple[type[Settings], dict[str, object]]:
     if len(text) > LARGEST:
         raise SettingError(source, text[:60], "TOML", TOO_LARGE)
     try:
         values = tomllib.loads(text)
     except (ValueError, RecursionError) as problem:
         raise SettingError(source, text, "TOML", f"mend it: {problem}") from None
-    values = dict(values)
-    kind = scene_settings(values.pop("scene", None))
-    if folder is not None:
-        definitions = kind.definitions()
-        values = {
-            name: resolve(definitions[name], name, value, folder) if name in definitions else value
-            for name, value in values.items()
-        }
-    return kind.checked(values)
+    return scene_settings(values.pop("scene", None)), values
 
 
-def settings_from_command(scene: str, assignments: Sequence[str]) -> Settings:
-    """Read settings from a scene's name or a saved file, and `NAME=VALUE` texts over it."""
-    base = None
+def settings_from_command(
+    scene: str, assignments: Sequence[str]
+) -> tuple[Settings, Mapping[str, str]]:
+    """Read settings from a scene's name or a saved file, and `NAME=VALUE` texts over it.
+
+    Returns
+    -------
+    The settings, and what was understood of tables in CSV files, by the name of their setting.
+    Such files are sought beside the saved file, and those of assignments in the working folder.
+    """
+    settings, tables = None, {}
     if scene.endswith(".toml"):
         path = Path(scene)
         try:
-            text = read_text(path)
-            base = settings_from_toml(text, path.parent, f"settings file {scene}")
+            kind, values = _scene_and_values(read_text(path), f"settings file {scene}")
         except (OSError, UnicodeDecodeError) as problem:
             raise SettingError(
                 "settings file", scene, "a readable TOML file", why(problem)
             ) from None
-    kind = scene_settings(scene) if base is None else type(base)
-    definitions, values = kind.definitions(), {}
+        tables = read_tables(kind, values, path.parent)
+        settings = kind.checked(values)
+    else:
+        kind = scene_settings(scene)
+    changes: dict[str, object] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
         if not equals:
             raise SettingError("--set", assignment, "NAME=VALUE", "write an equals sign")
-        values[name] = (
-            resolve(definitions[name], name, parse(text), Path()) if name in definitions else text
-        )
-    return kind.checked(values) if base is None else base.replace(**values)
+        changes[name] = parse(text) if name in kind.definitions() else text
+        tables.pop(name, None)
+    tables |= read_tables(kind, changes, Path())
+    settings = settings.replace(**changes) if settings else kind.checked(changes)
+    return settings, messages(tables, settings)
 
 
 def remarks(settings: Settings, assignments: Sequence[str]) -> list[str]:
@@ -126,6 +131,7 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "scene": settings.scene,
         "status": str(solution.status.ending),
         "advice": solution.status.advice,
+        "remarks": remarks_on(settings, solution.iterate),
         "iterations": solution.iterate.iterations,
         "indicator": last.indicator if last else None,
         "behaviour": last.behaviour if last else None,

@@ -11,6 +11,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import check_place, why
 from solver.files import scene_settings, settings_from_command
+from solver.prepared import print_tables
 from solver.scenes import CATALOGUE
 from solver.study.audit.audit import Audited, Trial, audit
 from solver.study.audit.report import HEAD, line, prepare
@@ -32,7 +33,15 @@ from solver.study.speed.crossover_report import crossover_notes, crossover_table
 from solver.study.speed.error_against_time import error_against_time
 from solver.study.speed.growth import growth
 from solver.study.speed.study_page import write_study
-from solver.study.speed.study_report import aligned, conditions, growth_table, table, winners
+from solver.study.speed.study_report import (
+    aligned,
+    conditions,
+    growth_table,
+    table,
+    winners,
+    write_curves,
+    write_growth,
+)
 
 REFUSED = 2
 """Exit code of refused input."""
@@ -167,11 +176,15 @@ def _figures(chosen: argparse.Namespace) -> int:
 
 
 def _study(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     _check_repeats(chosen)
+    print_tables(tables)
     with writing(chosen.out):
+        # What is measured is written at once: the rest takes longer, and somebody may end it.
         found = error_against_time(settings, chosen.repeats)
+        write_curves(found, chosen.out)
         sizes = growth(settings) if chosen.growth else []
+        write_growth(sizes, chosen.out)
         who = crossover(settings, large=chosen.large)
         files, note = write_study(found, sizes, who, chosen.out)
     print("\n".join(conditions(found)), end="\n\n")

@@ -12,6 +12,7 @@ from typing import Any
 from solver.definitions import SettingError
 from solver.disk import write
 from solver.files import settings_from_command
+from solver.prepared import print_tables
 from solver.report_commands import writing
 from solver.running.executors import FORMS, opened
 from solver.running.pool import GoneError
@@ -50,12 +51,13 @@ def add_sweep(commands: Any) -> None:
 
 
 def _sweep(chosen: argparse.Namespace) -> int:
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
     plan = plan_of(settings, chosen.vary, [name.strip() for name in chosen.of.split(",")])
     if not chosen.limit > 0.0:
         raise SettingError("--limit", chosen.limit, "seconds above zero", "raise it")
     if chosen.adaptive is not None:
         Chooser(plan, chosen.adaptive)
+    print_tables(tables)
     for name in plan.idle():
         print(
             f"slipfront: {name} does nothing with the other settings as they are", file=sys.stderr

@@ -1,167 +1,294 @@
-"""Tables as spreadsheets write them, and those of two columns for settings that are curves."""
+"""Tables as spreadsheets, measuring machines and programs write them: bytes become named columns.
+
+**Text** is UTF-8, UTF-16, or else cp1252. **Columns** stand apart by tabs, semicolons, commas or
+blanks: whichever makes most cells of the last lines numbers. Beside all but commas, decimals may
+have commas, in all of the table or nowhere. Empty lines, empty cells at the end of a line and
+comments (`#`, `%`) are passed over.
+
+**The head** is the last line that names a quantity among the lines of words, none of them a number,
+right above the numbers; a line of units may follow. Lines above, such as `Rate (Hz),100`, are
+passed over.
+
+**A unit** stands behind the name in brackets, a slash, "in", a comma, blank or underscore:
+`Kraft [kN]`, `time/s`, `Kraft in kN`, `force, kN`, `force kN`, `force_kN`. A bare name has the
+unit of what it is read for. A unit that is unknown, or measures something else, is refused.
+
+**A column is chosen** by its name: that of the setting, else a word of `solver.columns.WORDS` for
+its quantity, else a name that ends with one (`axial force`, `Prüfzeit`), else, of names that say
+nothing, by its unit. Others are passed over. Only where no head says anything, the first two are
+taken as they stand. What was understood is said: every table that is read has a message.
+"""
 
 from __future__ import annotations
 
+import codecs
 import csv
+import math
 import re
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections import Counter
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 
-from solver.definitions import CurveParameter, Parameter, SettingError, allowed
-from solver.disk import LARGEST, TOO_LARGE, read_text, why
+import numpy as np
+
+from solver.arrays import Array
+from solver.columns import Refuse, TableColumn, are_units, column_of
+from solver.disk import LARGEST, TOO_LARGE
+from solver.units import is_spelt_as_unit, size_in
 
 Row = tuple[int, list[str]]
-"""Number of a line, and its cells, whose decimals have points."""
-Refuse = Callable[[str], SettingError]
-UNIT = re.compile(r"\s*(?:[\[(]([^\])]*)[\])]|/\s*(\S+))\s*$")
-PREFIXES = {"": 1.0, "n": 1e-9, "µ": 1e-6, "μ": 1e-6, "u": 1e-6, "m": 1e-3}
-PREFIXES |= {"k": 1e3, "M": 1e6, "G": 1e9}
-NO_UNIT = "", "-", "1"
+"""Number of a line, and its cells."""
+SEPARATORS = "\t;, "
+NO_TEXT = "it is no text: save the table as CSV"
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|\d+,\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)", re.I)
 
 
-def read_table(text: str, definition: CurveParameter, name: str, source: str) -> list[list[float]]:
-    """Read a table of two columns for a curve setting, as spreadsheets write it.
+@dataclass(frozen=True)
+class Table:
+    """A table as it was read: columns, lines of numbers, and what makes its refusal."""
+
+    columns: Sequence[TableColumn]
+    rows: Sequence[Row]
+    separator: str
+    refuse: Refuse
+
+    def message(
+        self,
+        columns: Sequence[TableColumn],
+        names: Sequence[str],
+        units: Sequence[str],
+        numbers: Array,
+    ) -> str:
+        """Describe what was understood of columns, with names and units for those that lack them.
+
+        `numbers` are theirs, shape (n_columns, n_rows); of the last one the ends are named.
+        """
+        said = [
+            column.message(name, unit)
+            for column, name, unit in zip(columns, names, units, strict=True)
+        ]
+        unit = columns[-1].unit or units[-1]
+        low, high = numbers[-1].min(), numbers[-1].max()
+        ends = f"from {low:g} to {high:g}{'' if unit in ('', '-', '1') else f' {unit}'}"
+        others = [repr(column.name) for column in self.columns if column not in columns]
+        passed = f"; passed over: {', '.join(others)}" if others else ""
+        return f"{', '.join(said)}, {numbers.shape[1]} points, {ends}{passed}"
+
+    def find(
+        self, columns: Sequence[TableColumn], kinds: Collection[str], unit: str = "", key: str = ""
+    ) -> TableColumn | None:
+        """Find the column of a quantity among some, as described above.
+
+        Raises
+        ------
+        SettingError
+            If several are equally likely.
+        """
+        rules: list[Callable[[TableColumn], object]] = [
+            lambda column: key and column.key == key,
+            lambda column: column.quantities[1] and column.quantities[0].intersection(kinds),
+            lambda column: column.quantities[0].intersection(kinds),
+            lambda column: (
+                unit and column.unit and not column.quantities[0] and size_in(column.unit, unit)
+            ),
+        ]
+        for rule in rules:
+            likely = [column for column in columns if rule(column)]
+            if len(likely) > 1:
+                names = " and ".join(repr(column.name or column.unit) for column in likely)
+                raise self.refuse(f"{names} may both be meant: rename all columns but one")
+            if likely:
+                return likely[0]
+        return None
+
+    def numbers(self, columns: Sequence[TableColumn]) -> Array:
+        """Return the numbers of some columns as they are written, shape (n_columns, n_rows).
+
+        Raises
+        ------
+        SettingError
+            For a cell that is no finite number, named with its line.
+        """
+        places = [column.place for column in columns]
+        cells = [
+            [row[place] if place < len(row) else "" for place in places] for _, row in self.rows
+        ]
+        if self.separator != ",":
+            cells = self._with_points(cells)
+        numbers = np.array([[_number(text) for text in texts] for texts in cells])
+        wrong = np.argwhere(~np.isfinite(numbers))
+        if len(wrong):
+            row, place = wrong[0]
+            (line, whole), text, name = self.rows[row], cells[row][place], columns[place].name
+            if not name:
+                shown = self.separator.join(whole)
+                raise self.refuse(f"line {line} is {shown!r}, not {len(columns)} finite numbers")
+            remedy = "leave such rows out" if _is_number(text) else "give a number"
+            raise self.refuse(f"line {line} has {text!r} as {name}: {remedy}")
+        return numbers.T
+
+    def _with_points(self, cells: list[list[str]]) -> list[list[str]]:
+        """Cells with decimal points; of both signs the rarer one is refused, with its line."""
+        signs = Counter(sign for row in cells for text in row for sign in ",." if sign in text)
+        if signs["."] and signs[","]:
+            (usual, _), (rare, _) = signs.most_common()
+            line, text = next(
+                (line, text)
+                for (line, _), row in zip(self.rows, cells, strict=True)
+                for text in row
+                if rare in text
+            )
+            names = {",": "comma", ".": "point"}
+            raise self.refuse(
+                f"line {line} has {text!r}, with a decimal {names[rare]} where others have a "
+                f"{names[usual]}: write all of them alike, and thousands without a sign"
+            )
+        return [[text.replace(",", ".") for text in row] for row in cells] if signs[","] else cells
+
+
+def read_table(data: bytes | str, refuse: Refuse) -> Table:
+    """Read a table, as described above.
 
     Parameters
     ----------
-    text
-        CSV whose rows are abscissa, value. Between them stands a comma, or a semicolon or a tab,
-        beside which decimals may have commas. Empty lines are passed over, and rows of words in
-        front. A unit there, in brackets, behind a slash or in a row of units, may have a prefix.
-    definition, name, source
-        The setting it is for, and where the text comes from, used in messages.
+    data
+        A file's bytes, or its text.
+    refuse
+        Makes the refusal out of what is to be done.
 
     Raises
     ------
     SettingError
-        For a table that is too large, a row without exactly two numbers, another unit, or columns
-        the other way round.
+        For what is too large, no text, or has no numbers; for a line with more cells than there
+        are columns, and a head with fewer names.
     """
-
-    def refuse(remedy: str) -> SettingError:
-        return SettingError(name, source, allowed(definition), remedy)
-
-    heads, rows = split_table(text, refuse)
-    for line, cells in heads:
-        if [name_of(cell) for cell in cells[1:]] == [definition.abscissa]:
-            raise refuse(f"line {line} has {definition.abscissa} second: it comes first")
-    first, second = factors(heads, definition.units, refuse)
-    found = []
-    for line, cells in rows:
-        try:
-            before, after = map(float, cells)
-        except ValueError:
-            remedy = f"line {line} is {text.splitlines()[line - 1]!r}, not two numbers"
-            raise refuse(remedy) from None
-        found.append([before * first, after * second])
-    if not found:
-        raise refuse("it has no points")
-    return found
-
-
-def heads_of(text: str) -> set[str]:
-    """Give the words above a table, without their units, as settings are named."""
-    try:
-        heads, _ = _split(text)
-    except csv.Error:
-        return set()
-    return {name_of(cell).replace(" ", "_") for _, cells in heads for cell in cells}
-
-
-def split_table(text: str, refuse: Refuse) -> tuple[list[Row], list[Row]]:
-    """Give the rows of words in front of the first number, and those from there on.
-
-    Raises
-    ------
-    SettingError
-        As `refuse` makes it, for a table that is too large, or none.
-    """
-    if len(text) > LARGEST:
+    if len(data) > LARGEST:
         raise refuse(TOO_LARGE)
+    lines = _text(data, refuse).splitlines()
     try:
-        return _split(text)
+        separator, rows = _rows(lines)
     except csv.Error as problem:
         raise refuse(str(problem)) from None
+    heads, start = _heads(rows)
+    if start == len(rows):
+        raise refuse("it has no points: give lines of numbers")
+    width = Counter(len(cells) for _, cells in rows[start:]).most_common(1)[0][0]
+    columns = _columns(heads, lines, separator, width, refuse)
+    for line, cells in rows[start:]:
+        if len(cells) > len(columns):
+            raise refuse(f"line {line} has {len(cells)} cells for {len(columns)} columns")
+    return Table(columns, rows[start:], separator, refuse)
 
 
-def _split(text: str) -> tuple[list[Row], list[Row]]:
-    """Give the rows of words in front of the first number, and those from there on."""
-    lines = text.splitlines()
-    separator = next((sign for sign in "\t;" if sign in text), ",")
-    table = enumerate(csv.reader(lines, delimiter=separator), start=1)
-    rows = [(line, [cell.strip() for cell in cells]) for line, cells in table]
-    rows = [(line, cells) for line, cells in rows if any(cells)]
-    ends = (place for place, (_, cells) in enumerate(rows) if any(map(_is_number, cells)))
-    end = next(ends, len(rows))
-    heads, numbers = rows[:end], rows[end:]
-    if separator != "," and not any("." in cell for _, cells in numbers for cell in cells):
-        numbers = [(line, [cell.replace(",", ".") for cell in cells]) for line, cells in numbers]
-    return heads, numbers
+def _text(data: bytes | str, refuse: Refuse) -> str:
+    text = data
+    if isinstance(data, bytes):
+        encodings = ["utf-8-sig", "cp1252"]
+        if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            encodings = ["utf-16"]
+        elif data and 0.4 < data.count(0) / len(data) <= 0.5:
+            encodings = ["utf-16-be" if data[0] == 0 else "utf-16-le"]
+        for encoding in encodings:
+            try:
+                text = data.decode(encoding)
+                break
+            except UnicodeDecodeError:
+                continue
+    if not isinstance(text, str) or "\0" in text:
+        raise refuse(NO_TEXT)
+    return text.removeprefix("\ufeff")
 
 
 def _is_number(cell: str) -> bool:
+    return _NUMBER.fullmatch(cell) is not None
+
+
+def _number(cell: str) -> float:
+    """Return a number; NaN for what is none."""
     try:
-        float(cell.replace(",", "."))
+        return float(cell)
     except ValueError:
-        return False
-    return True
+        return math.nan
 
 
-def name_of(cell: str) -> str:
-    """Give what a cell calls its column, without its unit, in small letters."""
-    return UNIT.sub("", cell).strip().lower()
+def _rows(lines: Sequence[str]) -> tuple[str, list[Row]]:
+    """Split lines at the separator under which most cells of the last ones are numbers."""
+    last = [line for line in lines if line.strip()][-60:]
+
+    def score(separator: str) -> int:
+        rows = [_cells(line, separator) for line in last]
+        counts = [(sum(map(_is_number, cells)), len(cells)) for cells in rows]
+        return sum(2 * numbers - cells for numbers, cells in counts if numbers > 1)
+
+    separator = max(SEPARATORS, key=score)
+    if score(separator) <= 0:
+        separator = next((sign for sign in SEPARATORS if any(sign in line for line in last)), ",")
+    rows = [(number, _cells(line, separator)) for number, line in enumerate(lines, start=1)]
+    return separator, [(number, cells) for number, cells in rows if cells]
 
 
-def factors(heads: list[Row], units: Sequence[str], refuse: Refuse) -> list[float]:
-    """Give what turns the numbers of columns into SI, by the units in front of them.
-
-    Raises
-    ------
-    SettingError
-        As `refuse` makes it, for another unit than those of the columns.
-    """
-    found = [1.0] * len(units)
-    for place, (line, cells) in enumerate(heads):
-        bare = [_factor(cell, unit) for cell, unit in zip(cells, units, strict=False)]
-        is_row_of_units = place > 0 and any(
-            cell and factor for cell, factor in zip(cells, bare, strict=False)
-        )
-        for column, (cell, unit) in enumerate(zip(cells, units, strict=False)):
-            written = UNIT.search(cell)
-            said = cell if is_row_of_units else (written[1] or written[2] or "") if written else ""
-            factor = _factor(said, unit)
-            if factor is None:
-                raise refuse(f"line {line} says {said}: give it in {unit or 'plain numbers'}")
-            found[column] *= factor
-    return found
+def _cells(line: str, separator: str) -> list[str]:
+    """Cells of a line, without empty ones at its end; none of a comment with numbers."""
+    text = line.strip(" ").lstrip("#%")
+    table = [text.split()] if separator == " " else csv.reader([text], delimiter=separator)
+    cells = [cell.strip() for cell in next(iter(table), [])]
+    while cells and not cells[-1]:
+        cells.pop()
+    is_comment = text != line.strip(" ")
+    return [] if is_comment and any(map(_is_number, cells)) else cells
 
 
-def _factor(said: str, unit: str) -> float | None:
-    """Give the size of a unit in that of a setting, which may be one of several."""
-    if said in NO_UNIT:
-        return 1.0
-    sizes = (
-        PREFIXES.get(said.removesuffix(one))
-        for one in unit.split(" or ")
-        if one and said.endswith(one)
-    )
-    return next((size for size in sizes if size is not None), None)
+def _heads(rows: Sequence[Row]) -> tuple[Sequence[Row], int]:
+    """Lines of words right above the numbers, and the place of the first line of numbers."""
+
+    def is_head(place: int) -> bool:
+        cells = rows[place][1]
+        return len(cells) > 1 and (are_units(cells) or not any(map(_is_number, cells)))
+
+    for place, (_, cells) in enumerate(rows):
+        numbers = sum(map(_is_number, cells))
+        if numbers > 1 and (numbers == len(cells) or (place > 0 and is_head(place - 1))):
+            first = place
+            while first > 0 and is_head(first - 1):
+                first -= 1
+            if first < place:
+                return rows[first:place], place
+            break
+    start = (place for place, (_, cells) in enumerate(rows) if any(map(_is_number, cells)))
+    place = next(start, len(rows))
+    return rows[:place], place
 
 
-def _read_file(path: Path, definition: CurveParameter, name: str) -> list[list[float]]:
-    try:
-        text = read_text(path)
-    except (OSError, ValueError) as problem:  # no text, or no path at all
-        remedy = f"it is no preset, and no readable CSV file ({why(problem)})"
-        raise SettingError(name, str(path), allowed(definition), remedy) from None
-    return read_table(text, definition, name, str(path))
+def _columns(
+    heads: Sequence[Row], lines: Sequence[str], separator: str, width: int, refuse: Refuse
+) -> Sequence[TableColumn]:
+    """Columns as the lowest line that names a quantity says, and the line of units below it."""
+    columns: list[TableColumn] = []
+    units: Row = (0, [])
+    for line, cells in reversed(heads):
+        texts = _between_blanks(lines[line - 1], width) if separator == " " else cells
+        if are_units(texts):
+            units = line, texts
+            continue
+        named = [column_of(place, line, text) for place, text in enumerate(texts)]
+        columns = columns or named
+        if any(column.quantities[0] for column in named):
+            columns = named
+            break
+    columns = columns or [TableColumn(place) for place in range(len(units[1]))]
+    columns = [column.with_units(*units, refuse) for column in columns]
+    has_units_apart = any(is_spelt_as_unit(column.name) for column in columns)
+    if len(columns) == width or (len(columns) > width and separator != " " and not has_units_apart):
+        return columns
+    if any(column.is_known for column in columns):
+        line, count = heads[-1][0], len(columns)
+        raise refuse(f"line {line} has {count} names for {width} columns: give one for each")
+    return [TableColumn(place) for place in range(width)]
 
 
-def resolve(definition: Parameter, name: str, value: object, folder: Path) -> object:
-    """Replace the name of a CSV file, sought in a folder, by its points.
-
-    Reading files is for fronts whose user owns the machine, so nothing else does it.
-    """
-    if not isinstance(definition, CurveParameter) or not isinstance(value, str) or not value:
-        return value
-    return value if value in definition.presets else _read_file(folder / value, definition, name)
+def _between_blanks(text: str, width: int) -> list[str]:
+    """Split a line of names at blanks, which may stand in front of a bracket or within a name."""
+    plain = text.strip("#% \t")
+    names = re.split(r"\s+(?![\[(])", plain)
+    apart = re.split(r"\s{2,}|\t", plain)
+    return apart if len(apart) == width else names

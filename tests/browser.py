@@ -45,12 +45,17 @@ def free_port() -> int:
     return number
 
 
+NO_BROWSER = "the page tests need Chromium: apt-get install chromium"
+
+
 def chromium() -> str:
-    """Find the system's Chromium."""
+    """Find the system's Chromium; skip the test without one, where nobody promised one (CI)."""
     for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
             return path
-    pytest.fail("the page tests need Chromium: apt-get install chromium", pytrace=False)
+    if os.environ.get("CI"):
+        pytest.fail(NO_BROWSER, pytrace=False)
+    pytest.skip(NO_BROWSER)
 
 
 @contextmanager

@@ -16,7 +16,7 @@ from typing import Any
 
 import hypothesis.internal.conjecture.providers as draws
 import pytest
-from browser import Chrome, Server, free_port
+from browser import NO_BROWSER, Chrome, Server, chromium, free_port
 from hypothesis import settings
 from hypothesis.internal.constants_ast import Constants
 from pages import Visit, visits
@@ -127,6 +127,15 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Say in the last line how many tests of the page were skipped, and why."""
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    reports = reporter.stats.get("skipped", []) if reporter else []
+    skipped = sum(NO_BROWSER in str(report.longrepr) for report in reports)
+    if skipped:
+        reporter.write_line(f"{skipped} tests skipped: {NO_BROWSER}")
+
+
 @pytest.fixture(scope="session")
 def proxy() -> Iterator[Proxy]:
     """Give a network by which a page may come to the server too."""
@@ -146,6 +155,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[S
 
 @pytest.fixture(scope="session")
 def chrome() -> Iterator[Chrome]:
+    chromium()
     expect.set_options(timeout=1e3 * PATIENCE)
     with sync_playwright() as playwright, closing(Chrome(playwright)) as opened:
         yield opened
@@ -178,7 +188,7 @@ def counted(name: str, calls: list[str]) -> Callable[..., object]:
 
 
 @pytest.fixture
-def open_page(server: Server, chrome: Chrome) -> Iterator[Visit]:
+def open_page(chrome: Chrome, server: Server) -> Iterator[Visit]:
     with visits(server, chrome) as visit:
         yield visit
 

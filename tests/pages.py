@@ -62,7 +62,7 @@ def one_page(query: str, said: str, **device: Any) -> Any:
     """Make a fixture: one page for all tests of a file, given once its status says something."""
 
     @pytest.fixture(scope="module", name="page")
-    def opened(server: Server, chrome: Chrome) -> Iterator[Page]:
+    def opened(chrome: Chrome, server: Server) -> Iterator[Page]:
         with visits(server, chrome) as visit:
             page = visit(query, **device)
             expect(status(page)).to_contain_text(said)

@@ -156,6 +156,6 @@ def test_results_of_another_program_come_with_the_frame_and_their_distance() -> 
     brought = read_brought(table, "other.csv", settings)
     frame = runner.frame(Needs(frozenset({"beside"}), brought=brought))
     beside = frame.extras["beside"]
-    assert beside.distance == pytest.approx(0.1 / 1.1, rel=1e-6)
-    assert beside.values.shape == beside.x.shape == beside.t.shape == (len(rows),)
+    assert beside["distance"] == pytest.approx(0.1 / 1.1, rel=1e-6)
+    assert {beside[name].shape for name in ("x", "t", "values")} == {(len(rows),)}
     assert runner.frame(Needs(frozenset({"beside"}))).extras["beside"] is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -44,6 +45,15 @@ def test_run_prints_the_key_figures_and_exits_0_when_converged(capsys):
     assert err == ""
 
 
+def test_what_rounding_leaves_of_an_error_is_printed_as_0(capsys):
+    assert main(["run", "block", "--set", "elements=12", "--set", "elements_up=6"]) == 0
+    figures = printed_figures(capsys.readouterr().out)
+    for name in ("indicator", "behaviour", "error_displacement", "error_force"):
+        assert figures[name] == "0" or float(figures[name]) > 2e-16, name
+    assert figures["indicator"] == "0"
+    assert float(figures["residual"]) > 0.0
+
+
 def test_the_papers_method_ends_where_its_indicator_says_and_gives_no_certificate(capsys):
     assert main(["run", "bar", *SMALL, *PAPER]) == 0
     figures = printed_figures(capsys.readouterr().out)
@@ -73,7 +83,8 @@ def test_json_is_strict_and_says_the_same_as_the_text(capsys):
         raise AssertionError(f"{word} is no JSON")
 
     found = json.loads(capsys.readouterr().out, parse_constant=refuse)
-    assert list(found) == [*FIGURES, "settings"]
+    assert list(found) == [*FIGURES[:3], "remarks", *FIGURES[3:], "tables", "settings"]
+    assert found["remarks"] == []
     assert found["iterations"] == int(figures["iterations"])
     assert found["indicator"] == pytest.approx(float(figures["indicator"]), rel=1e-5)
     assert (found["certified"], found["residual"]) == (False, None)
@@ -198,3 +209,34 @@ def test_the_module_runs_as_a_program(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["status"] == "converged"
     assert (tmp_path / "bar.npz").is_file()
+
+
+@pytest.mark.parametrize(
+    ("trouble", "code", "message"),
+    [
+        (MemoryError(), 3, "a coarser mesh"),
+        (RuntimeError("SUPERLU_MALLOC fails for buf in intCalloc()"), 3, "a coarser mesh"),
+        (KeyboardInterrupt(), 130, "ended"),
+    ],
+)
+def test_what_ends_a_command_from_outside_takes_a_line_and_has_its_code(
+    trouble, code, message, monkeypatch, capsys
+):
+    def fail(*given, **options):
+        raise trouble
+
+    monkeypatch.setattr("solver.cli.solve", fail)
+    assert main(["run", "bar", *SMALL]) == code
+    (line,) = capsys.readouterr().err.splitlines()
+    assert message in line
+    said = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert re.search(rf"Exit code 0: converged;.* {code}: ", said)
+
+
+def test_a_fault_of_the_engine_is_no_lack_of_memory(monkeypatch):
+    def fail(*given, **options):
+        raise RuntimeError("of another kind")
+
+    monkeypatch.setattr("solver.cli.solve", fail)
+    with pytest.raises(RuntimeError, match="of another kind"):
+        main(["run", "bar", *SMALL])

@@ -17,6 +17,7 @@ from solver.reference.closed_forms.compliant_bar import pulled_compliant_bar
 from solver.reference.distance import distance_to
 from solver.scenes import CATALOGUE, discretise
 from solver.scenes.method import method_of
+from solver.scenes.rope import rope
 
 LENGTH, AXIAL, BOUND = 1.0, 210e9 * 3.14e-6, 0.3 * 5000.0
 COMPLIANT = {"friction_law": "compliant"}
@@ -157,3 +158,17 @@ def test_along_the_search_direction_slider_and_spring_carry_the_same_force(seed,
     np.testing.assert_allclose(friction[slips], (-np.sign(slip) * bound)[slips], atol=1e-8)
     if two:
         np.testing.assert_allclose(friction, -force[tangent.below], atol=1e-10)
+
+
+def test_wires_of_a_rope_give_way_alike_by_the_stiffest_and_the_longest_of_them():
+    chosen = {"construction": "conductor", "friction_law": "compliant", "contact_stiffness": 40.0}
+    small = {"elements": 4, "instants": 3, "substructures": 2}
+    made = CATALOGUE["rope"].settings.checked({**chosen, **small})
+    scene, problem = rope(made), discretise(made)
+    stiffest = max(wire.helix.stiffness for wire in scene.wires)
+    longest = max(wire.length for wire in scene.wires)
+    assert min(wire.helix.stiffness for wire in scene.wires) < 0.9 * stiffest
+    scale = problem.scales.force / problem.scales.displacement
+    for law in problem.rubbing.values():
+        density = scale / (law.tangential.softness * law.weights)
+        np.testing.assert_allclose(density, 40.0 * stiffest / longest**2)

@@ -224,7 +224,7 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
     assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
     assert state.settings.duration == 2.0
     rows = "".join(f"{x},{t},{x * t}\n" for x in (0.2, 0.4) for t in (0.5, 1.0))
-    assert "4 rows" in open_file("other.csv", f"x,t,friction force\n{rows}")
+    assert "4 points" in open_file("other.csv", f"x,t,friction force\n{rows}")
     assert state.brought is not None
     assert state.brought.source == "other.csv"
     assert "outside of the body" in open_file("far.csv", "x,t,friction force\n3,0,0\n")

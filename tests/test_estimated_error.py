@@ -141,12 +141,23 @@ def test_a_run_says_from_what_iterate_its_answer_is_and_whose(
     problem = discretise(settings)
     found = solve(problem, method_of(settings), distance=true_distance(problem))
     before = found.records[-2]
-    words = f"from iterate {before.iteration}, whose contact force was"
-    assert words in found.status.advice
-    said = float(found.status.advice.split(words)[1].split("%")[0])
+    advice = found.status.advice
+    assert f"iterate {before.iteration}, whose" in advice
+    said = float(advice.removesuffix(" % away from it.").split()[-1])
     assert said == pytest.approx(100.0 * before.error_force, rel=0.1)
     assert (before.error_force > stop.FAR) == is_by_increments
-    assert ("incremental solver's answer" in found.status.advice) == is_by_increments
+    assert ("incremental solver's answer" in advice) == is_by_increments
+
+
+@pytest.mark.parametrize(("distance", "said"), [(0.05, "5"), (0.5, "50"), (130.0, "more than 100")])
+def test_a_certified_answer_is_not_called_wrong_by_how_far_its_start_was(
+    distance: float, said: str
+) -> None:
+    settings = CATALOGUE["bar"].settings()
+    answer = solve(discretise(settings), method_of(settings), watch=False).iterate
+    advice = stop.proven(answer, None, 0.0, distance).status.advice
+    assert advice.endswith(f" {said} % away from it.")
+    assert "wrong" not in advice
 
 
 def test_a_limit_comes_near_when_there_is_time_for_one_step() -> None:

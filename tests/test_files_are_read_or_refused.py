@@ -7,8 +7,19 @@ from pathlib import Path
 import pytest
 from valid_settings import DEFINITIONS, refusal
 
+from solver.curves import GivenCurve, curve_of
+from solver.definitions import SettingError
 from solver.files import settings_from_command, settings_from_toml
-from solver.tables import read_table, resolve
+from solver.tables import read_table
+
+
+def read(data: bytes | str, name: str = "load") -> GivenCurve:
+    definition = DEFINITIONS[name]
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError(name, "load.csv", "a table", remedy)
+
+    return curve_of(read_table(data, refuse), definition, name, definition.units)
 
 
 def test_a_csv_is_found_beside_the_settings_file_or_in_the_working_folder(tmp_path, monkeypatch):
@@ -18,15 +29,15 @@ def test_a_csv_is_found_beside_the_settings_file_or_in_the_working_folder(tmp_pa
     (folder / "path.csv").write_text("time,force\n0,0\n0.5, 100\n1,-1e2\n", encoding="utf-8-sig")
     (folder / "run.toml").write_text('scene = "bar"\nload = "path.csv"\n', encoding="utf-8")
     expected = ((0.0, 0.0), (0.5, 100.0), (1.0, -100.0))
-    assert settings_from_command("deep/run.toml", []).load == expected
-    assert settings_from_command("bar", ["load=deep/path.csv"]).load == expected
+    assert settings_from_command("deep/run.toml", [])[0].load == expected
+    assert settings_from_command("bar", ["load=deep/path.csv"])[0].load == expected
 
 
 def test_a_csv_may_have_quoted_names_in_capitals_and_empty_lines(tmp_path):
     file = tmp_path / "load.csv"
     file.write_text('"Time", Force\n\n0,0\n , \n1,"700"\n\n', encoding="utf-8")
-    found = resolve(DEFINITIONS["load"], "load", "load.csv", tmp_path)
-    assert found == [[0.0, 0.0], [1.0, 700.0]]
+    settings, _ = settings_from_command("bar", [f"load={file}"])
+    assert settings.load == ((0.0, 0.0), (1.0, 700.0))
 
 
 @pytest.mark.parametrize(
@@ -41,8 +52,7 @@ def test_a_csv_may_have_quoted_names_in_capitals_and_empty_lines(tmp_path):
     ids=repr,
 )
 def test_a_csv_is_read_as_spreadsheets_write_it_with_its_units(text):
-    found = read_table(text, DEFINITIONS["load"], "load", "load.csv")
-    assert found == [[0.0, 0.0], [0.5, 1200.0]]
+    assert read(text).points == [[0.0, 0.0], [0.5, 1200.0]]
 
 
 @pytest.mark.parametrize(
@@ -55,14 +65,13 @@ def test_a_csv_is_read_as_spreadsheets_write_it_with_its_units(text):
         ("0,0\n1,\n", "line 2"),
         ("0,0\n1,2,3\n", "line 2"),
         ("0,0\n1,much\n", "line 2"),
-        ("force,time\n0,0\n", "line 1"),
         ("0;0\n0,5;1.5\n", "line 2"),
         ('0,0\n1,"1,000"\n', "line 2"),
-        ("time (min),force (N)\n0,0\n", "line 1 says min: give it in s"),
-        ("time;force\ns;lbf\n0;0\n", "line 2 says lbf: give it in N"),
+        ("time (lb),force (N)\n0,0\n", "line 1 says lb: give it in s, ms, min, h"),
+        ("time;force\ns;lbf\n0;0\n", "line 2 says lbf: give it in N, kN, MN"),
         ("much,1\n1,1\n", "line 1"),
-        ("0,0\n1,nan\n", "row 2"),
-        ("0,0\n1,inf\n", "row 2"),
+        ("0,0\n1,nan\n", "line 2"),
+        ("0,0\n1,inf\n", "line 2"),
         ("1,0\n0,0\n", "must increase"),
         ("0,0\n0,1\n", "must increase"),
     ],
@@ -79,13 +88,18 @@ def test_a_bad_csv_is_refused_with_its_line(tmp_path, rows, remedy):
 
 def test_a_csv_that_is_missing_binary_or_a_folder_is_refused(tmp_path):
     binary = tmp_path / "binary.csv"
-    binary.write_bytes(b"\xff\xfe\x00\x80")
-    for path in (tmp_path / "none.csv", binary, tmp_path):
+    binary.write_bytes(b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR")
+    nul = tmp_path / "nul.toml"
+    nul.write_text('scene = "bar"\nload = "a\\u0000b"\n')
+    for path, remedy in (
+        (tmp_path / "none.csv", "no readable CSV file"),
+        (tmp_path, "no readable CSV file"),
+        (binary, "it is no text: save the table as CSV"),
+    ):
         text = refusal(lambda path=path: settings_from_command("bar", [f"load={path}"]))
         assert "load = " in text
-        assert "no readable CSV file" in text
-    nul = 'scene = "bar"\nload = "a\\u0000b"\n'
-    assert "no readable CSV file" in refusal(lambda: settings_from_toml(nul, tmp_path))
+        assert remedy in text
+    assert "no readable CSV file" in refusal(lambda: settings_from_command(str(nul), []))
 
 
 @pytest.mark.parametrize(

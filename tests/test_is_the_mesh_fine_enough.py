@@ -1,4 +1,4 @@
-"""Three meshes tell how far a quantity is from what it tends to, and say when they do not."""
+"""Three meshes, or numbers of instants, tell how far a quantity is from what it tends to."""
 
 from __future__ import annotations
 
@@ -10,7 +10,15 @@ from hypothesis import strategies as st
 
 from solver.cli import main
 from solver.scenes import CATALOGUE
-from solver.study.mesh import LARGEST_ORDER, LEAST_ORDER, Refinement, answer, meshes_around
+from solver.study.mesh import (
+    LARGEST_ORDER,
+    LEAST_ORDER,
+    Refinement,
+    answer,
+    instants_around,
+    meshes_around,
+    which_to_refine,
+)
 
 CYCLE = 2.0 * 900.0**3 / (3.0 * 210e9 * 3.14e-6 * 1500.0)
 """Energy of a full cycle of the bar, J."""
@@ -74,10 +82,50 @@ def test_the_energy_of_a_cycle_is_what_the_closed_form_says(
     small = ["--set", "load=cycle", "--set", "instants=21"]
     assert main(["mesh", "bar", "--of", "dissipation@1", *small]) == 0
     lines = capsys.readouterr().out.splitlines()
-    values = [float(line.split()[2]) for line in lines[:3]]
+    values = [float(line.split()[4]) for line in lines[:3]]
     found = Refinement((values[0], values[1], values[2]), 1)
     assert abs(found.limit - CYCLE) <= found.margin < 0.01 * CYCLE
-    assert lines[3].startswith(f"Its error goes with the power {found.order:.2f}")
+    assert lines[5].startswith(f"Elements: Its error goes with the power {found.order:.2f}")
+    assert lines[7].startswith("Refine elements first")
+
+
+def test_instants_are_halved_and_doubled_between_the_same_ends() -> None:
+    bar = CATALOGUE["bar"].settings.checked({"instants": 21})
+    runs, own = instants_around(bar)
+    assert [one.instants for one in runs] == [11, 21, 41]
+    assert runs[own].values() == bar.values()
+    odd, own = instants_around(bar.replace(instants=12))
+    assert [one.instants for one in odd] == [12, 23, 45]
+    assert own == 0
+
+
+@pytest.mark.parametrize(
+    ("scene", "asked", "refined"),
+    [
+        ("bar elements=40 instants=11 load=ramp", "first_slip_time@0.5", "instants"),
+        ("bar elements=10 instants=41 load=cycle", "dissipation@1", "elements"),
+        # Contact grows by three points at each end from an instant to the next.
+        (
+            "block gap=parabola radius=30 friction=0.5 top_normal_displacement=-2e-5 elements=96 "
+            "elements_up=8 instants=41",
+            "peak_friction",
+            "instants",
+        ),
+    ],
+)
+def test_it_is_said_which_to_refine(
+    scene: str, asked: str, refined: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name, *changes = scene.split()
+    assert main(["mesh", name, "--of", asked, *(f"--set={one}" for one in changes)]) == 0
+    assert f"Refine {refined} first" in capsys.readouterr().out
+
+
+def test_where_neither_changes_a_value_neither_is_to_be_refined() -> None:
+    same = Refinement((2.0, 2.0, 2.0 + 1e-9), 1)
+    assert which_to_refine(same, same).startswith("Neither")
+    assert "elements first" in which_to_refine(power(2.0, 1.0, 0.5), same)
+    assert which_to_refine(same, Refinement((1.0, math.nan, 1.0), 1)) == ""
 
 
 @pytest.mark.parametrize("asked", ["seconds", "peak_pressure", "nonsense"])

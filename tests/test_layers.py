@@ -25,12 +25,16 @@ LAYERS = [
     ["latin"],
     ["definitions"],
     ["disk"],
+    ["units"],
+    ["columns"],
     ["tables"],
     ["checked"],
     ["methods"],
     ["settings"],
     ["loads"],
     ["scenes"],
+    ["remarks"],
+    ["curves"],
     ["files"],
     ["prepared"],
     ["running"],
@@ -42,7 +46,7 @@ LAYERS = [
 ]
 """Parts of the solver; each may import itself and what stands before it. Problem and method stand
 before all that knows settings and scenes."""
-LONGEST_FILE, LONGEST_FUNCTION = 300, 50
+LONGEST_FILE, LONGEST_FUNCTION = 400, 50
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 
 

@@ -102,14 +102,14 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
     expected = METHODS[method] | BY_HAND
     assert parts(BarSettings.checked(values)) == expected
     words = [f"{name}={value}" for name, value in values.items()]
-    assert parts(settings_from_command("bar", words)) == expected
+    assert parts(settings_from_command("bar", words)[0]) == expected
     address, complaint = settings_from_query("?" + "&".join(words))
     # a page shows the search
     shown = expected | ({"finish": WATCH} if method == "fast" else {})
     assert (parts(address), complaint) == (shown, "")
     saved = tmp_path / "few.toml"
     saved.write_text(f'scene = "bar"\nmethod = "{method}"\n', encoding="utf-8")
-    assert parts(settings_from_command(str(saved), words)) == expected
+    assert parts(settings_from_command(str(saved), words)[0]) == expected
     assert parts(BarSettings.checked(named).replace(**BY_HAND)) == expected
 
 
@@ -144,7 +144,7 @@ def test_another_method_over_a_saved_file_brings_its_parts(tmp_path):
     saved = tmp_path / "saved.toml"
     fast = BarSettings.checked({**OTHERS, "acceleration": "none"})
     saved.write_text(dump(fast), encoding="utf-8")
-    found = settings_from_command(str(saved), ["method=paper", "relaxation=0.6"])
+    found, _ = settings_from_command(str(saved), ["method=paper", "relaxation=0.6"])
     assert parts(found) == PAPER | {"relaxation": 0.6}
     assert {name: getattr(found, name) for name in OTHERS} == OTHERS
 

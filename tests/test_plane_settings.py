@@ -98,6 +98,21 @@ def test_loads_that_contact_alone_cannot_hold_are_refused(values, word):
     assert word in refusal(BlockSettings, **values)
 
 
+@pytest.mark.parametrize("shear", [0.8e6, 1e6, 5e6])
+def test_a_tall_block_is_said_to_tip_when_it_does_and_not_when_it_would_slide(shear):
+    """Its top is sheared more and more: it tips at b/(2 h) of what presses, and slides at mu."""
+    tall = {"gap": "flat", "length": 0.05, "height": 0.1, "friction": 0.9, "instants": 1001}
+    sheared = {"top_tangential_traction": shear, "top_tangential_load": "ramp"}
+    pressed = {"top": "traction", "top_normal_load": ((0.0, -1e6),)}
+    message = refusal(BlockSettings, **tall, **sheared, **pressed)
+    assert "tips over" in message
+    assert "take a longer or lower body" in message
+    told = float(message.split("from ")[1].split(" s on")[0])
+    assert told == pytest.approx(0.25e6 / shear, abs=2e-3)
+    at_once = {"top_tangential_load": ((0.0, shear),)}
+    assert "tips over" in refusal(BlockSettings, **{**tall, **sheared, **pressed, **at_once})
+
+
 @pytest.mark.parametrize(
     "values",
     [

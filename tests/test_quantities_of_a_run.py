@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import functools
 import math
+from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
 
-from solver.scenes import CATALOGUE
+from solver.latin import Solution, iterations
+from solver.latin.criteria.status import CANCELLED
+from solver.scenes import CATALOGUE, discretise
+from solver.scenes.method import method_of
 from solver.study.quantities.cycles import turning_points
 from solver.study.quantities.finished import FinishedRun, finished_run
 from solver.study.quantities.quantities import QUANTITIES, reading
@@ -276,3 +280,23 @@ def test_a_quantity_that_does_not_apply_is_one_that_the_run_does_not_have(
             assert math.isnan(value), name
         elif name not in DECIDED_BY_THE_LOAD:
             assert not math.isnan(value), name
+
+
+@pytest.mark.parametrize("method", ["fast", "paper"])
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_what_is_zero_is_shown_as_zero_and_not_as_what_rounding_leaves(
+    scene: str, method: str
+) -> None:
+    """Also at iterates on the way, such as one at which nothing touches yet."""
+    settings = CATALOGUE[scene].settings.checked({"method": method})
+    for iterate in islice(iterations(discretise(settings), method_of(settings)), 2):
+        run = FinishedRun(settings, Solution(iterate, [], CANCELLED), has_errors=False)
+        for values in (run.displacement, run.force):
+            sizes = np.abs(values[values != 0.0])
+            assert sizes.min(initial=1e300) > 1e-12 * sizes.max(initial=0.0)
+
+
+def test_a_broken_strand_and_a_wire_that_comes_back_leave_no_residue() -> None:
+    run = finished_run(CATALOGUE["strand"].settings.checked({}), errors=False, indicators=False)
+    assert taken("holding_friction", run) == 0.0
+    assert taken("ratchet", run) == 0.0

@@ -187,14 +187,17 @@ def test_a_table_is_read_as_it_is_written(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("", "name its columns in the first line"),
+        ("", "it has no points"),
         (ROWS, "name its columns in the first line"),
-        (HEAD, "none of its 0 rows lie in the run"),
+        (HEAD, "it has no points"),
         ("x,friction force\n0.1,1\n", "no column t"),
         ("t,displacement\n0.1,1\n", "no column x"),
         ("x,t\n0.1,1\n", "neither friction force nor displacement"),
         ("x,t,u,friction\n0.1,1,1,1\n", "both friction force and displacement"),
-        ("x,t,friction force [N]\n" + ROWS, r"says N: give it in N/m; divide nodal forces"),
+        (
+            "x,t,friction force [N]\n" + ROWS,
+            r"says N: give it in N/m, kN/m, N/mm; divide nodal forces",
+        ),
         ("x [s],t,friction force\n" + ROWS, "says s: give it in m"),
         (HEAD + ROWS + "0.5,1,nan\n", "line 6 has 'nan' as friction force: leave such rows out"),
         (HEAD + ROWS + "0.5,inf,1\n", "line 6 has 'inf' as t"),
@@ -227,7 +230,7 @@ def test_friction_of_bodies_in_the_plane_is_a_traction() -> None:
 
 def test_what_is_drawn_at_an_instant_is_the_nearest_of_theirs() -> None:
     rows = np.array([[0.3, 0.5, 3.0], [0.1, 0.0, 1.0], [0.2, 0.5, 2.0], [0.5, 0.0, 4.0]])
-    brought = Brought("displacement", *rows.T, "a.csv", "bar")
+    brought = Brought("displacement", *rows.T, "a.csv", "bar", "")
     time, x, values = brought.nearest(0.4)
     assert (time, list(x), list(values)) == (0.5, [0.2, 0.3], [2.0, 3.0])
     times, at_end = brought.at_end(0.5)

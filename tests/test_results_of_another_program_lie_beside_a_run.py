@@ -31,7 +31,7 @@ PLACES, TIMES = (one.ravel() for one in np.meshgrid([0.1, 0.2, 0.4, 0.6], [0.25,
 def brought(scene: str = "bar", quantity: str = "friction force", **fields: Any) -> Brought:
     length = CATALOGUE[scene].settings.checked({}).length
     given = {"x": PLACES * length, "t": TIMES, "values": 100.0 * np.ones(len(TIMES))} | fields
-    return Brought(quantity, given["x"], given["t"], given["values"], "a<b.csv", scene)
+    return Brought(quantity, given["x"], given["t"], given["values"], "a<b.csv", scene, "")
 
 
 def shown(scene: str = "bar", theirs: Brought | None = None, **options: Any) -> Shown:

@@ -97,7 +97,9 @@ def test_what_is_refused_says_why_and_leaves_all_as_it_was(
     wrong = tmp_path / "wrong.csv"
     wrong.write_text("x,t,friction force [N]\n0.1,0.1,1\n")
     field(page).set_input_files(wrong)
-    expect(page.get_by_role("alert").first).to_contain_text("give it in N/m; divide nodal forces")
+    expect(page.get_by_role("alert").first).to_contain_text(
+        "give it in N/m, kN/m, N/mm; divide nodal forces"
+    )
     expect(far(page)).to_contain_text("friction force.csv")
     assert "elements=20" in page.url
     press(page, "Remove")

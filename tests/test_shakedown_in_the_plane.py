@@ -127,6 +127,22 @@ def test_just_below_the_limit_a_coupled_block_ceases_or_not_by_its_start() -> No
     assert goes_on(ran("block", FREE, 0.99 * swing, PUSH))
 
 
+@pytest.mark.parametrize(("share", "energy"), [(0.95, 0.0), (0.98, 7.59e-3), (1.01, 5.56e-2)])
+def test_a_block_pressed_by_displacement_slips_for_ever_from_rest_a_little_below_the_limit(
+    share: float, energy: float
+) -> None:
+    """The factor bounds what may cease; from this start slip does up to 0.975 of it."""
+    given = {"gap": "flat", "elements": 12, "elements_up": 6, "friction": 0.2, "cycles": 5}
+    settings = CATALOGUE["block"].settings.checked({**given, "instants": 161})
+    limit = reading("shakedown_factor")(finished_run(settings, errors=False, indicators=False))
+    swing = share * limit * settings.top_tangential_displacement
+    run = finished_run(
+        settings.replace(top_tangential_displacement=swing), errors=False, indicators=False
+    )
+    taken = [reading(f"dissipation@{cycle}")(run) for cycle in (2, 4)]
+    assert taken == pytest.approx([energy, energy], rel=1e-2, abs=1e-6)
+
+
 def test_how_the_pressing_begins_is_no_part_of_the_factor() -> None:
     """Only the last cycle counts: a push before it changes nothing of what could stay."""
     pushed, not_pushed = (factor(ran("block", FREE, SHEAR, first)) for first in (PUSH, 0.0))

@@ -11,7 +11,7 @@ from plane import whole_force_error
 from solver.discrete.elements import elastic_matrix
 from solver.discrete.macro import HIGHEST_DEGREE, side_basis
 from solver.discrete.plane import Rectangle
-from solver.latin import iterations
+from solver.latin import iterations, solve
 from solver.latin.direction.rules import automatic
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
@@ -58,6 +58,23 @@ def test_a_block_a_thousand_times_as_long_as_high_takes_twenty_iterations(gap):
 def test_a_column_cut_into_parts_twenty_times_as_high_as_wide_takes_twenty_iterations():
     tall = {"height": 1.0, "elements": 16, "elements_up": 64, "substructures_up": 2}
     assert error_after(20, *problem_of("block", gap="flat", **tall)) <= 0.01
+
+
+@pytest.mark.parametrize("elements_up", [1, 2, 8, 24])
+def test_a_column_of_slender_elements_that_slips_everywhere_is_certified(elements_up):
+    """A fault of 40 m below 1600 m: 24 elements up are 80 times as high as wide, one 1920 times."""
+    uncut = {"substructures": 1, "substructures_up": 1, "elements_up": elements_up}
+    column = {"length": 40.0, "height": 1600.0, "shear_stress": 5.5e6, "diffusivity": 0.003}
+    settings, problem = problem_of("fault", **column, **uncut)
+    found = reference_of(problem)
+    slips = found.status != 0
+    assert found.converged.all()
+    assert slips[:, 1:].mean() > 0.9
+    contact = problem.rubbing["support"]
+    bound = settings.strength(contact.positions) * contact.weights[:, None]
+    friction = found.contact("support").tangential_force
+    np.testing.assert_allclose(np.abs(friction)[slips], bound[slips], rtol=1e-9)
+    assert solve(problem, method_of(settings)).is_certified
 
 
 def test_the_macro_degree_grows_with_the_root_of_length_over_depth():

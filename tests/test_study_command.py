@@ -196,6 +196,20 @@ def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_measured(
     assert "a folder that can be made and written to" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("trouble", [KeyboardInterrupt, MemoryError])
+def test_what_was_measured_by_then_stays_when_a_study_is_ended(
+    trouble, tmp_path, monkeypatch, measured
+):
+    def end(*given, **options):
+        raise trouble
+
+    monkeypatch.setattr(report_commands, "error_against_time", lambda *given: measured[1])
+    monkeypatch.setattr(report_commands, "crossover", end)
+    assert main([*TINY, "--out", str(tmp_path)]) == (130 if trouble is KeyboardInterrupt else 3)
+    for name in ("curves.csv", "levels.csv"):
+        assert rows(tmp_path / name) == rows(measured[0] / name)
+
+
 def test_without_matplotlib_the_page_is_whole_and_without_who_draws_it_says_so(
     tmp_path, monkeypatch, capsys, measured
 ):

@@ -92,4 +92,4 @@ def test_without_an_answer_it_ends_as_a_run_that_only_iterates(
 
 @pytest.mark.parametrize("said", ["at-once", "at once", "status"])
 def test_files_and_commands_may_say_at_once_as_they_did(said: str) -> None:
-    assert settings_from_command("bar", [f"finish={said}"]).finish == "at-once"
+    assert settings_from_command("bar", [f"finish={said}"])[0].finish == "at-once"

@@ -1,12 +1,32 @@
 """Colours that mean something; all can be told apart by the colour-blind (Okabe and Ito)."""
 
+from __future__ import annotations
+
+import numpy as np
+
 LATIN = "#0072B2"
+PRESSURE = "#B0609A"
 REFERENCE = "#7A7A7A"
 ERROR = "#D55E00"
 DISPLACEMENT = "#009E73"
 EXACT = "#56B48C"
-GHOST = "#9A9A9A"
+GHOST = "#9467BD"
+BESIDE = "#B58500"
 FORCE = "#D55E00"
 STICK, FORWARD, BACKWARD, OPENED = "#C9CDD1", "#E69F00", "#0072B2", "#4D4D4D"
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}
 BODY, EDGE = "#C9D6E2", "#546E7A"
+CUT = "#8A8A8A"
+"""Of the lines where substructures meet."""
+RANKS = (LATIN, ERROR, DISPLACEMENT, PRESSURE, "#B58500", REFERENCE)
+"""Of curves side by side, as modes and wires."""
+SCALE = ("#7A4FB5", "#0072B2", "#008577", "#5C8700", "#B07A00", "#C24E00")
+"""From the first to the last of many curves; no end of it fades into light or dark."""
+
+
+def scaled(count: int) -> list[str]:
+    """As many colours of the scale."""
+    anchors = np.array([[int(color[i : i + 2], 16) for i in (1, 3, 5)] for color in SCALE])
+    places = np.linspace(0, len(SCALE) - 1, max(count, 2))[:count]
+    mixed = [np.interp(places, range(len(SCALE)), channel) for channel in anchors.T]
+    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in np.array(mixed).T.round().astype(int)]

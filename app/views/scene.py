@@ -19,8 +19,12 @@ class Scene(View):
     def make(self) -> figure:
         """A new figure."""
         made = figure(
-            sizing_mode="stretch_both", min_height=100, tools="", toolbar_location=None,
-            x_range=Range1d(0, 1), y_range=Range1d(0, 1),
+            sizing_mode="stretch_both",
+            min_height=100,
+            tools="",
+            toolbar_location=None,
+            x_range=Range1d(0, 1),
+            y_range=Range1d(0, 1),
         )
         made.axis.visible = made.grid.visible = False
         made.min_border, made.outline_line_color = 2, None
@@ -42,6 +46,8 @@ class Scene(View):
         x, y = (geometry.points + factor * frame.deformed.points[:, :, column]).T
         colors = [STATUS[int(status)] for status in frame.deformed.status[:, column]]
         self.contacts.data = {"x": x, "y": y, "color": colors}
-        for axis, values in zip((self.figure.x_range, self.figure.y_range), geometry.nodes.T, strict=True):
+        for axis, values in zip(
+            (self.figure.x_range, self.figure.y_range), geometry.nodes.T, strict=True
+        ):
             margin = 0.08 * size
             axis.start, axis.end = float(values.min()) - margin, float(values.max()) + margin

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.models import Range1d
-from bokeh.palettes import Viridis256
+from bokeh.models import BasicTicker, ColorBar, LinearColorMapper
 from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
-from app.views.view import View, plot, source
+from app.views.colors import scaled
+from app.views.view import TEXT, Axis, View, plot, put, source, whole
+from solver.settings import Settings
 
 LEAST = 1e-4
+FEWEST = 8
 
 
 class Spectra(View):
@@ -19,19 +21,51 @@ class Spectra(View):
     name = "Singular values"
     needs = frozenset({"spectra"})
 
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are several instants: one has one singular value."""
+        return settings.instants > 1
+
     def make(self) -> figure:
         """A new figure."""
-        made = plot("mode", "size / largest", y_axis_type="log", y_range=Range1d(LEAST, 2))
+        made = plot("mode", "size / largest", y_axis_type="log", y_range=(LEAST, 2.0))
+        whole(made.xaxis[0])
+        self._x = Axis(made, "x", "mode")
         self.values = source("xs", "ys", "color")
-        made.multi_line("xs", "ys", color="color", source=self.values, width=1.5)
+        made.multi_line("xs", "ys", color="color", source=self.values, width=1.8)
+        made.scatter([], [])
+        self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
+        self._bar = ColorBar(
+            color_mapper=self._colors,
+            ticker=BasicTicker(desired_num_ticks=3, min_interval=1, num_minor_ticks=0),
+            title="substructure",
+            title_text_font_size=TEXT,
+            title_text_font_style="normal",
+            major_label_text_font_size=TEXT,
+            orientation="horizontal",
+            location="top_right",
+            width=120,
+            height=6,
+            padding=0,
+            margin=0,
+            background_fill_alpha=0,
+        )
+        made.add_layout(self._bar, "above")
         return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the singular values, as far as the frame has them."""
-        spectra = frame.extras.get("spectra", [])
-        step = 255 // max(len(spectra) - 1, 1)
-        self.values.data = {
-            "xs": [np.arange(1, len(values) + 1) for values in spectra],
-            "ys": [np.maximum(values, 0.1 * LEAST) for values in spectra],
-            "color": [Viridis256[place * step] for place in range(len(spectra))],
-        }
+        spectra = frame.extras.get("spectra")
+        if spectra is None:
+            return
+        shown = [values[values > 0.1 * LEAST] for values in spectra]
+        put(
+            self.values,
+            xs=[np.arange(1, len(values) + 1) for values in shown],
+            ys=shown,
+            color=scaled(len(shown)),
+        )
+        self._x.hold(frame.run.number, 1.0, float(max([FEWEST, *map(len, shown)])))
+        count = frame.run.settings.n_substructures
+        self._bar.visible = count > 1
+        self._colors.high = max(count, 2)

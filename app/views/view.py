@@ -2,17 +2,33 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
-from bokeh.models import ColumnDataSource, GlyphRenderer, Legend
+import numpy as np
+from bokeh.core.properties import value
+from bokeh.models import (
+    ColumnDataSource,
+    CrosshairTool,
+    GlyphRenderer,
+    HoverTool,
+    Legend,
+    NumeralTickFormatter,
+    Range1d,
+)
 from bokeh.plotting import figure
+from numpy.typing import ArrayLike
 
-from app.frame import Frame, Selection
+from app.frame import Floats, Frame, Run, Selection
 from app.state import PageState
+from app.units import Unit, unit_for
+from app.views.colors import CUT
 from solver.settings import Settings
 
-TOOLS = "pan,box_zoom,wheel_zoom,reset,hover,crosshair,save,fullscreen"
+TOOLS = "pan,box_zoom,wheel_zoom,reset,save,fullscreen"
+TEXT = "11px"
 
 
 class View:
@@ -38,7 +54,7 @@ class View:
         self.state = state
 
     @staticmethod
-    def applies(settings: Settings) -> bool:
+    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
         """Whether it says anything about such a run."""
         return True
 
@@ -55,9 +71,106 @@ class View:
         """Show a frame; the ghost is that of the run that it is compared with."""
         raise NotImplementedError
 
+    @property
+    def ghost_name(self) -> str:
+        """What the run is called that is drawn beside the present one."""
+        return "last run" if self.state.pinned is None else "pinned run"
+
+
+class Axis:
+    """An axis of a figure, whose unit is chosen once a run, and whose ends change seldom.
+
+    Parameters
+    ----------
+    made
+        The figure.
+    side
+        "x" or "y".
+    title
+        Of the axis, without a unit.
+    unit
+        SI unit of what it is given; empty for none.
+    """
+
+    def __init__(self, made: figure, side: str, title: str, unit: str = "") -> None:
+        self._model, self._range = getattr(made, f"{side}axis")[0], getattr(made, f"{side}_range")
+        self._title, self._si = title, unit
+        self._unit, self._key, self._ends = Unit(""), None, (np.nan, np.nan)
+        self._label()
+
+    def __call__(self, values: ArrayLike) -> Floats:
+        """Values in SI as the axis shows them."""
+        return np.asarray(values, dtype=np.float32) / np.float32(self._unit.factor)
+
+    def si(self, value: float) -> float:
+        """A value on the axis in SI."""
+        return float(value) * self._unit.factor
+
+    def rename(self, title: str, unit: str) -> None:
+        """Show another quantity."""
+        if (title, unit) != (self._title, self._si):
+            self._title, self._si, self._key = title, unit, None
+
+    def hold(self, key: object, low: float, high: float, margin: float = 0.0) -> None:
+        """Show what lies between two values in SI, and all that was shown with the same key.
+
+        With another key, as of another run, it chooses the unit anew. The margin is a share of the
+        distance, and is left free on either side.
+        """
+        if key != self._key:
+            self._key, self._held = key, (low, high)
+            self._unit = unit_for(max(abs(low), abs(high)), self._si)
+            self._label()
+        low, high = self._held = min(self._held[0], low), max(self._held[1], high)
+        room = margin * (high - low) if high > low else self._unit.factor
+        self.span((low - room) / self._unit.factor, (high + room) / self._unit.factor)
+
+    def span(self, low: float, high: float) -> None:
+        """Show what lies between two values on the axis; zooming stays until these change."""
+        ends = float(low), float(high)
+        if ends != self._ends:
+            self._ends = ends
+            self._range.update(start=low, end=high, reset_start=low, reset_end=high)
+
+    def decades(self, key: object, low: float, high: float) -> None:
+        """Show whole decades from a positive value to another, and what was shown with the key."""
+        if key != self._key:
+            self._key, self._held = key, (low, high)
+        low, high = self._held = min(self._held[0], low), max(self._held[1], high)
+        self.span(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
+
+    def _label(self) -> None:
+        self._model.axis_label = self._unit.titled(self._title)
+
+
+class Key:
+    """The legend of a plot, in one line above it, where it covers no curve.
+
+    A click on an entry hides its curve.
+
+    Parameters
+    ----------
+    made
+        The figure.
+    entries
+        What each entry names.
+    """
+
+    def __init__(self, made: figure, entries: Mapping[str, list[GlyphRenderer]]) -> None:
+        self._items = dict(zip(entries, legend(made, dict(entries)).items, strict=True))
+
+    def show(self, entries: Mapping[str, bool | str]) -> None:
+        """Show or hide entries, or give them other names."""
+        for name, wanted in entries.items():
+            item = self._items[name]
+            item.visible = bool(wanted)
+            if isinstance(wanted, str) and wanted and item.label != value(wanted):
+                item.label = value(wanted)
+
 
 def plot(x: str, y: str, **more: Any) -> figure:
-    """A figure with the look that all plots share."""
+    """A figure with the look that all plots share; its ranges are set by whoever fills it."""
+    more = {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more
     made = figure(
         x_axis_label=x,
         y_axis_label=y,
@@ -65,17 +178,25 @@ def plot(x: str, y: str, **more: Any) -> figure:
         min_height=120,
         tools=TOOLS,
         active_drag=None,
+        active_scroll="wheel_zoom",
         **more,
     )
+    made.add_tools(CrosshairTool(line_color=CUT, line_alpha=0.5))
     made.toolbar.autohide, made.toolbar.logo = True, None
-    made.min_border = 4
+    made.min_border, made.min_border_right = 2, 10
     made.outline_line_color = None
     for axis in made.axis:
-        axis.axis_label_text_font_size = axis.major_label_text_font_size = "11px"
+        axis.axis_label_text_font_size = axis.major_label_text_font_size = TEXT
         axis.axis_label_text_font_style = "normal"
-        axis.axis_label_standoff, axis.major_label_standoff = 4, 3
-    made.grid.grid_line_alpha = 0.4
+        axis.axis_label_standoff, axis.major_label_standoff = 2, 3
+        axis.minor_tick_line_color, axis.major_tick_in, axis.major_tick_out = None, 0, 3
+    made.grid.grid_line_alpha = 0.3
     return made
+
+
+def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:
+    """Show values where the pointer is: names, and columns of the renderers' sources."""
+    made.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
 
 
 def source(*columns: str) -> ColumnDataSource:
@@ -83,20 +204,64 @@ def source(*columns: str) -> ColumnDataSource:
     return ColumnDataSource({name: [] for name in columns})
 
 
+def put(target: ColumnDataSource, **columns: Any) -> None:
+    """Fill a source, where anything has changed: what is the same is not sent again."""
+    old = target.data
+    if any(not _equal(old.get(name), new) for name, new in columns.items()):
+        target.data = columns
+
+
+def _equal(old: Any, new: Any) -> bool:
+    if isinstance(new, list) and new and isinstance(new[0], np.ndarray):
+        return len(old) == len(new) and all(map(np.array_equal, old, new))
+    return np.array_equal(old, new)
+
+
+def curve(target: ColumnDataSource, x: ArrayLike, y: ArrayLike) -> None:
+    """Fill a source of x and y with a curve on logarithmic axes: what is positive and finite."""
+    x, y = np.asarray(x), np.asarray(y)
+    shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
+    put(target, x=x[shown], y=y[shown])
+
+
 def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
     """A legend in one line above the plot, where it covers no curve; a click hides a curve."""
     box = Legend(
         items=list(entries.items()),
         orientation="horizontal",
-        label_text_font_size="11px",
+        location="top_left",
+        label_text_font_size=TEXT,
+        label_standoff=4,
         padding=0,
         margin=0,
-        spacing=8,
+        spacing=10,
         border_line_alpha=0,
         background_fill_alpha=0,
         glyph_height=12,
+        glyph_width=16,
         label_height=12,
         click_policy="hide",
     )
     made.add_layout(box, "above")
     return box
+
+
+def key_of(run: Run) -> tuple[int, bool]:
+    """What units and ends of axes are chosen for: a run, and anew once its reference is known."""
+    return run.number, bool(run.reference)
+
+
+def whole(axis: Any) -> None:
+    """Have an axis say whole numbers only."""
+    axis.ticker.update(min_interval=1, num_minor_ticks=0)
+    axis.formatter = NumeralTickFormatter(format="0")
+
+
+def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
+    """Smallest and largest value of all, as far as they are finite; zeros where there is none."""
+    parts = [part for curve in curves if (part := np.asarray(curve)).size]
+    lows, highs = ([float(end(part)) for part in parts] for end in (np.min, np.max))
+    return (
+        min(filter(math.isfinite, lows), default=0.0),
+        max(filter(math.isfinite, highs), default=0.0),
+    )

@@ -8,27 +8,264 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from app.frame import BesideRun, Floats
+from app.frame import Floats
 from app.messages import Needs
+from app.units import percent, unit_for
 from app.worker.geometry import floats, thinned
+from solver.discrete import Problem
+from solver.discrete.probes import AxialForce
+from solver.discrete.rope.forces import WireForces
+from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
+from solver.reduction.basis import Modes
+from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import friction_spectra
+from solver.reference.condensation import NoReferenceError
+from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
+from solver.scenes import kind_of, structure_of
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import Brought
+from solver.study.quantities.clip_measures import can_be_clipped, clips_in, products_in
+from solver.study.quantities.cycles import cycles_of, ends_of
+from solver.study.quantities.shakedown import Fate, fate_of
+from solver.study.quantities.slips import slips_of
 
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
 
 MOST_SPECTRA, MOST_VALUES = 60, 64
 """Substructures, and singular values of each, that are shown at most."""
+MOST_WIRES, MOST_PLACES, MOST_MODES = 6, 201, 5
+"""Wires, places along them, and modes that are shown at most."""
 
 
 def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     """Singular values of the friction force in every substructure, over the largest of all."""
     values = friction_spectra(iterate)
     shown = [values[place][:MOST_VALUES] for place in thinned(len(values), MOST_SPECTRA)]
-    largest = max((float(own.max(initial=0.0)) for own in shown), default=0.0) or 1.0
-    return [floats(np.asarray(own) / largest) for own in shown]
+    largest = max((float(part.max(initial=0.0)) for part in shown), default=0.0) or 1.0
+    return [floats(np.asarray(part) / largest) for part in shown]
+
+
+def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Axial force in wires at all instants; None where there are none.
+
+    Returns
+    -------
+    "x" of the middles of elements, (n_places,), m; "force", (n_wires, n_places, n_instants), N;
+    "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
+    of a strand that is bent, else None.
+    """
+    rope = structure_of(sampler.settings)
+    if isinstance(rope, Rope):
+        return _axial_force_of_rope(rope, sampler, iterate, needs)
+    if kind_of(sampler.settings) != "wires":
+        return None
+    force = _axial_of(sampler)
+    count = int(force.wires.max()) + 1
+    places = thinned(len(force.wires) // count, MOST_PLACES)
+    broken = int(getattr(sampler.settings, "broken", 0))
+    wires = sorted({*thinned(count, MOST_WIRES).tolist(), *([broken - 1] if broken else [])})
+    values = [force(iterate.displacement[:, column]) for column in sampler.columns]
+    shown = np.stack(values, axis=1).reshape(count, -1, len(values))[np.ix_(wires, places)]
+    return {
+        "x": floats(force.positions[places]),
+        "force": floats(shown),
+        "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires],
+        "stuck": None,
+    }
+
+
+def _axial_force_of_rope(
+    rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs
+) -> dict[str, Any]:
+    names = [wire.name for wire in rope.wires]
+    name = needs.interface if needs.interface in names else names[0]
+    number, columns = names.index(name), sampler.columns
+    wire, places = rope.wires[number], thinned(rope.elements, MOST_PLACES)
+    nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
+    stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
+    force = WireForces(rope)(iterate.displacement, columns)[number]
+    middles = 0.5 * (wire.along[1:] + wire.along[:-1])
+    return {
+        "x": floats(np.asarray(middles)[places]),
+        "force": floats(force[None, places]),
+        "names": [name],
+        "stuck": floats(stuck[places]),
+    }
+
+
+@lru_cache(maxsize=1)
+def _axial_of(sampler: Sampler) -> AxialForce:
+    return AxialForce(sampler.problem)
+
+
+def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
+    """Slips of two points, and the lines A w = b between which both stick.
+
+    Returns
+    -------
+    "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4, n_instants), N,
+    whose first and third lines are those of the left point; "room", the corners of where both may
+    stay in the whole last cycle, (n_corners, 2), m. None where contact alone holds the body, whose
+    slip says nothing of what presses it.
+    """
+    space = _slip_space(sampler)
+    if space is None:
+        return None
+    ((law, slip, _),) = slips_of(iterate)
+    ends = ends_of(sampler.settings)
+    last = slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else None
+    room = np.zeros((0, 2)) if last is None else room_of_two(space, last)
+    moved = np.cumsum(law.mean_by_point(slip), axis=1)
+    return {
+        "slip": floats(moved[:, sampler.columns]),
+        "matrix": floats(space.matrix),
+        "limit": floats(space.limit[:, sampler.columns]),
+        "room": floats(room),
+    }
+
+
+@lru_cache(maxsize=1)
+def _slip_space(sampler: Sampler) -> SlipSpace | None:
+    problem = sampler.problem
+    points = [len(law.positions) for law in problem.rubbing.values()]
+    if points != [2] or problem.motions is not None:
+        return None
+    try:
+        space = slip_space(problem)
+    except NoReferenceError:
+        return None
+    return space if space.matrix.shape[1] == 2 else None
+
+
+def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """The iterate, cycle by cycle of its load; None where that has none.
+
+    Returns
+    -------
+    "columns" of the instants at which cycles begin, and the last one ends, (n_cycles + 1,);
+    "energy" that friction takes in each, (n_cycles,), J; "slip" to and fro, m, and friction "work",
+    J/m or J/m^2, of the last one at the points of the selected interface; "text", what becomes of
+    slip.
+    """
+    found = cycles_of(sampler.settings, iterate)
+    if not len(found):
+        return None
+    name = needs.interface if needs.interface in sampler.rows else next(iter(sampler.rows))
+    first = 0
+    for other, law in sampler.problem.rubbing.items():
+        if other == name:
+            break
+        first += len(law.positions)
+    points = first + sampler.rows[name]
+    slipped = bool(found.slip.any() or found.before.any())
+    return {
+        "columns": np.searchsorted(sampler.columns, found.ends),
+        "energy": floats(found.energy),
+        "slip": floats(found.slip[points, -1]),
+        "work": floats(found.work[points, -1] / sampler.lengths(name)),
+        "text": _fate_text(fate_of(found)) if slipped else "nothing slips",
+    }
+
+
+def _fate_text(fate: Fate | None) -> str:
+    if fate is None:
+        return "not settled yet"
+    energy = unit_for(abs(fate.energy), "J")(fate.energy)
+    match fate.word:
+        case "elastic shakedown":
+            return f"elastic shakedown: nothing slips from cycle {fate.since} on"
+        case "shakedown with slip that dies":
+            return f"slip dies: the last cycle slips {percent(fate.ratio)} of the one before"
+        case "steady slip":
+            return f"steady slip: every cycle takes {energy}"
+        case _:
+            net = unit_for(abs(fate.net), "m")(abs(fate.net))
+            return f"ratcheting: every cycle takes {energy} and leaves {net} of slip"
+
+
+def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """The largest modes of the selected substructure's separated basis; None without bases.
+
+    Returns
+    -------
+    "x", (n_places,), m; "space", (n_modes, n_places), over the largest entry of each; "time",
+    (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the basis.
+    """
+    bases = iterate.reduction
+    if bases is None:
+        return None
+    last = len(bases.modes) - 1
+    place = last if needs.substructure is None else min(max(needs.substructure, 0), last)
+    basis, record, problem = bases.modes[place], bases.records[place], sampler.problem
+    x, space = _along(basis, problem, place)
+    size = _signed_size(space)
+    time = basis.time_functions[:MOST_MODES, sampler.columns] * problem.scales.displacement
+    return {
+        "x": floats(x),
+        "space": floats(space / size[:, None]),
+        "time": floats(time * size[:, None]),
+        "substructure": place,
+        "text": f"substructure {place + 1}: {record.modes} modes, {record.added} added",
+    }
+
+
+def _along(basis: Modes, problem: Problem, substructure: int) -> tuple[Floats, Floats]:
+    """Places along the bodies in their order, and the displacement of each mode there."""
+    rows = problem.substructures[substructure].rows
+    # Rows of two interfaces that meet at a point move together.
+    dofs, first = np.unique(problem.row_dofs[rows], return_index=True)
+    positions = problem.positions[dofs]
+    x = positions if positions.ndim == 1 else positions[:, 0]
+    order = np.argsort(x, kind="stable")
+    order = order[thinned(len(order), MOST_PLACES)]
+    return x[order], basis.displacement_modes[first[order], :MOST_MODES].T
+
+
+def _signed_size(space: Floats) -> Floats:
+    """Largest entry of every mode, with the sign of its last large lobe.
+
+    The sign of the largest entry itself would flip whenever two lobes change places.
+    """
+    sizes = np.ones(len(space))
+    for number, mode in enumerate(space):
+        largest = float(np.abs(mode).max(initial=0.0))
+        if largest > 0.0:
+            lobe = np.flatnonzero(np.abs(mode) >= 0.5 * largest)[-1]
+            sizes[number] = np.copysign(largest, mode[lobe])
+    return sizes
+
+
+def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Numbers that the iterate's friction takes, kept as singular vectors, modes, and clips.
+
+    None where it cannot be kept as clips.
+
+    Returns
+    -------
+    "table", how many values it has; "branches", times that the load goes one way; and for each of
+    "SVD", "PGD" (None without substructures) and "clips" the numbers and errors, (2, n).
+    """
+    if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
+        return None
+    fitted, bases = clips_in(sampler.settings, iterate), iterate.reduction
+    pieces: Sizes | None = None
+    if bases is not None:
+        pieces = of_bases(iterate, bases)
+    elif len(sampler.problem.substructures) > 1:
+        pieces = in_pieces(iterate)
+    return {
+        "table": fitted.given.size,
+        "branches": len(fitted.branches),
+        "SVD": _pairs(products_in(fitted)),
+        "PGD": None if pieces is None else _pairs(pieces),
+        "clips": _pairs(of_clips(fitted)),
+    }
+
+
+def _pairs(sizes: Sizes) -> Floats:
+    return floats(np.stack([sizes.numbers, sizes.errors]))
 
 
 @lru_cache(maxsize=1)
@@ -36,23 +273,38 @@ def _laid_beside(brought: Brought, sampler: Sampler, interface: str) -> Beside:
     return Beside(brought, sampler.problem, interface)
 
 
-def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> BesideRun | None:
-    """Results of another program and their distance to the iterate, if they are of its scene."""
+def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Results of another program and their distance to the iterate, if they are of its scene.
+
+    Returns
+    -------
+    "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
+    displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
+    iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.
+    """
     brought = needs.brought
     if brought is None or brought.scene != sampler.settings.scene:
         return None
     laid = _laid_beside(brought, sampler, needs.interface)
-    return BesideRun(
-        source=brought.source,
-        quantity=brought.quantity,
-        interface=laid.interface,
-        x=floats(brought.positions),
-        t=floats(brought.times),
-        values=floats(brought.values),
-        distance=laid.of(iterate),
-    )
+    return {
+        "name": brought.source,
+        "quantity": brought.quantity,
+        "x": floats(brought.positions),
+        "t": floats(brought.times),
+        "values": floats(brought.values),
+        "distance": laid.of(iterate),
+        "interface": laid.interface,
+    }
 
 
 Extra = Callable[["Sampler", Iterate, Needs], Any]
-EXTRAS: dict[str, Extra] = {"spectra": spectra, "beside": beside}
+EXTRAS: dict[str, Extra] = {
+    "spectra": spectra,
+    "axial force": axial_force,
+    "slips": slips,
+    "cycles": cycles,
+    "modes": modes,
+    "clips": clips,
+    "beside": beside,
+}
 """By the name that a view needs them by."""

@@ -111,7 +111,7 @@ class Loop:
             case Compute(function, argument) if runner is not None:
                 try:
                     self._send(Computed(function(runner, argument)))
-                except Exception as problem:  # noqa: BLE001  # whoever asked is told
+                except Exception as problem:  # whoever asked is told
                     self._send(Computed(problem))
             case _:
                 pass
@@ -133,7 +133,7 @@ class Loop:
             self._fail(str(problem))
         except (OSError, EOFError):
             raise
-        except Exception as problem:  # noqa: BLE001  # a page outlives a fault of the engine
+        except Exception as problem:  # a page outlives a fault of the engine
             text = f"The run broke ({type(problem).__name__}: {problem})."
             self._fail(f"{text} Change a setting, or lower the numbers of elements and instants.")
 

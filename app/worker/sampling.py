@@ -20,6 +20,7 @@ from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate, Record, Solution, Status
 from solver.latin.criteria.status import CANCELLED
 from solver.reference.solution import Reference
+from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
@@ -28,8 +29,8 @@ MOST_INSTANTS, MOST_POINTS = 401, 401
 """Instants, and points of an interface, that a frame has at most."""
 MOST_VALUES = 100_000
 """Values of a field up to which a frame has the contact of all interfaces, and not of one."""
-MOST_ITERATIONS = 1000
-"""Entries of the history that a frame has at most."""
+MOST_ITERATIONS, MOST_SUBSTRUCTURES = 1000, 60
+"""Entries of the history that a frame has at most, and sizes of bases in each."""
 SCALARS = tuple(f.name for f in fields(Record) if f.name not in ("reduction", "is_answer"))
 
 
@@ -104,6 +105,8 @@ class Sampler:
             history=_columns(history),
             status=status,
             energy=float(run.dissipated.sum()),
+            residual=iterate.residual,
+            remarks=tuple(remarks_on(self.settings, iterate)) if status else (),
             extras={
                 name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
             },
@@ -149,7 +152,9 @@ class Sampler:
         )
 
     def _loop(self, shown: LoopFields) -> Floats:
-        force = self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        force = (
+            self.loop.force if isinstance(self.loop.force, np.ndarray) else self.loop.force(shown)
+        )
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
 
@@ -167,5 +172,8 @@ def drawn_of(problem: Problem, structure: object, columns: Array) -> Drawn:
 
 def _columns(history: Sequence[Record]) -> dict[str, Floats]:
     kept = [history[place] for place in thinned(len(history), MOST_ITERATIONS)]
-    columns = {name: np.array([getattr(entry, name) for entry in kept]) for name in SCALARS}
-    return {name: values.astype(np.float32) for name, values in columns.items()}
+    columns = {name: floats(np.array([getattr(entry, name) for entry in kept])) for name in SCALARS}
+    if kept and kept[0].reduction:
+        shown = thinned(len(kept[0].reduction), MOST_SUBSTRUCTURES)
+        columns["modes"] = floats(np.array([[e.reduction[n].modes for n in shown] for e in kept]))
+    return columns

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from solver.arrays import Array, Indices
+from solver.arrays import Array, Indices, without_residue
 from solver.discrete.inside import Inside
 from solver.discrete.problem import Problem
 
@@ -36,7 +36,9 @@ class Probe:
 
     def __call__(self, displacement: Array) -> Array:
         """Evaluate it, shape (n_instants,), for displacements (n_dofs, n_instants), m."""
-        return np.asarray(self.weights @ displacement[self.dofs] + self.constant)
+        moved = displacement[self.dofs]
+        terms = np.abs(self.weights) @ np.abs(moved) + np.abs(self.constant)
+        return without_residue(self.weights @ moved + self.constant, terms)
 
 
 def constant(values: Array) -> Probe:

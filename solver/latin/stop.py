@@ -32,8 +32,11 @@ USUAL_ACCURACY = 0.01
 
 _SEARCHED = " The iterates by themselves had come within {:g} % of its contact force."
 _CERTIFIED = "Certified: equilibrium and all contact laws hold up to rounding"
-_FOUND = " A status step found it from iterate {}, whose contact force was {:g} % wrong{}."
-_BY_INCREMENTS = ": the incremental solver's answer, from LATIN's statuses"
+_FOUND = " A status step found it from iterate {}, whose contact force was {} % away from it."
+_BY_INCREMENTS = (
+    " It is the incremental solver's answer: the status step began at the statuses of iterate {}, "
+    "whose own contact force was still {} % away from it."
+)
 _ON_BASES = " The modes are those of that iterate."
 FAR = 0.1
 """Error of the contact force from which on what a status step finds is not LATIN's own."""
@@ -87,11 +90,10 @@ def proven(
     residual = finish.residual or 0.0
     advice = f"{_CERTIFIED} (residual {residual:.0e})."
     if not math.isnan(found):
-        wrong, whose = float(f"{100.0 * found:.2g}"), _BY_INCREMENTS * (found > FAR)
-        is_beside = finish.is_answer and not whose
-        said = (
-            _SEARCHED.format(wrong) if is_beside else _FOUND.format(finish.number - 1, wrong, whose)
-        )
+        away, before = float(f"{100.0 * found:.2g}"), finish.number - 1
+        said = _SEARCHED.format(away) if finish.is_answer else _FOUND.format(before, f"{away:g}")
+        if found > FAR:
+            said = _BY_INCREMENTS.format(before, f"{away:g}" if found <= 1.0 else "more than 100")
         advice += said + _ON_BASES * (finish.reduction is not None) + f" {why}" * bool(why)
     status = Status(Ending.CONVERGED, advice)
     return Decision(seconds, math.nan, math.nan, residual, status, certificate)

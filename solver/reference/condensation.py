@@ -48,6 +48,10 @@ SOFTEST = 1e-8
 LEFT_INSIDE = 4.0 * ROUNDING
 """Share of the forces that displacements make inside elements that rounding leaves of them."""
 
+BLURRED = 1e-5
+"""Share of the forces up to which what is out of balance may be rounding: forces in elements of
+slender bodies are 1e7 times those of contact."""
+
 TIE = 1e3
 """Stiffness that ties jumps which depend on each other, in springs at a pair."""
 
@@ -103,7 +107,9 @@ class Condensation:
         self._whole = assembled_stiffness(problem)
         self._force = external_force(problem)
         self._jumps = jumps(problem)
-        self.compliance: Array = rules_of(problem).compliance
+        rules = rules_of(problem)
+        self.compliance: Array = rules.compliance
+        self._overlap = np.maximum(-rules.gap, 0.0)
         self._fixed, self._prescribed, self._free = fixed, prescribed, free
         self.given: Array = self._jumps[:, fixed] @ prescribed
         own = self._jumps[:, free]
@@ -213,21 +219,26 @@ class Condensation:
         outer = self._force + self._jumps.T @ force
         return np.asarray((self._whole @ deformation - outer)[self._free])
 
-    def rounding(self, deformation: Array, motion: Array) -> float:
-        """Give what rounding alone may leave out of balance at any instant, scaled.
+    def rounding(self, deformation: Array, motion: Array, size: float) -> float:
+        """Bound what rounding alone may leave out of balance at any instant, scaled.
 
         The forces inside a slender body are far larger than what acts on it; and what they were
         once stays in the places where its contacts stick. How far a body has moved says where a
-        spring ends, too.
+        spring ends, too, and what closes: but there rounding of the motion deforms the body, and
+        where that makes more than a small share of the forces, these are lost.
 
         Parameters
         ----------
         deformation, motion
             Displacement but for rigid motions, and these, shape (n_dofs, n_instants), scaled.
+        size
+            Largest force, scaled.
         """
         inside = abs(self._whole) @ np.abs(deformation)
-        opened = self.unit[:, None] * np.abs(self.jump(motion)) * (self.compliance > 0.0)[:, None]
-        return LEFT_INSIDE * float(max(inside.max(initial=0.0), opened.max(initial=0.0)))
+        moved = self.unit[:, None] * np.abs(self.jump(motion))
+        sprung = moved[self.compliance > 0.0]
+        left = LEFT_INSIDE * max(inside.max(initial=0.0), sprung.max(initial=0.0))
+        return float(max(left, min(LEFT_INSIDE * moved.max(initial=0.0), BLURRED * size)))
 
     @cached_property
     def unit(self) -> Array:
@@ -239,9 +250,13 @@ class Condensation:
 
     @cached_property
     def largest_force(self) -> float:
-        """Largest force on any degree of freedom, of loads and of prescribed displacements."""
+        """Largest force on any degree of freedom, of loads and of prescribed displacements.
+
+        Where there are none, the largest that closes bodies which overlap from the start.
+        """
         pushed = self._whole[:, self._fixed] @ self._prescribed
-        return float(max(np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0)))
+        largest = max(np.abs(self._force).max(initial=0.0), np.abs(pushed).max(initial=0.0))
+        return float(largest or (self.unit * self._overlap).max(initial=0.0))
 
 
 def _gauged(problem: Problem, base: sparse.csr_array) -> tuple[Array, Array]:

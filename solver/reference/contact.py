@@ -146,8 +146,8 @@ class IncrementalContact:
         opening = moved + condensed.jump(rigid) + rules.gap[:, None]
         unbalanced = unbalanced_of(condensed, rules, Shown(deformation, forces, opening, slip))
         slip[condensed.moving] = done.slip
-        blurred = condensed.rounding(deformation, rigid)
         size = max(condensed.largest_force, float(np.abs(forces).max(initial=0.0)))
+        blurred = condensed.rounding(deformation, rigid, size)
         residual = unbalanced / size if size > 0.0 else unbalanced
         scales = problem.scales
         return Reference(

@@ -125,7 +125,8 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
     """Prepare the distance to a reference of a problem.
 
     Where no forces are given, those that move what is prescribed are the load; and where these are
-    but rounding, because nothing resists, those that such displacements would cost elements.
+    but rounding, because nothing resists, those that such displacements, and closing bodies that
+    overlap, would cost elements.
     """
     forces = [given.values for given in problem.given_forces]
     forces += [part.body_force for part in problem.substructures if part.body_force is not None]
@@ -134,7 +135,9 @@ def distance_to(reference: Fields, problem: Problem) -> Distance:
         stiffness = assembled_stiffness(problem)
         moved = stiffness[dofs[prescribed.any(axis=1)]]
         forces = [moved @ reference.displacement / problem.scales.displacement]
+        overlaps = abs(jumps(problem)).T @ np.maximum(-rules_of(problem).gap, 0.0)
         elements = abs(stiffness[:, dofs]) @ np.abs(prescribed)
+        elements += (abs(stiffness) @ overlaps)[:, None]
         if np.abs(forces[0]).max(initial=0.0) <= VANISHING * elements.max(initial=0.0):
             forces = [elements]
     load = np.concatenate([*forces, np.zeros((1, problem.n_instants))])

@@ -20,6 +20,7 @@ import numpy as np
 
 from solver.discrete.problem import Problem
 from solver.reference.assembled_rods import AssembledRods
+from solver.reference.condensation import LEFT_INSIDE
 from solver.reference.search import Minimum
 from solver.reference.solution import Interrupted, Reference, States
 from solver.reference.starts import Starts
@@ -114,13 +115,16 @@ class IncrementalRod:
         increments, pulls = np.zeros((2, problem.n_instants, problem.n_dofs))
         for instant, one in enumerate(found):
             increments[instant], pulls[instant] = one.increment, one.pull
+        moved = np.cumsum(increments, axis=0).T
+        inside = self._structure.band.largest_row * float(np.abs(moved).max(initial=0.0))
         return Reference(
             problem=problem,
-            displacement=np.cumsum(increments, axis=0).T * problem.scales.displacement,
+            displacement=moved * problem.scales.displacement,
             contact_force=0.0 - pulls.T[dofs] * problem.scales.force,
             status=np.sign(increments.T[dofs]).astype(np.int8),
             residual=max([0.0, *(one.residual for one in found)]),
             unbalanced=max([0.0, *(one.violation for one in found)]) * problem.scales.force,
+            rounding=LEFT_INSIDE * inside * problem.scales.force,
             converged=np.arange(problem.n_instants) < len(found),
             ambiguous=np.zeros(problem.n_instants, dtype=bool),
             steps=steps,

@@ -143,7 +143,8 @@ class Newton:
             step = self.response(states, sides)
             corrected = self._corrected(states, step, sides)
             if np.array_equal(corrected, states):
-                balanced = self.response.unbalanced <= CONVERGED * self._largest
+                slack, _ = self._rounding(states, step)
+                balanced = self.response.unbalanced <= max(CONVERGED * self._largest, slack)
                 return (states, step) if balanced else None
             seen.add(states.tobytes())
             states = corrected
@@ -151,13 +152,23 @@ class Newton:
                 break
         return None
 
+    def _rounding(self, states: States, step: Increment) -> tuple[float, Array]:
+        """Force that rounding may make anywhere; and of a jump that is not held, (n,) or (1,).
+
+        Where a jump is held, the deformation is what it comes to less the rigid motion; and what
+        rounding leaves of that difference makes forces at all jumps.
+        """
+        inside = self.response.inside(self._strained + step.strained[:, 0])
+        slack = ROUNDING * (inside + self._largest)
+        blur = self.response.blur(step.motion)
+        is_stiff = (states == HELD) & (self._rules.compliance == 0.0)
+        return slack + float((blur * is_stiff).max(initial=0.0)), slack + blur
+
     def _corrected(self, states: States, step: Increment, sides: Sides) -> States:
         """Give the states that jump and force call for; what is up to rounding calls for none."""
         rules, response, force = self._rules, self.response, step.force[:, 0]
-        inside = response.inside(self._strained + step.strained[:, 0])
-        slack = ROUNDING * (inside + self._largest)
         moved = (response.unit * (step.jump - sides.held))[:, 0]
-        blur = slack + response.blur(step.motion)
+        slack, blur = self._rounding(states, step)
         held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
         carries = np.where(held, force[rules.partner], -moved[rules.partner])

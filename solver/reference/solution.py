@@ -50,7 +50,7 @@ class Reference:
     seconds
         Time taken.
     rounding
-        What rounding alone may leave of `unbalanced`, N; 0 of rods on a rigid support.
+        What rounding alone may leave of `unbalanced`, N.
     deformation
         Displacement but for rigid motions of bodies that contact alone holds, which would hide it;
         shape (n_dofs, n_instants), m. None where nothing moves so.

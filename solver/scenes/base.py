@@ -39,7 +39,8 @@ class SceneSettings(Settings):
         (1e-3, 1e9),
         (1.0, 1e4),
         "Stiffness of that spring, as a multiple of E S / L² along a rod, with the harmonic "
-        "mean S of its elements, or of E / L in the plane.",
+        "mean S of its elements, or of E / L in the plane; of all wires of a rope alike, as a "
+        "multiple of the stiffest E S over the square of the longest L.",
         group="Contact",
         title="Contact stiffness",
         applies=lambda settings: settings.friction_law == "compliant",

@@ -146,9 +146,10 @@ class BlockSettings(SideSettings):
                 "sides and loads that leave the body in equilibrium",
                 Phrase(
                     "nothing but contact holds it, and from {} s on {}: "
-                    "lower that load, press more, raise friction, or hold a side",
+                    "lower that load, press more, {}, or hold a side",
                     plain(loss.instant),
                     loss.reason,
+                    loss.remedy,
                 ),
             )
 

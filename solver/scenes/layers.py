@@ -149,6 +149,12 @@ class LayersSettings(PlaneSettings):
         own = {"right x": end, "right y": "deflection"}
         return {"top y": "pressure", "bottom y": "pressure", **own}
 
+    def curve_units(self, name: str) -> tuple[str, str]:
+        """Units of a curve under the present values."""
+        if name != "bend_load":
+            return super().curve_units(name)
+        return "s", "m" if self.bending == "deflection" else "N·m/m"
+
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
         sizes = {"pressure_load": "pressure", "pull_load": "pull", "bend_load": self.bending}

@@ -132,6 +132,13 @@ class SideSettings(PlaneSettings):
         mean = sign * self.path(f"{side}_{component}_load")
         return Given(prescribed, mean, mean * getattr(self, f"{side}_{component}_slope"))
 
+    def curve_units(self, name: str) -> tuple[str, str]:
+        """Units of a curve under the present values: those of a side are as it is given."""
+        side, _, component = name.removesuffix("_load").partition("_")
+        if side not in LOADED_SIDES:
+            return super().curve_units(name)
+        return "s", "m" if self._prescribes(side, component) else "Pa"
+
     def size_of(self, path: str) -> float:
         """Give the largest value that a preset of a path over time reaches."""
         side, component, _ = path.split("_")

@@ -1,12 +1,14 @@
-"""Whether a mesh is fine enough: a quantity on three meshes, its order, and what it tends to.
+"""Whether elements and instants are enough: a quantity on three of each, and what it tends to.
 
 Richardson's extrapolation, with the margin that Roache gives it (J. Fluids Eng. 116, 405, 1994).
-Runs end with the exact solution on their mesh, so what differs between them is the mesh alone.
+Runs end with the exact solution on their mesh, so what differs between them is the mesh alone, or
+the time step alone.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from solver.definitions import SettingError
@@ -23,13 +25,15 @@ luck, as no quantity of ours has one from linear elements."""
 UNSURE = 3.0
 """Times the largest difference, where there is no limit to believe. Where the order is luck it is
 `SAFETY` times (both: Eca and Hoekstra, J. Comput. Phys. 262, 104, 2014)."""
+AN_ELEMENT, TIME_STEP = "an element's size", "a time step"
+"""What is halved, in words."""
 EQUAL = 1e-6
 """Relative difference up to which two values are one."""
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """A quantity on three meshes, each with elements of half the size of the one before.
+    """A quantity on three meshes, each with elements or steps of half the size of the one before.
 
     Attributes
     ----------
@@ -49,7 +53,7 @@ class Refinement:
 
     @property
     def order(self) -> float | None:
-        """Power of the elements' size with which the rest goes; None where there is no such."""
+        """Power of that size with which the rest goes; None where there is no such."""
         coarse, middle, fine = self.values
         first, second = middle - coarse, fine - middle
         if self._is_settled or first * second <= 0.0:
@@ -79,6 +83,8 @@ class Refinement:
     @property
     def deviation(self) -> float:
         """How far the value that is asked about may be from the limit, as a share of that."""
+        if self._is_settled:
+            return 0.0
         most = abs(self.values[self.own] - self.limit) + self.margin
         return most / abs(self.limit) if self.limit else math.inf if most else 0.0
 
@@ -89,7 +95,7 @@ class Refinement:
 
 
 def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
-    """Give three meshes, each twice as fine as the one before, and the place of a run's own.
+    """Three meshes, each twice as fine as the one before, and the place of a run's own.
 
     That is the middle one, or the first where its numbers of elements cannot be halved.
 
@@ -98,17 +104,27 @@ def meshes_around(settings: Settings) -> tuple[list[Settings], int]:
     SettingError
         Where the finest has more elements than a scene takes.
     """
+    return _three(settings, {name: getattr(settings, name) for name in mesh_of(settings)}, 0)
+
+
+def instants_around(settings: Settings) -> tuple[list[Settings], int]:
+    """Three numbers of instants on a run's own mesh, as `meshes_around` has three of elements."""
+    return _three(settings, {"instants": settings.values()["instants"] - 1}, 1)
+
+
+def _three(settings: Settings, counts: Mapping[str, int], more: int) -> tuple[list[Settings], int]:
+    """Multiply counts and add to them; give settings, and the place of those as they are."""
+
+    def refined(factor: float) -> Settings:
+        sizes = {name: factor * count + more for name, count in counts.items()}
+        return settings.replace(
+            **{name: int(size) if size == int(size) else size for name, size in sizes.items()}
+        )
+
     try:
-        return [_refined(settings, factor) for factor in (0.5, 1, 2)], 1
+        return [refined(factor) for factor in (0.5, 1, 2)], 1
     except SettingError:
-        return [_refined(settings, factor) for factor in (1, 2, 4)], 0
-
-
-def _refined(settings: Settings, factor: float) -> Settings:
-    counts = ((name, factor * getattr(settings, name)) for name in mesh_of(settings))
-    return settings.replace(
-        **{name: int(count) if count == int(count) else count for name, count in counts}
-    )
+        return [refined(factor) for factor in (1, 2, 4)], 0
 
 
 def decides(settings: Settings, asked: Reading) -> bool:
@@ -123,12 +139,13 @@ def value_on(settings: Settings, asked: Reading) -> float:
 
 
 def size_of(settings: Settings) -> str:
-    """Say how fine a mesh is."""
-    return " x ".join(str(getattr(settings, name)) for name in mesh_of(settings))
+    """Numbers of elements and instants, in words."""
+    elements = " x ".join(str(getattr(settings, name)) for name in mesh_of(settings))
+    return f"{elements} elements, {settings.values()['instants']} instants"
 
 
-def answer(found: Refinement, unit: str) -> str:
-    """Say in two sentences what three meshes tell.
+def answer(found: Refinement, unit: str, size: str = AN_ELEMENT) -> str:
+    """Two sentences on what three meshes, or numbers of instants, tell.
 
     Parameters
     ----------
@@ -136,22 +153,39 @@ def answer(found: Refinement, unit: str) -> str:
         What they came to.
     unit
         Of the values; empty for a pure number.
+    size
+        What is halved.
     """
     if not found.is_told:
         return "One of the runs came to no certified solution, or has no such value: no answer."
     if found.margin == 0.0:
-        return "All three are equal: no mesh of ours changes it."
+        return f"All three are equal: {size} does not change it."
     limit = f"{found.limit:.4g} ± {found.margin:.2g} {unit}".rstrip()
-    own = f"This mesh is within {100.0 * found.deviation:.2g} % of that."
+    own = f"This run is within {_share(found)} of that." if found.limit else "That is nothing."
     order = found.order
     if order is None:
-        return f"It follows no power of an element's size: {limit} is all that is known. {own}"
+        return f"It follows no power of {size}: {limit} is all that is known. {own}"
     if order < LEAST_ORDER:
         return (
-            f"It changes with the power {order:.2f} of an element's size, which shows no limit: "
+            f"It changes with the power {order:.2f} of {size}, which shows no limit: "
             f"{limit}, if there is one. {own}"
         )
     if order > LARGEST_ORDER:
-        return f"It hardly changes any more: {limit}. {own}"
-    goes = f"Its error goes with the power {order:.2f} of an element's size"
+        return f"It hardly changes any more with {size}: {limit}. {own}"
+    goes = f"Its error goes with the power {order:.2f} of {size}"
     return f"{goes}, and with ever smaller ones it becomes {limit}. {own}"
+
+
+def which_to_refine(elements: Refinement, instants: Refinement) -> str:
+    """Compare what both leave of the error, in a sentence; empty where one tells nothing."""
+    if not (elements.is_told and instants.is_told):
+        return ""
+    if elements.deviation == instants.deviation == 0.0:
+        return "Neither more elements nor more instants change it."
+    left = f"elements leave up to {_share(elements)}, instants up to {_share(instants)}"
+    more = "elements" if elements.deviation >= instants.deviation else "instants"
+    return f"Refine {more} first: {left}."
+
+
+def _share(found: Refinement) -> str:
+    return f"{100.0 * found.deviation:.2g} %" if found.deviation < 1.0 else "all of it"

@@ -11,6 +11,7 @@ import argparse
 import sys
 
 from solver.files import settings_from_command
+from solver.prepared import print_tables
 from solver.reference.supports import rubs_on_supports
 from solver.scenes import discretise
 from solver.study.other_programs.public_solvers import PUBLIC, peers
@@ -25,7 +26,8 @@ def main() -> int:
     asked.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", dest="changes")
     asked.add_argument("--repeats", type=int, default=5, help="passes whose median is taken")
     chosen = asked.parse_args()
-    settings = settings_from_command(chosen.scene, chosen.changes)
+    settings, tables = settings_from_command(chosen.scene, chosen.changes)
+    print_tables(tables)
     if not rubs_on_supports(discretise(settings)):
         print("Unilateral contact with friction is no quadratic programme.", file=sys.stderr)
         return 2

@@ -13,12 +13,20 @@ SLACK = 1e-9
 """Share of the loads that rounding may add to them."""
 
 
+TIPS = "it tips over an end of its base"
+
+
 @dataclass(frozen=True)
 class Loss:
     """Why no equilibrium exists, and from which instant on, s."""
 
     reason: str
     instant: float
+
+    @property
+    def remedy(self) -> str:
+        """What helps beside less load and more pressure."""
+        return "take a longer or lower body" if self.reason == TIPS else "raise friction"
 
 
 def wrench(scene: StackData) -> tuple[Array, Array, Array]:
@@ -73,6 +81,7 @@ def loss_of_equilibrium(scene: StackData) -> Loss | None:
     Nothing but the support can hold what no side holds: it presses and does not pull, friction
     carries at most mu times the pressing force, and the pressure's resultant acts on the base. A
     spring holds against all that pushes to the left; at the foot, it does not keep from tipping.
+    What is lost first counts; of two at once, what friction does not mend.
     """
     assert scene.support is not None
     x, y, moment = wrench(scene)
@@ -85,18 +94,20 @@ def loss_of_equilibrium(scene: StackData) -> Loss | None:
     checks = []
     if not held_y:
         checks.append((y > slack, "the loads lift it off its support"))
-    if not held_x and not held_y:
-        checks.append((pushed > mu * np.maximum(-y, 0.0) + slack, "friction cannot hold it"))
-    if not held_x and held_y and mu == 0.0:
-        checks.append((np.abs(x) > slack, "there is no friction, and no side holds it"))
     if not upright and not held_y:
         beyond = np.maximum(moment, scene.length * y - moment)
         if sides["top"].x.prescribed:
             # The top is dragged with any force that friction can answer, which may hold it upright.
             middle, reach = moment + scene.height * x, mu * scene.height * np.maximum(-y, 0.0)
             beyond = np.maximum(middle - reach, scene.length * y - middle - reach)
-        checks.append((beyond > slack * scene.length, "it tips over an end of its base"))
-    for lost, reason in checks:
-        if lost.any():
-            return Loss(reason, float(scene.instants[np.argmax(lost)]))
-    return None
+        checks.append((beyond > slack * scene.length, TIPS))
+    if not held_x and not held_y:
+        checks.append((pushed > mu * np.maximum(-y, 0.0) + slack, "friction cannot hold it"))
+    if not held_x and held_y and mu == 0.0:
+        checks.append((np.abs(x) > slack, "there is no friction, and no side holds it"))
+    losses = [
+        Loss(reason, float(scene.instants[np.argmax(lost)]))
+        for lost, reason in checks
+        if lost.any()
+    ]
+    return min(losses, key=lambda loss: loss.instant, default=None)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.arrays import Array
-from solver.discrete.loops import Loop
+from solver.arrays import Array, without_residue
+from solver.discrete.loops import Loop, LoopFields
 from solver.discrete.probes import constant, end_rotation, reaction, side_mean
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Side, StackData
@@ -44,8 +44,13 @@ def _shear(scene: StackData, problem: Problem) -> Loop:
         (f"Displacement of the {side}", "m"),
         ("Shear force", "N"),
         side_mean(problem, side, 0),
-        lambda fields: -fields.contact("support").tangential_force.sum(axis=0),
+        _shear_force,
     )
+
+
+def _shear_force(fields: LoopFields) -> Array:
+    force = -fields.contact("support").tangential_force
+    return without_residue(force.sum(axis=0), np.abs(force).sum(axis=0))
 
 
 def _drives(side: Side) -> bool:

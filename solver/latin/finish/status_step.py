@@ -20,6 +20,7 @@ from solver.discrete.problem import Problem
 from solver.latin.iterate import Iterate
 from solver.laws import OPEN
 from solver.reference.choice import Incremental, incremental_solver
+from solver.reference.condensation import BLURRED
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import States
 
@@ -33,9 +34,6 @@ this, and 190 with 1e-9 (measured)."""
 CERTIFIED = 1e-7
 """KKT residual of a certified solution at most, relative to the contact force. Its statuses agree
 with it exactly; on four wires of 320 elements the linear systems leave 1e-8 (measured)."""
-BLURRED = 1e-5
-"""The same where it is all rounding: the forces in elements of slender bodies are 1e7 times those
-of contact."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,6 @@ from solver.study.audit.audit import SOUND, Audited, Trial, Verdict
 from solver.study.audit.draws import draw, is_foolish
 from solver.study.audit.report import AuditReport
 
-ALLOWED = 2.0
-"""Times the accuracy that the contact force of a run that is called converged may be wrong by."""
 COLUMNS = (
     "scene",
     "seed",
@@ -37,7 +35,7 @@ COLUMNS = (
     "settings",
 )
 TITLE = "Random runs of all scenes"
-NOTES = ("Right are errors of the contact force of at most twice the accuracy.",)
+NOTES = ("Right are errors of the contact force of at most the accuracy.",)
 MISSED = "Not converged, of runs that have one solution and a k that is not foolish"
 
 
@@ -65,7 +63,7 @@ def drawn(settings: Settings, seed: int, number: int) -> Trial:
         method_name(settings),
         f"row {number} of the seed {seed}",
         changed,
-        ALLOWED * settings.accuracy,
+        settings.accuracy,
         math.inf,
         SOUND,
         conditions=False,

@@ -7,27 +7,20 @@ How far they are from a run is told by `solver.study.other_programs.beside`.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.columns import Refuse, TableColumn
 from solver.definitions import SettingError
 from solver.scenes import kind_of
 from solver.settings import Settings
-from solver.tables import Refuse, Row, factors, name_of, split_table
+from solver.tables import Table, read_table
+from solver.units import size_in
 
 FRICTION, DISPLACEMENT = "friction force", "displacement"
-COLUMNS: Mapping[str, frozenset[str]] = {
-    "x": frozenset({"x", "position"}),
-    "t": frozenset({"t", "time"}),
-    FRICTION: frozenset({"friction force", "friction"}),
-    DISPLACEMENT: frozenset({"displacement", "u"}),
-}
-"""Columns, and what heads may call them."""
 FEWEST = 4
 """Rows from which on a distance says anything."""
 MOST = 20_000
@@ -52,6 +45,8 @@ class Brought:
         Of every row, shape (n_rows,); m, s.
     source, scene
         Name of the file, and of the scene that it is brought to.
+    message
+        What was understood of the file.
     """
 
     quantity: str
@@ -60,6 +55,7 @@ class Brought:
     values: Array
     source: str
     scene: str
+    message: str
 
     @cached_property
     def instants(self) -> Array:
@@ -80,15 +76,15 @@ class Brought:
         return self.times[rows], self.values[rows]
 
 
-def read_brought(text: str, source: str, settings: Settings) -> Brought:
+def read_brought(data: bytes | str, source: str, settings: Settings) -> Brought:
     """Read results of another program for a scene.
 
     Parameters
     ----------
-    text
-        CSV as `solver.tables.split_table` takes it. Its head names the columns x (m), t (s), and
-        friction force or displacement, in any order and with units if they are others; further
-        columns are passed over, and rows may have any order.
+    data
+        A table as `solver.tables` takes it, a file's bytes or its text. Its head names the columns
+        x (m), t (s), and friction force or displacement, in any order and with units if they are
+        others; further columns are passed over, and rows may have any order.
     source
         Name of the file.
     settings
@@ -105,78 +101,45 @@ def read_brought(text: str, source: str, settings: Settings) -> Brought:
     def refuse(remedy: str) -> SettingError:
         return SettingError("the results", source, CAN, remedy)
 
-    heads, rows = split_table(text, refuse)
-    columns = _columns(heads, refuse)
-    quantity = list(columns)[-1]
+    table = read_table(data, refuse)
     kind = kind_of(settings)
+    quantity, columns = _columns(table)
     if quantity == DISPLACEMENT and kind != "rod":
         raise refuse("displacements are compared along a single rod: give the friction force here")
-    unit = PER[kind] if quantity == FRICTION else "m"
-    places = list(columns.values())
-    try:
-        sizes = factors([_picked(row, places) for row in heads], ("m", "s", unit), refuse)
-    except SettingError as refusal:
-        if quantity == FRICTION and refusal.remedy.endswith(unit):
-            raise refuse(
-                f"{refusal.remedy}; divide nodal forces by what a node stands for"
-            ) from None
-        raise
-    if len(rows) > MOST:
-        raise refuse(f"it has {len(rows)} rows, and may have {MOST}: leave some out")
-    table = _numbers([_picked(row, places) for row in rows], list(columns), refuse)
-    x, t, values = table * np.array(sizes)[:, None]
-    _check_places(x, t, [line for line, _ in rows], settings, refuse)
-    x = np.clip(x, 0.0, settings.length)
-    return Brought(quantity, x, t, values, source, settings.scene)
+    if len(table.rows) > MOST:
+        raise refuse(f"it has {len(table.rows)} rows, and may have {MOST}: leave some out")
+    units = "m", "s", PER[kind] if quantity == FRICTION else "m"
 
-
-def _columns(heads: list[Row], refuse: Refuse) -> dict[str, int]:
-    """Give where x, t and the quantity stand, by the lowest row of words that names any."""
-    for _, cells in reversed(heads):
-        names = [name_of(cell).replace("_", " ") for cell in cells]
-        found = {
-            name: next(place for place, one in enumerate(names) if one in called)
-            for name, called in COLUMNS.items()
-            if called.intersection(names)
-        }
-        if found:
-            break
-    else:
-        raise refuse("name its columns in the first line, as in x,t,friction force")
-    missing = [name for name in ("x", "t") if name not in found]
-    if missing:
-        raise refuse(f"its head names no column {missing[0]}: add it")
-    if len(found) != 3:
-        both = len(found) > 3
-        raise refuse(
-            f"its head names {'both' if both else 'neither'} friction force "
-            f"{'and' if both else 'nor'} displacement: give one of them"
+    def refuse_unit(remedy: str) -> SettingError:
+        is_nodal = quantity == FRICTION and size_in(columns[2].unit, "N") is not None
+        return refuse(
+            f"{remedy}; divide nodal forces by what a node stands for" if is_nodal else remedy
         )
-    return found
+
+    sizes = [column.size(unit, refuse_unit) for column, unit in zip(columns, units, strict=True)]
+    numbers = table.numbers(columns)
+    message = table.message(columns, ("x", "t", quantity), units, numbers)
+    x, t, values = numbers * np.array(sizes)[:, None]
+    _check_places(x, t, [line for line, _ in table.rows], settings, refuse)
+    x = np.clip(x, 0.0, settings.length)
+    return Brought(quantity, x, t, values, source, settings.scene, message)
 
 
-def _picked(row: Row, places: list[int]) -> Row:
-    line, cells = row
-    return line, [cells[place] if place < len(cells) else "" for place in places]
-
-
-def _numbers(rows: list[Row], names: list[str], refuse: Refuse) -> Array:
-    """Give all numbers, shape (3, n_rows)."""
-    try:
-        found = np.array([cells for _, cells in rows], dtype=float).reshape(-1, 3).T
-    except ValueError:
-        found = np.full((3, len(rows)), np.nan)
-    if np.isfinite(found).all():
-        return found
-    for line, cells in rows:
-        for name, cell in zip(names, cells, strict=True):
-            try:
-                is_finite = math.isfinite(float(cell))
-            except ValueError:
-                raise refuse(f"line {line} has {cell!r} as {name}: give a number") from None
-            if not is_finite:
-                raise refuse(f"line {line} has {cell!r} as {name}: leave such rows out")
-    return found
+def _columns(table: Table) -> tuple[str, list[TableColumn]]:
+    """Choose the columns of x, t, and the quantity that is named."""
+    if not any(column.quantities[0] for column in table.columns):
+        raise table.refuse("name its columns in the first line, as in x,t,friction force")
+    kinds = "position", "time", FRICTION, DISPLACEMENT
+    x, t, friction, displacement = (table.find(table.columns, {kind}) for kind in kinds)
+    if x is None or t is None:
+        raise table.refuse(f"its head names no column {'t' if x else 'x'}: add it")
+    if friction and displacement:
+        raise table.refuse("its head names both friction force and displacement: give one of them")
+    if friction:
+        return FRICTION, [x, t, friction]
+    if displacement:
+        return DISPLACEMENT, [x, t, displacement]
+    raise table.refuse("its head names neither friction force nor displacement: give one of them")
 
 
 def _check_places(x: Array, t: Array, lines: list[int], settings: Settings, refuse: Refuse) -> None:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from solver.arrays import RESIDUE
 from solver.laws import OPEN
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.melan import shakedown_limit
@@ -56,8 +57,11 @@ def energy_ratio(run: FinishedRun, at: float | None) -> float:
 
 def ratchet(run: FinishedRun, at: float | None) -> float:
     """Give the slip that the last cycle leaves, at the point where it leaves most, m."""
-    net = cycles_of(run.settings, run.iterate).net
-    return float(np.abs(net[:, -1]).max()) if net.size else math.nan
+    cycles = cycles_of(run.settings, run.iterate)
+    if not cycles.net.size:
+        return math.nan
+    left = np.abs(cycles.net[:, -1]).max()
+    return float(left) if left > RESIDUE * cycles.slip.max() else 0.0
 
 
 def sliding_share(run: FinishedRun, at: float | None) -> float:

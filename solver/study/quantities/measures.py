@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.arrays import Array
+from solver.arrays import RESIDUE, Array
 from solver.discrete.probes import AxialForce
 from solver.latin import Record
 from solver.laws import OPEN
@@ -139,7 +139,7 @@ def holding_friction(run: FinishedRun, at: float | None) -> float:
             pressing = contact.normal_force.sum(axis=0)
         held = np.abs(contact.tangential_force.sum(axis=0))[pressing > 0.0]
         needed = max(needed, float((held / pressing[pressing > 0.0]).max(initial=0.0)))
-    return needed
+    return needed if needed > RESIDUE else 0.0
 
 
 def end_displacement(run: FinishedRun, at: float | None) -> float:

@@ -21,7 +21,9 @@ from solver.study.speed.study_report import (
     growth_table,
     table,
     winners,
-    write_tables,
+    write_curves,
+    write_growth,
+    write_map,
 )
 
 TITLE = "Error against run time"
@@ -70,4 +72,5 @@ def write_study(
     """
     file = folder / "study.html"
     note = write_page(file, TITLE, study_sections(study, found, sizes))
-    return [*write_tables(study, found, sizes, folder), file], note
+    tables = [*write_curves(study, folder), *write_growth(found, folder), write_map(sizes, folder)]
+    return [*tables, file], note

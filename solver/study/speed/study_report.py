@@ -118,17 +118,15 @@ def aligned(rows: Sequence[Row]) -> str:
     )
 
 
-def write_tables(
-    study: Study, found: Sequence[Growth], sizes: Crossover, folder: Path
-) -> list[Path]:
-    """Write `curves.csv`, `levels.csv`, `map.csv` and, with growth, that (s; errors as fractions).
+def write_curves(study: Study, folder: Path) -> list[Path]:
+    """Write `curves.csv` and `levels.csv` (s; errors as fractions).
 
     Raises
     ------
     OSError
         When a file cannot be written.
     """
-    files = [
+    return [
         _write(
             folder / "curves.csv",
             ["method", "kind", "step", "seconds", "error_displacement", "error_force"],
@@ -159,13 +157,19 @@ def write_tables(
                 for level in LEVELS.values()
             ),
         ),
-        _write(folder / "map.csv", HEAD, crossover_rows(sizes)),
     ]
-    if found:
-        head = ["setting", "exponent", "margin", "method", "size", "seconds"]
-        head += ["iterations_to_1_percent", "seconds_to_1_percent"]
-        files.append(_write(folder / "growth.csv", head, _growth_rows(found)))
-    return files
+
+
+def write_growth(found: Sequence[Growth], folder: Path) -> list[Path]:
+    """Write `growth.csv`, if there is any; raises as `write_curves`."""
+    head = ["setting", "exponent", "margin", "method", "size", "seconds"]
+    head += ["iterations_to_1_percent", "seconds_to_1_percent"]
+    return [_write(folder / "growth.csv", head, _growth_rows(found))] if found else []
+
+
+def write_map(sizes: Crossover, folder: Path) -> Path:
+    """Write `map.csv`; raises as `write_curves`."""
+    return _write(folder / "map.csv", HEAD, crossover_rows(sizes))
 
 
 def _growth_rows(found: Sequence[Growth]) -> Iterator[Sequence[object]]:

@@ -1,0 +1,100 @@
+"""What the page says of a run: the line of the status, and the key figures at an instant."""
+
+from __future__ import annotations
+
+from html import escape
+
+import numpy as np
+
+from app.frame import OPEN, Frame, Selection
+from app.state import PageState
+from app.units import number, percent, unit_for
+from solver.latin import Ending
+
+ENDINGS = {
+    Ending.CONVERGED: "✓ solved",
+    Ending.EXHAUSTED: "■ not converged",
+    Ending.STALLED: "■ stalled",
+    Ending.CANCELLED: "■ stopped",
+    Ending.DIVERGED: "✗ diverged",
+}
+ZERO = 1e-9
+"""Share of the largest value in the run below which one is zero."""
+
+
+def status_line(state: PageState) -> str:
+    """How far the run is, or how it ended, with the method's own words behind *details* (HTML)."""
+    frame, newest = state.frame, state.newest
+    if frame is None or newest is None:
+        return "<b>starting</b>" + _more(state)
+    return _progress(state, frame, newest) + _details(frame) + _more(state)
+
+
+def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
+    wrong = percent(frame.error)
+    if frame is not newest:
+        return f"<b>iteration {frame.iteration}</b> of {newest.iteration} · {wrong} wrong"
+    if newest.status is None:
+        verb = "" if state.running else " · paused"
+        return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{verb}"
+    counted = f"{newest.iteration} iteration{'s' * (newest.iteration != 1)}"
+    if frame.run.is_idle:
+        return f"<b>at rest</b> · {counted}: nothing acts here; give a load, or move a side"
+    ending = ENDINGS[newest.status.ending]
+    if newest.residual is not None:
+        what = "answer" if not newest.is_answer else "search"
+        return f"<b>{ending}</b> · {what}: {counted} · certified"
+    return f"<b>{ending}</b> · search: {counted} · {wrong} wrong"
+
+
+def _details(frame: Frame) -> str:
+    """What the method says of itself."""
+    settings = frame.run.settings
+    parts = settings.n_substructures
+    kind = "multiscale" if settings.multiscale else "monoscale"
+    words = [
+        f"{parts} substructures, {kind}" if parts > 1 else "one substructure",
+        f"indicator η {number(frame.last('indicator'))}",
+        f"k-free indicator {number(frame.last('behaviour'))}",
+        f"force error {percent(frame.last('error_force'))}",
+        f"displacement error {percent(frame.last('error_displacement'))}",
+        f"estimated force error {percent(frame.last('estimated_error'))}",
+        f"{number(frame.last('seconds'))} s; incremental solver "
+        f"{number(frame.run.reference_seconds)} s",
+    ]
+    if frame.status is not None:
+        words.append(escape(frame.status.advice))
+    lines = "".join(f"<div>{word}</div>" for word in words)
+    return f" <details><summary>details</summary><div>{lines}</div></details>"
+
+
+def _more(state: PageState) -> str:
+    words = [escape(text) for text in (state.message, state.refusal) if text]
+    frame = state.frame
+    if frame is not None and frame.status is not None:
+        if frame.status.ending is not Ending.CONVERGED:
+            words.append(escape(frame.status.advice))
+        words.extend(map(escape, frame.remarks))
+    return "".join(f'<div class="said">{word}</div>' for word in words)
+
+
+def key_figures(frame: Frame, selection: Selection) -> dict[str, str]:
+    """What became of the thing at the selected instant, by name."""
+    run, column = frame.run, frame.run.column(selection.phase)
+    along, force = frame.loop
+    figures = {}
+    for (title, unit), values in zip((run.across, run.up), (along, force), strict=True):
+        largest = float(np.abs(values).max())
+        value = float(values[column])
+        value = 0.0 if abs(value) <= ZERO * largest else value
+        figures[title] = unit_for(largest, unit)(value)
+    status = frame.deformed.status[:, column] if frame.deformed.status.size else np.zeros(1)
+    figures["Slips"] = percent(float(np.mean((status != 0) & (status != OPEN))))
+    figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
+    return figures
+
+
+def figures_line(frame: Frame, selection: Selection) -> str:
+    """The key figures in a line (HTML)."""
+    words = (f"<span>{n} <b>{v}</b></span>" for n, v in key_figures(frame, selection).items())
+    return "".join(words)

@@ -1,0 +1,99 @@
+"""Keeps a worker at the page's side: started when needed, anew when it ends, hangs or is stuck."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from app.messages import Alive, Order, Report, Start
+from app.state import PageState
+from app.worker.process import Worker
+
+LOOK = 1000
+"""Milliseconds between two looks at the worker."""
+STUCK = 3.0
+"""Seconds that a worker may take to begin another run."""
+ENDED = "The solver's process ended; the run was started anew."
+HANGS = "The solver gave no sign of life for some seconds; the run was started anew."
+GIVEN_UP = (
+    "The solver's process ended twice in this run: change a setting, or choose fewer elements "
+    "and instants."
+)
+
+
+class Supervisor:
+    """Passes orders to the worker of a page and its reports to the state.
+
+    Parameters
+    ----------
+    state, document
+        Of the page.
+    """
+
+    def __init__(self, state: PageState, document: Any) -> None:
+        self._state, self._document = state, document
+        self._worker: Worker | None = None
+        self._asked = time.monotonic()
+        self._failed = 0
+        self._callback: Any = None
+
+    def begin(self) -> None:
+        """Start the worker."""
+        self._callback = self._document.add_periodic_callback(self._look, LOOK)
+        self._state.send = self.send
+        self._start()
+
+    def end(self) -> None:
+        """End the worker."""
+        if self._worker is not None:
+            self._worker.end()
+            self._worker = None
+
+    def send(self, order: Order) -> None:
+        """Give the worker an order."""
+        if isinstance(order, Start):
+            self._asked = time.monotonic()
+        if self._worker is not None:
+            self._worker.send(order)
+
+    def _start(self) -> None:
+        worker = Worker(lambda report: self._hear(worker, report))
+        self._worker = worker
+        self._state.send_needs()
+
+    def _hear(self, worker: Worker, report: Report | None) -> None:
+        """Bring a report to the document's own thread."""
+        if not isinstance(report, Alive):
+            self._document.add_next_tick_callback(lambda: self._take(worker, report))
+
+    def _take(self, worker: Worker, report: Report | None) -> None:
+        if worker is not self._worker:
+            return
+        if report is None:
+            self._restart(ENDED)
+        else:
+            self._state.take(report)
+
+    def _look(self) -> None:
+        """Start a worker anew that hangs, or that is too busy with a run to begin the next one."""
+        if self._worker is None:
+            return
+        is_stuck = self._state.began != self._state.number
+        if self._worker.hangs:
+            self._restart(HANGS)
+        elif is_stuck and time.monotonic() - self._asked > STUCK:
+            self._restart("")
+
+    def _restart(self, message: str) -> None:
+        """Run the settings in a new process, unless that has failed before."""
+        self.end()
+        self._failed = (
+            self._failed + 1 if message and self._state.number == self._state.failed_in else 1
+        )
+        self._start()
+        if self._failed > 2:
+            self._state.message = GIVEN_UP
+            return
+        self._state.run()
+        self._state.failed_in = self._state.number if message else 0
+        self._state.message = message

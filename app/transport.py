@@ -1,0 +1,165 @@
+"""Run, step, reset; pace; going back to an iterate; playing through time."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+from app.state import ANSWER, PACES, SEARCH, PageState
+
+PLAYED_IN = 6.0
+"""Seconds in which one plays through the interval."""
+TICK = 50
+"""Milliseconds between two instants that are shown, at least."""
+WATCH = {"Watch": "accuracy", "Answer": "at-once"}
+
+
+class Transport:
+    """The buttons and sliders that move through a run.
+
+    Parameters
+    ----------
+    state, document
+        Of the page.
+
+    Attributes
+    ----------
+    view, play_button
+        What stands in the row above the scene, and beside the time line.
+    """
+
+    def __init__(self, state: PageState, document: Any) -> None:
+        self._state, self._document = state, document
+        self._playing: tuple[Any, float, float] | None = None
+        self._is_updating = False
+        small: dict[str, Any] = {"size": "small", "margin": (2, 2)}
+        self._run = pmui.IconButton(icon="pause", description="Run or pause (space)", **small)
+        step = pmui.IconButton(icon="skip_next", description="One iteration (s)", **small)
+        reset = pmui.IconButton(icon="replay", description="From the start (r)", **small)
+        self._run.on_click(lambda event: self.toggle())
+        step.on_click(lambda event: state.step())
+        reset.on_click(lambda event: state.reset())
+        self._way = pmui.RadioButtonGroup(
+            options=WATCH,
+            value="accuracy",
+            size="small",
+            margin=(4, 6),
+            description="Watch the search from nothing, or have the answer at once.",
+            sx={"& button": {"textTransform": "none", "padding": "3px 9px"}},
+        )
+        self._way.param.watch(lambda event: self._choose_way(event.new), "value")
+        pace = pmui.Select.from_param(
+            state.param.pace,
+            label="Pace",
+            options=list(PACES),
+            size="small",
+            width=118,
+            margin=(6, 4),
+        )
+        self._iteration = pmui.IntSlider(
+            label="Iteration", start=1, end=2, value=1, size="small", width=130, margin=(0, 10)
+        )
+        self._iteration.param.watch(lambda event: self._seek(event.new), "value")
+        self.play_button = pmui.IconButton(
+            icon="play_circle", description="Play through time (t)", margin=(8, 2)
+        )
+        self.play_button.on_click(lambda event: self.play())
+        self.view = pn.Row(self._run, step, reset, self._way, pace, self._iteration, margin=0)
+        state.param.watch(
+            lambda *events: self._show(), ["settings", "frame", "newest", "running", "is_costly"]
+        )
+        self._show()
+
+    def keys(self) -> dict[str, Any]:
+        """What keys do, by their names."""
+        return {
+            " ": self.toggle,
+            "s": self._state.step,
+            "r": self._state.reset,
+            "t": self.play,
+            "ArrowLeft": lambda: self._move(-1),
+            "ArrowRight": lambda: self._move(1),
+            "Shift+ArrowLeft": lambda: self._move_iteration(-1),
+            "Shift+ArrowRight": lambda: self._move_iteration(1),
+        }
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the run goes on until it is paused."""
+        return self._state.running and not self._state.is_over
+
+    def toggle(self) -> None:
+        """Run, pause, or run anew what has ended."""
+        if self.goes_on and not self._state.is_costly:
+            self._state.pause()
+        else:
+            self._state.go_on()
+
+    def play(self) -> None:
+        """Go through time from the selected instant, or stop."""
+        if self._playing is not None:
+            self.stop()
+            return
+        phase = self._state.selection.phase
+        callback = self._document.add_periodic_callback(self._play_on, TICK)
+        self._playing = callback, time.monotonic(), phase if phase < 1.0 else 0.0
+        self.play_button.icon = "pause_circle"
+
+    def stop(self) -> None:
+        """Go through time no more."""
+        if self._playing is not None:
+            self._document.remove_periodic_callback(self._playing[0])
+            self._playing = None
+            self.play_button.icon = "play_circle"
+
+    def _play_on(self) -> None:
+        assert self._playing is not None
+        _, began, phase = self._playing
+        self._state.select(phase=(phase + (time.monotonic() - began) / PLAYED_IN) % 1.0)
+
+    def _move(self, instants: int) -> None:
+        """Select an instant so many later."""
+        self.stop()
+        frame = self._state.frame
+        if frame is not None:
+            times = frame.run.instants
+            column = frame.run.column(self._state.selection.phase) + instants
+            column = min(max(column, 0), len(times) - 1)
+            self._state.select(phase=float(times[column] / times[-1]))
+
+    def _move_iteration(self, iterations: int) -> None:
+        if self._state.frame is not None:
+            self._state.seek(self._state.frame.iteration + iterations)
+
+    def _seek(self, iteration: int) -> None:
+        if not self._is_updating:
+            self._state.seek(iteration)
+
+    def _choose_way(self, finish: str) -> None:
+        if not self._is_updating and finish != self._state.settings.finish:
+            self._state.change(**(SEARCH if finish == SEARCH["finish"] else ANSWER))
+
+    def _show(self) -> None:
+        """Show where the run is."""
+        state, newest, frame = self._state, self._state.newest, self._state.frame
+        self._is_updating = True
+        try:
+            icon = "play_arrow"
+            if state.is_costly:
+                icon = "warning"
+            elif self.goes_on:
+                icon = "pause"
+            elif state.is_over:
+                icon = "replay"
+            self._run.icon = icon
+            if state.settings.finish in WATCH.values():
+                self._way.value = state.settings.finish
+            if newest is not None and frame is not None:
+                last = max(newest.iteration + newest.is_answer, 2)
+                at = last if frame is newest else min(frame.iteration, last)
+                self._iteration.param.update(end=last, value=at)
+        finally:
+            self._is_updating = False

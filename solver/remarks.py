@@ -1,0 +1,73 @@
+"""What a person has to know of a result beside how the run ended."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.discrete.stack.data import StackData
+from solver.discrete.stack.equilibrium import is_upright
+from solver.latin import Iterate
+from solver.laws import OPEN
+from solver.phrases import Phrase
+from solver.scenes import structure_of
+from solver.settings import Settings
+
+MOST_GROWTH = 2
+"""Points by which a contact may grow from an instant to the next: one at each of its ends. With
+more, those that close together stick without traction beside points that were there before: with
+1, 2 and 4 of them at each end, neighbours differ by 0.1, 0.3 and 0.7 of the largest friction
+(measured on a parabola, 192 elements)."""
+
+
+def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
+    """Sentences on what an iterate shows that its status does not tell.
+
+    Parameters
+    ----------
+    settings, iterate
+        Of a run, at its end or on the way.
+    """
+    remarks: list[str] = []
+    standing = _standing_on_an_end(settings, iterate)
+    if standing.any():
+        first = float(iterate.problem.instants[np.argmax(standing)])
+        remarks.append(
+            Phrase(
+                "From {} s on the body tips: it stands on one end of its base. Take a longer or "
+                "lower body, less friction, or a side that keeps it from turning.",
+                f"{first:.4g}",
+            )
+        )
+    growth = contact_growth(iterate)
+    if growth > MOST_GROWTH:
+        remarks.append(
+            Phrase(
+                "The contact grows by up to {} points from an instant to the next, so that "
+                "friction jumps from point to point: raise instants until it grows by {} at most.",
+                growth,
+                MOST_GROWTH,
+            )
+        )
+    return remarks
+
+
+def contact_growth(iterate: Iterate) -> int:
+    """Largest number of points with friction that an existing contact gains between instants."""
+    growth = 0
+    for name, law in iterate.problem.rubbing.items():
+        if law.normal is None or not np.any(law.tangential.friction):
+            continue
+        closed = iterate.contact(name).status != OPEN
+        gained = (closed[:, 1:] & ~closed[:, :-1]).sum(axis=0) * closed[:, :-1].any(axis=0)
+        growth = max(growth, int(gained.max(initial=0)))
+    return growth
+
+
+def _standing_on_an_end(settings: Settings, iterate: Iterate) -> NDArray[np.bool_]:
+    """Instants at which a body that is free to turn touches its support at one end alone."""
+    structure = structure_of(settings)
+    if not isinstance(structure, StackData) or structure.support is None or is_upright(structure):
+        return np.zeros(iterate.problem.n_instants, dtype=bool)
+    closed = iterate.contact("support").status != OPEN
+    return np.asarray((closed.sum(axis=0) == 1) & (closed[0] | closed[-1]))

@@ -1,0 +1,238 @@
+"""Whatever a table looks like, the solver gets the numbers that were given, or says why not."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from solver.cli import main
+from solver.curves import GivenCurve, curve_of
+from solver.definitions import SettingError
+from solver.scenes import CATALOGUE
+from solver.study.other_programs.brought import read_brought
+from solver.tables import read_table
+from solver.units import examples_of, size_in
+
+TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0}
+FORCES = {"N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "daN": 10.0}
+STYLES = ["{} [{}]", "{} ({})", "{}/{}", "{} / {}", "{} in {}", "{}, {}", "{} {}", "{}_{}", "row"]
+BETWEEN = {",": ",", ";": ";", "tab": "\t", "blank": " ", "blanks": "   "}
+NUMBERS = st.floats(-1e6, 1e6, allow_subnormal=False)
+
+
+@dataclass(frozen=True)
+class Written:
+    """A file, with the points in SI that it was written from."""
+
+    data: bytes
+    points: np.ndarray
+    units: tuple[str, str]
+
+
+@st.composite
+def files(draw: st.DrawFn) -> Written:
+    """Draw points, and a file of them as somebody might write it."""
+    count = draw(st.integers(2, 8))
+    steps = draw(st.lists(st.floats(1e-3, 1e3), min_size=count, max_size=count))
+    forces = draw(st.lists(NUMBERS, min_size=count, max_size=count))
+    columns = {"time": np.cumsum(steps), "force": np.array(forces), "extra": np.arange(count) * 0.5}
+    units = {"time": draw(st.sampled_from(list(TIMES))), "force": draw(st.sampled_from([*FORCES]))}
+    names = {
+        "time": draw(st.sampled_from(["time", "Zeit", "t", "Prüfzeit", "TIME"])),
+        "force": draw(st.sampled_from(["force", "Kraft", "F", "load", "Last", "Standardkraft"])),
+        "extra": draw(st.sampled_from(["Weg", "displacement", "Kanal"])),
+    }
+    order = draw(st.permutations(["time", "force", *draw(st.sampled_from([[], ["extra"]]))]))
+    separator = BETWEEN[draw(st.sampled_from(list(BETWEEN)))]
+    style = draw(st.sampled_from([s for s in STYLES if separator != " " or " " not in s]))
+    has_commas = separator != "," and draw(st.booleans())
+    units["extra"] = "mm"
+    heads = [
+        names[key] if style == "row" else style.format(names[key], units[key]) for key in order
+    ]
+    rows = [heads] + ([[units[key] for key in order]] if style == "row" else [])
+    rows += [
+        [repr(cell).replace(".", "," if has_commas else ".") for cell in row]
+        for row in zip(*(columns[key].tolist() for key in order), strict=True)
+    ]
+    ends = draw(st.sampled_from(["", separator]))
+    lines = [
+        separator.join(f'"{cell}"' if separator in cell else cell for cell in row) + ends
+        for row in rows
+    ]
+    above = draw(st.lists(st.sampled_from(["Rate (Hz),100", "Prüfung 3", "", "# 7 N"]), max_size=2))
+    text = draw(st.sampled_from(["\n", "\r\n"])).join([*above, *lines, ""])
+    encoding = draw(st.sampled_from(["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "cp1252"]))
+    sizes = TIMES[units["time"]], FORCES[units["force"]]
+    points = np.array([columns["time"] * sizes[0], columns["force"] * sizes[1]]).T
+    return Written(text.encode(encoding), points, (units["time"], units["force"]))
+
+
+def read(data: bytes | str, name: str = "load", scene: str = "bar", **changes: Any) -> GivenCurve:
+    values = CATALOGUE[scene].settings.checked(changes)
+
+    def refuse(remedy: str) -> SettingError:
+        return SettingError(name, "file.csv", "a table", remedy)
+
+    return curve_of(
+        read_table(data, refuse), values.definitions()[name], name, values.curve_units(name)
+    )
+
+
+@given(files())
+@settings(max_examples=300)
+def test_points_are_those_that_were_given(file: Written) -> None:
+    curve = read(file.data)
+    points = np.array(curve.points)
+    np.testing.assert_allclose(points, file.points, rtol=1e-12)
+    (times, forces), (wanted_times, wanted) = points.T, file.points.T
+    assert (forces.argmax(), forces.argmin()) == (wanted.argmax(), wanted.argmin())
+    turns = np.sign(np.diff(forces)), np.sign(np.diff(wanted))
+    np.testing.assert_array_equal(*turns)
+    work = np.trapezoid(np.abs(wanted), wanted_times)
+    difference = np.trapezoid(forces, times) - np.trapezoid(wanted, wanted_times)
+    assert abs(difference) <= 1e-11 * work
+    time, force = file.units
+    for part in (f" in {time}, ", f" in {force}, {len(points)} points, from ", f" {force}"):
+        assert part in curve.message
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "time_s,force_kN",
+        "time,force kN",
+        't,"Kraft in kN"',
+        "s,kN",
+        "t,force-kN",
+        "t,Kraft (in kN)",
+    ],
+)
+def test_a_unit_is_found_wherever_it_stands(head: str) -> None:
+    assert read(f"{head}\n0,0\n1,0.9\n").points[1] == [1.0, 900.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "points"),
+    [
+        ("time (s),displacement (mm),force (N)\n0,0,0\n1,5,7\n", [[0, 0], [1, 7]]),
+        ("force,time\n0,0\n7,1\n", [[0, 0], [1, 7]]),
+        ("# time force\n0.000e+00 0.000e+00\n1.000e+00 7.000e+00\n", [[0, 0], [1, 7]]),
+        ("  time [s]   force [N]\n  0  0\n  1  7\n", [[0, 0], [1, 7]]),
+        ("Rate (Hz),100\ntime,force\n0,0\n1,7\n", [[0, 0], [1, 7]]),
+        ("Range,0,100\n\nTest;7\ntime;force;\n0;0;\n1;7;\n", [[0, 0], [1, 7]]),
+        ("Zeit;Weg;Kraft\nt;s;F\ns;mm;kN\n0;0;0\n1;2;0,007\n", [[0, 0], [1, 7]]),
+        ("Zeit;Kraft\ns;kN\n;Kanal 1\n0;0\n1;0,007\n", [[0, 0], [1, 7]]),
+        ("name,t,F\nN1,0,0\nN2,1,7\n", [[0, 0], [1, 7]]),
+        ("time,load step,force\n0,1,0\n1,2,7\n", [[0, 0], [1, 7]]),
+        ("A [s],B [kN]\n0,0\n1,0.007\n", [[0, 0], [1, 7]]),
+        ("time,value\n0,0\n1,7\n", [[0, 0], [1, 7]]),
+    ],
+    ids=repr,
+)
+def test_columns_are_chosen_by_name(text: str, points: list[list[float]]) -> None:
+    assert read(text).points == points
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("displacement,force\n0,0\n1,1\n", "no time .*a loop, as force over displacement"),
+        ("0,0\n1,1\n0.5,0\n", "line 3: time must increase.*of a loop"),
+        ("frequency,force\n0,0\n1,1\n", "no time"),
+        ("time,top_normal_load\n0,0\n1,1\n", "no force .*'top_normal_load'"),
+        ("time,velocity\n0,0\n1,1\n", "no force in N, kN, MN .*'velocity'"),
+        ("time,displacement\n0,0\n1,1\n", "no force in N, kN, MN"),
+        ("time,force [mm]\n0,0\n1,1\n", "line 1 says mm: give it in N, kN, MN"),
+        ("time,force_KN\n0,0\n1,1\n", "line 1 says KN: give it in N, kN, MN"),
+        ("time,force lbf\n0,0\n1,1\n", "line 1 says lbf"),
+        ("Zeit;Kraft\ns;V\n0;0\n1;1\n", "line 2 says V: give it in N"),
+        ("time [ms],force [kN]\ns,kN\n0,0\n1,1\n", "line 2 says s, and line 1 ms"),
+        ("time,A,B\n0,0,0\n1,1,1\n", "no force .*'A', 'B'.*name one of them load"),
+        ("time,force,Kraft\n0,0,0\n1,1,1\n", "'force' and 'Kraft' may both be meant"),
+        ("time s force kN\n0 0\n1 1\n", "line 1 has 4 names for 2 columns"),
+        ("time,s,force,kN\n0,0\n1,1\n", "line 1 has 4 names for 2 columns"),
+        ("time,force\n0,0,0,5\n1,0,1,5\n", "line 1 has 2 names for 4 columns"),
+        ("time,force\n0,0\n1,1,1\n", "line 3 has 3 cells for 2 columns"),
+        ("0,0,0\n1,1,1\n", "3 columns: name time and force in its first line"),
+        ("0;0\n0,5;1,5\n1;2.5\n1,5;3,5\n", "line 3 has '2.5', with a decimal point"),
+        ("0;0\n0.5;1.234,5\n1.5;2.5\n", "line 2 has '1.234,5', with a decimal comma"),
+        ("Rate (Hz),100\n0,0\n1,1\n", "line 1 is 'Rate .Hz.,100', not 2 finite numbers"),
+        ("time,force\n0,0\nmuch,1\n", "line 3 has 'much' as time"),
+        ("time,force\nmuch,1\n2,1\n", "line 2"),
+    ],
+    ids=repr,
+)
+def test_what_may_be_read_otherwise_is_refused_with_its_reason(text: str, remedy: str) -> None:
+    with pytest.raises(SettingError, match=remedy):
+        read(text)
+
+
+def test_a_path_of_a_side_is_in_the_unit_of_what_is_given_there() -> None:
+    name, text = "top_normal_load", "time,displacement [mm]\n0,0\n1,-2\n"
+    given = read(text, name, "block", top="displacement")
+    assert given.points == [[0.0, 0.0], [1.0, -2e-3]]
+    with pytest.raises(SettingError, match="no pressure in Pa, kPa"):
+        read(text, name, "block", top="traction")
+    pressure = read("time,Druck [N/mm2]\n0,0\n1,2\n", name, "block", top="traction")
+    assert pressure.points[1] == [1.0, 2e6]
+
+
+def test_every_curve_has_units_that_its_refusals_name() -> None:
+    for entry in CATALOGUE.values():
+        values = entry.settings.checked({})
+        for name, definition in values.definitions().items():
+            if not hasattr(definition, "presets"):
+                continue
+            for unit in values.curve_units(name):
+                for example in examples_of(unit).replace("plain numbers or ", "").split(", "):
+                    assert size_in(example, unit), (name, unit, example)
+
+
+def test_the_command_says_what_it_understood(tmp_path: Path, capsys: Any) -> None:
+    file = tmp_path / "load.csv"
+    file.write_bytes("Prüfung\nZeit;Weg (mm);Kraft (kN)\n0;0;0\n1;2;0,9\n".encode("cp1252"))
+    said = "Zeit in s (no unit given), Kraft in kN, 2 points, from 0 to 0.9 kN; passed over: 'Weg'"
+    sizes = ["--set=elements=10", "--set=substructures=2", "--set=instants=11"]
+    command = ["run", "bar", *sizes, f"--set=load={file}", "--json"]
+    assert main(command) == 0
+    out, err = capsys.readouterr()
+    assert f"slipfront: load: {said}\n" in err
+    assert json.loads(out)["tables"] == {"load": said}
+    saved = tmp_path / "saved.toml"
+    saved.write_text('scene = "bar"\nload = "load.csv"\n')
+    main(["run", str(saved), *sizes])
+    assert f"slipfront: load: {said}\n" in capsys.readouterr().err
+
+
+@given(st.binary(max_size=60) | st.text('0159.,; \t\n"#xtN[]()/_-eE', max_size=60))
+@settings(max_examples=300)
+def test_anything_else_is_read_or_refused_in_words(data: bytes | str) -> None:
+    try:
+        points = read(data).points
+    except SettingError:
+        return
+    assert np.isfinite(points).all()
+
+
+def test_results_of_another_program_are_read_by_the_same_rules() -> None:
+    text = (
+        "Löser 7;1,2\nStatus;Ort x [mm];Zeit_ms;Reibkraft in kN/m;\n"
+        "haftet;100;0;0,5;\nhaftet;200;500;1;\ngleitet;300;500;1,5;\ngleitet;400;1000;2;\n"
+    )
+    for encoding in ("utf-16", "cp1252"):
+        brought = read_brought(text.encode(encoding), "a.csv", CATALOGUE["bar"].settings())
+        np.testing.assert_allclose(brought.positions, [0.1, 0.2, 0.3, 0.4])
+        np.testing.assert_allclose(brought.times, [0.0, 0.5, 0.5, 1.0])
+        np.testing.assert_allclose(brought.values, [500.0, 1000.0, 1500.0, 2000.0])
+        assert brought.message == (
+            "Ort x in mm, Zeit in ms, Reibkraft in kN/m, 4 points, from 0.5 to 2 kN/m; "
+            "passed over: 'Status'"
+        )

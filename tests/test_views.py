@@ -1,0 +1,243 @@
+"""Views show what a frame has: the first iterate, the last one, the answer, a ghost, a reference."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from itertools import product
+
+import numpy as np
+import pytest
+from bokeh.models import ColumnDataSource
+
+from app.frame import Frame, Selection
+from app.messages import Needs, Start
+from app.state import PageState, default_settings
+from app.views.catalogue import CARDS
+from app.views.contact_force import ContactForce
+from app.views.convergence import Convergence
+from app.views.loop import HysteresisLoop
+from app.views.spectra import Spectra
+from app.views.status_map import StatusMap
+from app.views.view import View
+from app.worker.extras import EXTRAS
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+from solver.settings import Settings
+
+VIEWS = [kind for card in CARDS for kind in card]
+SMALL = {
+    "bar": {"elements": 60},
+    "block": {},
+    "fault": {},
+    "incline": {},
+    "layers": {},
+    "strand": {},
+}
+MORE = {
+    "bases": ("bar", {"elements": 60, "linear_stage": "pgd"}),
+    "two points": ("incline", {"elements_x": 1, "substructures": 1}),
+}
+
+
+def settings_of(case: str) -> Settings:
+    """Settings of a case, with a search that ends soon."""
+    scene, changes = MORE.get(case, (case, SMALL.get(case, {})))
+    settings = default_settings(scene)
+    for name, value in {**changes, "max_iterations": 6}.items():
+        if name in settings.definitions():
+            settings = settings.with_change(name, value)
+    return settings
+
+
+@cache
+def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
+    """First iterate, before any reference; one on the way; and the answer."""
+    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=frozenset(EXTRAS))
+    runner = Runner(start, ReferenceCache(), lambda: False)
+    runner.advance()
+    frames = [runner.frame(needs)]
+    while runner.rest() is not None:
+        runner.advance()
+        if len(runner.history) == 5 and runner.status is None:
+            frames[1:] = [runner.frame(needs)]
+    return frames[0], frames[1], runner.frame(needs)
+
+
+def other_run(frame: Frame) -> Frame:
+    """The same frame, of another run."""
+    return replace(frame, run=replace(frame.run, number=2))
+
+
+def shown(view: View, frame: Frame, ghost: Frame | None = None, **chosen: object) -> View:
+    """Show a frame in a view."""
+    view.state.newest = view.state.frame = frame
+    view.update(frame, replace(Selection(), **chosen), ghost)
+    return view
+
+
+def view_of(kind: type[View], frame: Frame) -> View:
+    """A view of a page that shows a frame."""
+    view = kind(PageState(frame.run.settings))
+    assert view.figure is not None
+    return shown(view, frame)
+
+
+def sources(view: View) -> Iterator[ColumnDataSource]:
+    """Everything that a view draws."""
+    return (r.data_source for r in view.figure.renderers)
+
+
+@pytest.mark.parametrize(
+    ("kind", "case"),
+    [(k, c) for k in VIEWS for c in (*SMALL, *MORE) if k.applies(settings_of(c))],
+)
+def test_each_view_that_applies_shows_each_frame(kind: type[View], case: str) -> None:
+    frames = frames_of(case)
+    view = kind(PageState(frames[0].run.settings))
+    assert view.figure is not None
+    first, last, answer = frames
+    ghosts = other_run(answer), other_run(last)
+    for frame, ghost in product((first, last, answer), (None, *ghosts)):
+        shown(view, frame, ghost)
+        for axes in (view.figure.x_range, view.figure.y_range):
+            assert axes.start < axes.end
+        if frame is not first:
+            assert any(len(next(iter(each.data.values()))) for each in sources(view))
+
+
+@pytest.mark.parametrize("case", ["bar", "block"])
+def test_logarithmic_axes_have_positive_finite_values_only(case: str) -> None:
+    for kind in VIEWS:
+        for frame in frames_of(case):
+            if not kind.applies(frame.run.settings):
+                continue
+            view = view_of(kind, frame)
+            is_log = "Log" in type(view.figure.y_scale).__name__
+            values = [np.ravel(v) for s in sources(view) for v in s.data.get("y", [])]
+            values += [np.ravel(v) for s in sources(view) for v in s.data.get("ys", [])]
+            shown_values = np.concatenate([*values, np.ones(1)])
+            assert not is_log or (np.isfinite(shown_values).all() and (shown_values > 0.0).all())
+
+
+@pytest.mark.parametrize("case", ["bar", "block", "strand"])
+def test_the_shaded_error_is_there_on_the_way_and_vanishes_at_the_answer(case: str) -> None:
+    _, last, answer = frames_of(case)
+    sizes = []
+    for frame in (last, answer):
+        data = view_of(ContactForce, frame).friction.data
+        sizes.append(
+            np.abs(data["latin"] - data["reference"]).max() / np.abs(data["reference"]).max()
+        )
+    assert sizes[0] > 0.02
+    assert sizes[1] < 1e-3
+
+
+def test_the_contact_force_is_shown_in_the_unit_that_its_axis_says() -> None:
+    frame = frames_of("bar")[2]
+    view = view_of(ContactForce, frame)
+    column = frame.run.column(Selection().phase)
+    fields = next(iter(frame.contact.values()))
+    assert view.figure.yaxis[0].axis_label == "force, kN/m"
+    assert np.allclose(view.friction.data["latin"], 1e-3 * fields.friction[:, column])
+
+
+def test_the_axis_of_the_contact_force_stays_while_a_run_iterates() -> None:
+    _, last, _ = frames_of("bar")
+    view = view_of(ContactForce, last)
+    ends = view.figure.y_range.start, view.figure.y_range.end
+    smaller = {n: replace(f, friction=0.1 * f.friction) for n, f in last.contact.items()}
+    shown(view, replace(last, contact=smaller))
+    assert (view.figure.y_range.start, view.figure.y_range.end) == ends
+
+
+def test_legends_name_only_what_is_drawn() -> None:
+    first, last, answer = frames_of("bar")
+
+    def names(view: View) -> set[str]:
+        return {i.label.value for i in view.figure.legend[0].items if i.visible}
+
+    view = view_of(ContactForce, first)
+    assert names(view) == {"LATIN", "±µp"}
+    assert {"reference", "error", "last run"} <= names(shown(view, last, other_run(answer)))
+    assert "pressure" not in names(view)
+
+
+def test_the_map_is_the_status_and_is_not_sent_again_when_the_instant_changes() -> None:
+    frame = frames_of("block")[1]
+    view = view_of(StatusMap, frame)
+    status = next(iter(frame.contact.values())).status
+    image = view.status.data["image"][0]
+    assert np.array_equal(image, status.T)
+    data = view.status.data
+    shown(view, frame, phase=0.3)
+    assert view.status.data is data
+    assert view.now.data["t"] == pytest.approx(frame.run.instants[[frame.run.column(0.3)]])
+
+
+def test_the_ghosts_boundary_lies_where_its_status_changes() -> None:
+    _, last, answer = frames_of("bar")
+    view = shown(view_of(StatusMap, last), last, other_run(answer))
+    status = next(iter(answer.contact.values())).status
+    changes = np.count_nonzero(np.diff(status, axis=0)) + np.count_nonzero(np.diff(status, axis=1))
+    assert len(view.ghost.data["x0"]) == changes
+
+
+def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
+    frame = frames_of("bar")[1]
+    view = view_of(StatusMap, frame)
+    tap = type("Tap", (), {"x": 0.5, "y": 0.25 * float(frame.run.instants[-1])})
+    view._select(tap)
+    assert view.state.selection.phase == pytest.approx(0.25)
+    assert view.state.selection.place == pytest.approx(0.5)
+
+
+def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
+    answer = frames_of("bar")[2]
+    view = view_of(Convergence, answer)
+    assert list(view.answer.data["x"]) == [answer.iteration]
+    assert len(view.curves["force error"].data["x"]) == len(answer.history["iteration"]) - 1
+
+
+def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
+    first, last, _ = frames_of("bar")
+    view = view_of(Convergence, last)
+    view.update(first, Selection(), None)
+    assert list(view.shown.data["x"]) == [first.iteration]
+    assert len(view.curves["indicator η"].data["x"]) == len(last.history["iteration"])
+
+
+def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
+    last = frames_of("bar")[1]
+    history = {**last.history, "indicator": np.full_like(last.history["indicator"], 1e-9)}
+    view = view_of(Convergence, replace(last, history=history))
+    assert (view.figure.y_range.start, view.figure.y_range.end) == pytest.approx((1e-4, 10.0))
+
+
+def test_singular_values_wait_for_the_worker_to_send_them() -> None:
+    last = frames_of("bar")[1]
+    view = view_of(Spectra, last)
+    count = len(view.values.data["xs"])
+    shown(view, replace(last, extras={}))
+    assert count == last.run.settings.n_substructures == len(view.values.data["xs"])
+
+
+def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
+    frame = frames_of("bar")[1]
+    view = view_of(HysteresisLoop, frame)
+    column = frame.run.column(Selection().phase)
+    now, loop = view.sources["now"].data, view.sources["latin"].data
+    assert (now["x"][0], now["y"][0]) == (loop["x"][column], loop["y"][column])
+
+
+def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -> None:
+    frame = frames_of("bar")[1]
+    x, t = (grid.ravel() for grid in np.meshgrid([0.0, 0.5, 1.0], [0.0, 0.7, 1.0]))
+    theirs = {"x": x, "t": t, "values": 1000.0 * t, "quantity": "friction force"}
+    view = view_of(ContactForce, replace(frame, extras={"beside": theirs}))
+    assert np.allclose(view.beside.data["y"], 0.7)
+    theirs["quantity"] = "displacement"
+    view = view_of(HysteresisLoop, replace(frame, extras={"beside": theirs}))
+    assert len(view.sources["beside"].data["x"]) == 3
