@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -272,5 +272,10 @@ def answer(settings: Settings) -> Settings:
     """Settings with which the answer is there at once, of a search that would show itself."""
     if settings.finish != SEARCH["finish"]:
         return settings
+    return settings.replace(**known(settings, ANSWER))
+
+
+def known(settings: Settings, values: Mapping[str, str]) -> dict[str, str]:
+    """Values of choices, as far as the scene has them."""
     definitions = settings.definitions()
-    return settings.replace(**{n: v for n, v in ANSWER.items() if v in definitions[n].objects})
+    return {name: value for name, value in values.items() if value in definitions[name].objects}
