@@ -62,7 +62,7 @@ class Page:
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state, self._iteration = state, iteration
-        Link(state)
+        link = Link(state)
         document = pn.state.curdoc
         self._supervisor = Supervisor(state, document)
         self._status = words("status", margin=(8, 6))
@@ -74,7 +74,7 @@ class Page:
         self._cards = [Card(kinds, state, self._look) for kinds in CARDS]
         self._transport = Transport(state, document)
         state.param.watch(lambda event: self._fit(), "settings")
-        self.controls = Controls(state)
+        self.controls = Controls(state, link.copy)
         self.live = self._make_live()
         self._main = pn.Column(self.live, sizing_mode="stretch_width", margin=0)
         self._built: dict[str, Any] = {TABS[0]: self.live}
