@@ -199,7 +199,8 @@ def _print_figures(settings: Settings, solution: Solution, as_json: bool) -> Non
         }
         print(json.dumps({**plain, "settings": settings.values()}))
     else:
-        for name, value in figures.items():
+        remarks = figures.pop("remarks")
+        for name, value in [*figures.items(), *(("remark", remark) for remark in remarks)]:
             print(f"{name:<20} {value:.6g}" if isinstance(value, float) else f"{name:<20} {value}")
 
 

@@ -17,7 +17,7 @@ from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces, held_instants
-from solver.scenes import CATALOGUE
+from solver.scenes import CATALOGUE, left_out
 from solver.settings import Settings
 from solver.tables import resolve
 
@@ -135,8 +135,14 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "error_displacement": last.error_displacement if last else None,
         "error_force": last.error_force if last else None,
         "seconds": last.seconds if last else solution.iterate.seconds,
+        "remarks": notes(settings),
         **_bases(solution.iterate.reduction),
     }
+
+
+def notes(settings: Settings) -> list[str]:
+    """Return what belongs beside a result: what its tables lost, a sentence each."""
+    return left_out(settings)
 
 
 def _bases(reduction: Reduction | None) -> dict[str, int]:

@@ -73,7 +73,8 @@ def test_json_is_strict_and_says_the_same_as_the_text(capsys):
         raise AssertionError(f"{word} is no JSON")
 
     found = json.loads(capsys.readouterr().out, parse_constant=refuse)
-    assert list(found) == [*FIGURES, "settings"]
+    assert list(found) == [*FIGURES, "remarks", "settings"]
+    assert found["remarks"] == []
     assert found["iterations"] == int(figures["iterations"])
     assert found["indicator"] == pytest.approx(float(figures["indicator"]), rel=1e-5)
     assert (found["certified"], found["residual"]) == (False, None)

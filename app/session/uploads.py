@@ -111,4 +111,4 @@ def _said_of(settings: Settings, name: str) -> str:
     values = settings.values()
     points, title = len(values[name]), about(settings.definitions()[name]).title
     said = f"{title}: {points:,} points. The run lasts {values['duration']:g} s".replace(",", " ")
-    return f"{said}, and reads them at {values['instants']} instants."
+    return f"{said}, and reads them at {settings.n_instants} instants."
