@@ -13,11 +13,12 @@ import numpy as np
 
 from solver.definitions import CurveParameter, SettingError, parse
 from solver.discrete.inside import Inside
+from solver.discrete.small_strain import beyond_small_strain
 from solver.disk import LARGEST, TOO_LARGE, read_text, whole_file, why
 from solver.latin import Iterate, Solution
 from solver.reduction.basis import Reduction
 from solver.reference.distance import determinate_forces, held_instants
-from solver.scenes import CATALOGUE, left_out
+from solver.scenes import CATALOGUE, left_out, structure_of
 from solver.settings import Settings
 from solver.tables import resolve
 
@@ -135,14 +136,18 @@ def summary(settings: Settings, solution: Solution) -> dict[str, Any]:
         "error_displacement": last.error_displacement if last else None,
         "error_force": last.error_force if last else None,
         "seconds": last.seconds if last else solution.iterate.seconds,
-        "remarks": notes(settings),
+        "remarks": notes(settings, solution.iterate),
         **_bases(solution.iterate.reduction),
     }
 
 
-def notes(settings: Settings) -> list[str]:
-    """Return what belongs beside a result: what its tables lost, a sentence each."""
-    return left_out(settings)
+def notes(settings: Settings, iterate: Iterate) -> list[str]:
+    """Return what belongs beside a result: what its tables lost, and where no small strain holds.
+
+    Each is a sentence for a person; none where there is nothing to say.
+    """
+    beyond = beyond_small_strain(structure_of(settings), iterate.problem, iterate.displacement)
+    return [*left_out(settings), *([] if beyond is None else [beyond])]
 
 
 def _bases(reduction: Reduction | None) -> dict[str, int]:
