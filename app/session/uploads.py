@@ -109,4 +109,4 @@ def _said_of(settings: Settings, name: str, message: str) -> str:
     values = settings.values()
     title = about(settings.definitions()[name]).title
     said = f"{title}: {message}. The run lasts {values['duration']:g} s"
-    return f"{said}, and reads them at {values['instants']} instants."
+    return f"{said}, and reads them at {settings.n_instants} instants."

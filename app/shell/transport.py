@@ -283,7 +283,7 @@ class Transport:
     @property
     def _last(self) -> int:
         """The last instant, also of a run that has no picture yet."""
-        last: int = self._session.settings.instants - 1
+        last: int = self._session.settings.n_instants - 1
         return last
 
     def _choose_instant(self, number: int) -> None:

@@ -43,7 +43,7 @@ def _head(scene: Scene) -> Iterator[str]:
     yield f"Slipfront, {scene.run.settings.scene}, {stand.interface}"
     system = SYSTEMS[of_files(scene.look.units)]
     yield f"{scene.name} at {scene.run.called(scene.frame.iteration)}; {system}"
-    shown, whole = len(stand.instants), scene.run.settings.instants
+    shown, whole = len(stand.instants), scene.run.settings.n_instants
     if shown < whole:
         yield f"{shown} of {whole} instants"
     if scene.ghost is not None:

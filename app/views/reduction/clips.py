@@ -39,7 +39,7 @@ def applies(settings: Settings) -> bool:
         return False
     values = settings.values()
     interfaces = values.get("wires", 2) - 1
-    return bool(interfaces * (values["elements"] + 1) * settings.instants <= MOST_VALUES)
+    return bool(interfaces * (values["elements"] + 1) * settings.n_instants <= MOST_VALUES)
 
 
 def draw(scene: Scene, _kept: None) -> Drawing:
