@@ -64,8 +64,10 @@ class Card:
 
         The one that was chosen last is in sight, wherever it is offered.
         """
+        named = [view for view in self._all if view.name in state.plots]
+        self._chosen = named[0] if named else self._chosen
         fitting = [view for view in self._all if view.applies(state.settings)]
-        if fitting == self._fitting:
+        if fitting == self._fitting and (not named or self.seen in named):
             return
         self._is_fitting = True
         self._fitting = fitting
@@ -80,6 +82,10 @@ class Card:
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen
+            mine = {view.name for view in self._all}
+            others = [name for name in self._state.plots if name not in mine]
+            first = self._chosen is self._fitting[0]
+            self._state.plots = others if first else [*others, self._chosen.name]
             self._turn()
 
     def _turn(self) -> None:
