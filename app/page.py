@@ -10,9 +10,12 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.cards import Card
+from app.class_dialog import ClassDialog
+from app.classroom import Member
 from app.controls import Controls
 from app.display import Display
 from app.keys import listen
+from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
 from app.pages import FULL, PAGES
 from app.state import TABS, PageState
@@ -71,13 +74,30 @@ class Page:
         document.add_root(self.display.pulse)
         state.param.watch(lambda *e: self._say(), ["running", "message", "refusal", "is_costly"])
         self._scene, self._timeline = Scene(state), Timeline(state)
-        self._cards = [Card(kinds, state, self._look) for kinds in CARDS]
+        self._cards = self._all_cards = [Card(kinds, state, self._look) for kinds in CARDS]
         self._transport = Transport(state, document)
         state.param.watch(lambda event: self._fit(), "settings")
         self.controls = Controls(state)
+        self.member = Member(state, self._supervisor, document)
+        self.classroom = ClassDialog(self.member)
         self.live = self._make_live()
-        self._main = pn.Column(self.live, sizing_mode="stretch_width", margin=0)
-        self._built: dict[str, Any] = {TABS[0]: self.live}
+        self.lesson = LessonPanel(
+            state, self._transport, self._arrange, lambda: self.member.open_counts()
+        )
+        self.lesson.view.stylesheets = [STYLE]
+        beside = pn.Row(
+            self.lesson.view,
+            self.live,
+            sizing_mode="stretch_width",
+            css_classes=["beside"],
+            margin=0,
+            stylesheets=[STYLE],
+        )
+        dialogs = self.lesson.dialog, self.classroom.dialog
+        self._main = pn.Column(
+            self.classroom.view, beside, *dialogs, sizing_mode="stretch_width", margin=0
+        )
+        self._built: dict[str, Any] = {TABS[0]: beside}
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[self.controls.view],
@@ -87,7 +107,7 @@ class Page:
             busy_indicator=None,
             sx=COMPACT,
         )
-        self._fit()
+        self._arrange()
         keys = {**self._transport.keys(), "p": self._present}
         listen(document, keys)
         state.param.watch(lambda event: self._turn(event.new), "tab")
@@ -97,6 +117,8 @@ class Page:
 
     def loaded(self) -> None:
         """Start the worker and the first run, now that a browser is there."""
+        if self.member.enter(self.state.room):
+            return
         self._supervisor.begin()
         if self._iteration:
             wait_at(self.state, self._iteration)
@@ -105,12 +127,15 @@ class Page:
 
     def end(self, _context: Any) -> None:
         """Leave nothing behind."""
+        self.member.close()
         self._supervisor.end()
         PAGES.leave()
 
     def _make_live(self) -> pn.Column:
         pane = lambda view, **more: pn.pane.Bokeh(view.figure, margin=0, **more)  # noqa: E731
-        above = pn.Row(self._transport.view, self._status, sizing_mode="stretch_width", margin=0)
+        self._above = above = pn.Row(
+            self._transport.view, self._status, sizing_mode="stretch_width", margin=0
+        )
         below = pn.FlexBox(self._sentence, self._figures, justify_content="space-between", margin=0)
         scene = pn.Column(
             pane(self._scene, sizing_mode="stretch_both"),
@@ -124,7 +149,7 @@ class Page:
             sizing_mode="stretch_width",
             margin=0,
         )
-        plots = pn.Column(
+        self._plots = plots = pn.Column(
             *(card.view for card in self._cards),
             sizing_mode="stretch_width",
             css_classes=["plots"],
@@ -149,13 +174,37 @@ class Page:
         )
         present = pmui.IconButton(icon="slideshow", description="Presenter view (p)", color="light")
         present.on_click(lambda event: self._present())
+        lessons = pmui.IconButton(icon="school", description="Lessons", color="light")
+        lessons.on_click(lambda event: self.lesson.offer())
+        together = pmui.IconButton(icon="groups", description="A class", color="light")
+        together.on_click(lambda event: self.classroom.open())
         return pn.Row(
-            tabs, pn.layout.HSpacer(), present, sizing_mode="stretch_width", align="center"
+            tabs,
+            pn.layout.HSpacer(),
+            lessons,
+            together,
+            present,
+            sizing_mode="stretch_width",
+            align="center",
         )
 
     def _fit(self) -> None:
         for card in self._cards:
             card.fit(self.state)
+
+    def _arrange(self) -> None:
+        """Have the plots of a lesson in place of the others; what gives its answer away waits."""
+        if not hasattr(self, "lesson"):
+            return
+        kinds, is_asked = self.lesson.kinds, self.state.is_asked
+        self._cards = self._all_cards
+        if kinds is not None:
+            self._cards = [Card((kind,), self.state, self._look) for kind in kinds]
+        self._above.visible = self._figures.visible = not is_asked
+        self._plots.visible = bool(self._cards)
+        self._plots[:] = [card.view for card in self._cards]
+        self._fit()
+        self._look()
 
     def _look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -189,6 +238,7 @@ class Page:
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = frame.run.sentence
+            self.lesson.update()
 
 
 def words(role: str, **more: Any) -> pn.pane.HTML:
