@@ -68,17 +68,12 @@ class Page:
             state, self.live.transport, self._arrange, lambda: self.member.open_counts()
         )
         self.lesson.view.stylesheets = [STYLE]
-        classroom = ClassDialog(self.member)
-        beside = pn.Row(
-            self.lesson.view,
-            self.live.view,
-            sizing_mode="stretch_width",
-            css_classes=["beside"],
-            margin=0,
-            stylesheets=[STYLE],
-        )
-        self._tabs: dict[str, Any] = {TABS[0]: beside}
-        self._main = column("main", classroom.view, beside, self.lesson.dialog, classroom.dialog)
+        self.classroom = classroom = ClassDialog(self.member)
+        self._beside = column("beside", self.live.view)
+        self._tabs: dict[str, Any] = {TABS[0]: self._beside}
+        self._main = column("main", self._beside)
+        for view in (self.lesson.view, classroom.view):
+            view.param.watch(lambda event: self._place(), "visible")
         actions = {
             "Lessons": ("school", self.lesson.offer),
             "A class": ("groups", classroom.open),
@@ -88,7 +83,7 @@ class Page:
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header(actions)],
+            header=[self._header(actions), self.lesson.dialog, classroom.dialog],
             main=[self._main],
             busy_indicator=None,
             sx=COMPACT,
@@ -140,10 +135,19 @@ class Page:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
             self._tabs[tab] = pn.pane.Markdown(tab)
-            self._main.append(self._tabs[tab])
-        for name, view in self._tabs.items():
-            view.visible = name == tab
+        self._place()
         self.live.look()
+
+    def _place(self) -> None:
+        """Have on the page what is seen: beside what is hidden figures are not painted."""
+        lesson, classroom = self.lesson.view, self.classroom.view
+        views = (
+            (self._beside, [lesson] * lesson.visible + [self.live.view]),
+            (self._main, [classroom] * classroom.visible + [self._tabs[self.state.tab]]),
+        )
+        for place, objects in views:
+            if list(place) != objects:
+                place[:] = objects
 
     def _dress(self) -> None:
         """Have nothing around the plots in the views for a projector and for a frame."""
