@@ -9,7 +9,8 @@ import numpy as np
 
 from app.frame import Floats
 from app.messages import Needs
-from app.worker.geometry import floats, thinned
+from app.worker.geometry import Stress, floats, thinned
+from app.worker.rope_extras import ROPE_EXTRAS
 from solver.latin import Iterate
 from solver.reduction.svd import friction_spectra
 
@@ -28,6 +29,11 @@ def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
     return [floats(np.asarray(own) / largest) for own in shown]
 
 
+def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> Stress:
+    """Stress of all quadrilaterals that are drawn, at all instants."""
+    return sampler.drawn.stress(iterate, needs.stress, sampler.settings)
+
+
 Extra = Callable[["Sampler", Iterate, Needs], Any]
-EXTRAS: dict[str, Extra] = {"spectra": spectra}
+EXTRAS: dict[str, Extra] = {"spectra": spectra, "stress": stress, **ROPE_EXTRAS}
 """By the name that a view needs them by."""

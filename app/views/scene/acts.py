@@ -51,7 +51,9 @@ class Arrow:
         tip = self.line[-1]
         whole = np.hypot(*(self.line[-1] - self.line[0]))
         length = min(HEAD, float(whole))
-        return np.array([tip, tip + length * (-along + 0.5 * across), tip + length * (-along - 0.5 * across)])
+        return np.array(
+            [tip, tip + length * (-along + 0.5 * across), tip + length * (-along - 0.5 * across)]
+        )
 
     def dragged(self, pointer: Array) -> float:
         """The value at which its handle is under the pointer."""
@@ -72,16 +74,10 @@ class Word:
 def arrows_of(
     act: Act, description: Description, layout: Layout, peak: float, column: int, moved: Array
 ) -> list[Arrow]:
-    """The arrows of what acts at an instant.
+    """The arrows of what acts at an instant, the column of its values.
 
-    Parameters
-    ----------
-    peak
-        Value of an arrow of full length.
-    column
-        Of the instant in the act's values.
-    moved
-        Where its places have gone, shape (n, 2), px from the middle of the foot.
+    An arrow of the value `peak` has full length; `moved` is where the act's places have gone,
+    shape (n, 2), px from the middle of the foot.
     """
     towards = np.asarray(act.towards)
     towards = towards[:, column] if towards.ndim > 1 else towards
@@ -150,10 +146,14 @@ def _word(
         ends = [place, *(end for arrow in arrows for end in arrow.line)]
         x = min(end[0] for end in ends) - 10.0 if is_left else max(end[0] for end in ends) + 10.0
         up = beside(description, side) if aside else 0.75 * layout.arrow
-        return Word(text, np.array([x, place[1] + up * away[1]]), "right" if is_left else "left", act)
+        return Word(
+            text, np.array([x, place[1] + up * away[1]]), "right" if is_left else "left", act
+        )
     if side == "body":
         if layout.size[0] < 0.5 * layout.width:
-            return Word(text, np.array([-0.5 * layout.size[0] - 14.0, layout.size[1]]), "right", act)
+            return Word(
+                text, np.array([-0.5 * layout.size[0] - 14.0, layout.size[1]]), "right", act
+            )
         return Word(text, np.array([0.0, 0.5 * layout.size[1] + 14.0]), "center", act)
     align = "left" if side == "right" else "right"
     if aside:
@@ -168,7 +168,11 @@ def text_of(act: Act, column: int) -> str:
     peak = float(np.abs(act.values).max())
     # Rounding of a load path leaves what is nearly nothing, as sin(pi).
     texts = [unit(0.0 if abs(value) < 1e-6 * peak else float(value)) for value in now[[0, -1]]]
-    return f"{act.symbol} = {texts[0]}" if len(now) == 1 else f"{act.symbol} = {texts[0]} to {texts[1]}"
+    return (
+        f"{act.symbol} = {texts[0]}"
+        if len(now) == 1
+        else f"{act.symbol} = {texts[0]} to {texts[1]}"
+    )
 
 
 def unit_of(act: Act) -> Unit:

@@ -19,22 +19,14 @@ RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)]
 def strokes_of(
     description: Description, layout: Layout, factor: float, column: int, foot: Array
 ) -> list[Array]:
-    """Lines that hold the bodies at an instant, px from the middle of their foot.
+    """Lines of what holds the bodies at an instant, px from the middle of their foot.
 
-    Parameters
-    ----------
-    factor
-        On displacements.
-    column
-        Of the instant in the description's values.
-    foot
-        Where the right end of the foot has gone, for a spring, px.
+    `column` is that of the instant in the description's values; `foot` is where the right end of
+    the foot has gone, to which a spring is fixed.
     """
     lines: list[Array] = []
     for hold in description.holds:
-        first, last = layout.local(
-            ends_of(hold.side) * np.array([layout.length, layout.top])
-        )
+        first, last = layout.local(ends_of(hold.side) * np.array([layout.length, layout.top]))
         edge = np.array([first + share * (last - first) for share in hold.stretch])
         away = np.array(OUTWARD[hold.side])
         if hold.kind == "clamp":

@@ -99,7 +99,9 @@ class Layout:
         if factor is not None and 0.2 <= factor * share <= 1.3:
             return factor
         power = 10.0 ** math.floor(math.log10(1.0 / share))
-        return float(f"{max(step * power for step in (1, 2, 5) if step * power <= 1.001 / share):.6g}")
+        return float(
+            f"{max(step * power for step in (1, 2, 5) if step * power <= 1.001 / share):.6g}"
+        )
 
 
 def turned(points: Array, angle: float) -> Array:
@@ -127,9 +129,7 @@ def layout_of(geometry: Geometry, width: float, height: float) -> Layout:
     return beside if beside.scale[0] > below.scale[0] else below
 
 
-def _layout(
-    geometry: Geometry, width: float, height: float, column: float, foot: float
-) -> Layout:
+def _layout(geometry: Geometry, width: float, height: float, column: float, foot: float) -> Layout:
     description, top = geometry.description, float(geometry.nodes[:, 1].max())
     arrow = min(max(0.19 * height, 18.0), 38.0)
     left, right, below, above = _margins(description, arrow)

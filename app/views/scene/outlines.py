@@ -44,7 +44,9 @@ class Outlines:
             np.array_equal(known.quads, geometry.quads)
             and np.array_equal(known.parts, geometry.parts)
             and known.nodes.shape == geometry.nodes.shape
-            and bool(np.allclose(known.nodes / known.nodes.max(), geometry.nodes / geometry.nodes.max()))
+            and bool(
+                np.allclose(known.nodes / known.nodes.max(), geometry.nodes / geometry.nodes.max())
+            )
             and known.description.broken == geometry.description.broken
         )
 

@@ -223,7 +223,9 @@ class Picture:
                 lines.append(self._page(beam))
             colors += [_color(act)] * (len(lines) - len(colors))
             widths += [1.6 if len(arrows) > 3 else 3.2] * (len(lines) - len(widths))
-        return _many(lines) | {"color": colors, "width": widths}, _many(heads) | {"color": head_colors}
+        return _many(lines) | {"color": colors, "width": widths}, _many(heads) | {
+            "color": head_colors
+        }
 
     def _words(self) -> Columns:
         words = words_of(self._described, self.layout, self.acts, self._now)
