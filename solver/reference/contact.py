@@ -96,10 +96,9 @@ class IncrementalContact:
         guesses = None if guess is None else guess[condensed.moving]
         kind = NewtonWithChangingFriction if own.change else Newton
         newton = kind(condensed, own, problem.rest, guesses)
-        n_instants = problem.n_instants
         done = self._nothing_done()
-        ambiguous, reached = np.zeros((2, n_instants), dtype=bool)
-        for instant in range(n_instants):
+        ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
+        for instant in range(problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
             if most is not None and newton.response.solutions >= most:

@@ -97,9 +97,9 @@ class IncrementalRod:
             points for it.
         """
         start = time.perf_counter()
-        structure = self._structure
+        structure, starts = self._structure, Starts()
         guesses = None if guess is None else structure.at_dofs(guess)
-        solved, starts = structure.band.solutions, Starts()
+        solved = structure.band.solutions
         found: list[Minimum] = []
         balance, status, gone = np.zeros((3, self._problem.n_dofs))
         for instant in range(self._problem.n_instants):
@@ -109,17 +109,21 @@ class IncrementalRod:
                 break
             done, from_guess = structure.band.solutions, starts.from_guess
             begin = guesses[instant] if guesses is not None and from_guess else status
-            load = structure.load_steps[instant] + balance
-            least = structure.minimise(instant, load, structure.moves[instant], begin, gone)
+            load, move = structure.load_steps[instant] + balance, structure.moves[instant]
+            least = structure.minimise(instant, load, move, begin, gone)
             if least is None:
-                fewer = None if most is None else most // (1 + len(structure.point_dofs) // DEARER)
-                return self._general.march(guess, fewer, stop)
+                return self._general.march(guess, most and most // self._dearer, stop)
             found.append(least)
             starts.took(structure.band.solutions - done, from_guess=from_guess)
             balance, status = least.pull, least.status
             gone = gone + np.abs(least.increment)
-        steps = structure.band.solutions - solved
-        return self._gathered(found, steps, time.perf_counter() - start)
+        seconds = time.perf_counter() - start
+        return self._gathered(found, structure.band.solutions - solved, seconds)
+
+    @property
+    def _dearer(self) -> int:
+        """How many of these systems one of the general solver takes as long as."""
+        return 1 + len(self._structure.point_dofs) // DEARER
 
     def _gathered(self, found: list[Minimum], steps: int, seconds: float) -> Reference:
         """Put together the minima of the first instants, from which on nothing moves."""
