@@ -90,7 +90,7 @@ class Page:
         )
         listen(document, {**self.live.transport.keys(), "p": self.present})
         state.param.watch(lambda event: self._turn(event.new), "tab")
-        state.param.watch(lambda event: self._dress(), "view")
+        state.param.watch(lambda *events: self._dress(), ["view", "lesson"])
         state.param.watch(lambda *events: self.lesson.update(), ["frame", "selection"])
         self.lesson.show()
         self._turn(state.tab)
@@ -150,9 +150,10 @@ class Page:
                 place[:] = objects
 
     def _dress(self) -> None:
-        """Have nothing around the plots in the views for a projector and for a frame."""
+        """Show controls but for a projector, in a frame, and beside a lesson, which has its own."""
         is_bare = self.state.view != "page"
-        self.template.param.update(sx=BARE if is_bare else COMPACT, sidebar_open=not is_bare)
+        is_open = not is_bare and not self.state.lesson
+        self.template.param.update(sx=BARE if is_bare else COMPACT, sidebar_open=is_open)
 
 
 def open_page() -> pmui.Page:
