@@ -11,7 +11,7 @@ from app.state import PageState
 from app.views.view import View
 
 TABS = {
-    "& .MuiTabs-root": {"minHeight": "26px"},
+    "&.MuiTabs-root, & .MuiTabs-root": {"minHeight": "26px"},
     "& .MuiTab-root": {
         "minHeight": "26px",
         "minWidth": 0,
@@ -39,12 +39,14 @@ class Card:
     ----------
     view
         What stands on the page.
+    views
+        All views that share it.
     """
 
     def __init__(
         self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
     ) -> None:
-        self._all = [kind(state) for kind in kinds]
+        self.views = [kind(state) for kind in kinds]
         self._fitting: list[View] = []
         self._chosen: View | None = None
         self._is_fitting = False
@@ -64,9 +66,9 @@ class Card:
 
         The one that was chosen last is in sight, wherever it is offered.
         """
-        named = [view for view in self._all if view.name in state.plots]
+        named = [view for view in self.views if view.name in state.plots]
         self._chosen = named[0] if named else self._chosen
-        fitting = [view for view in self._all if view.applies(state.settings)]
+        fitting = [view for view in self.views if view.applies(state.settings)]
         if fitting == self._fitting and (not named or self.seen in named):
             return
         self._is_fitting = True
@@ -80,7 +82,7 @@ class Card:
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen
-            mine = {view.name for view in self._all}
+            mine = {view.name for view in self.views}
             others = [name for name in self._state.plots if name not in mine]
             first = self._chosen is self._fitting[0]
             self._state.plots = others if first else [*others, self._chosen.name]

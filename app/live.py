@@ -15,9 +15,11 @@ from app.transport import Transport
 from app.views.catalogue import CARDS
 from app.views.scene import Scene
 from app.views.timeline import Timeline
-from app.views.view import View
+from app.views.view import TEXT, View
 
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
+LARGE = "2.6vh"
+"""Size of the type of plots on a projector."""
 PRESENTED = 2
 """Plots that a projector has room for beside the scene."""
 
@@ -69,6 +71,10 @@ class Live:
         self._figures.visible = not state.is_asked
         self._plots.visible = bool(self._cards)
         self._plots[:] = [card.view for card in self._cards]
+        self.transport.view.visible = state.view == "page"
+        size = LARGE if state.view == "present" else TEXT
+        for view in (*self._views, *(view for card in self._cards for view in card.views)):
+            view.magnify(size)
         bare = [state.view] if state.view != "page" else []
         self.view.css_classes = ["live", *bare]
         self._fit()

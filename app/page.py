@@ -68,12 +68,12 @@ class Page:
             state, self.live.transport, self._arrange, lambda: self.member.open_counts()
         )
         self.lesson.view.stylesheets = [STYLE]
+        self.lesson.view.stylesheets = [STYLE]
         self.classroom = classroom = ClassDialog(self.member)
         self._beside = column("beside", self.live.view)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        for view in (self.lesson.view, classroom.view):
-            view.param.watch(lambda event: self._place(), "visible")
+        classroom.view.param.watch(lambda event: self._place(), "visible")
         actions = {
             "Lessons": ("school", self.lesson.offer),
             "A class": ("groups", classroom.open),
@@ -88,9 +88,10 @@ class Page:
             busy_indicator=None,
             sx=COMPACT,
         )
+        self.lesson.view.param.watch(lambda event: self._on_lesson(), "visible")
         listen(document, {**self.live.transport.keys(), "p": self.present})
         state.param.watch(lambda event: self._turn(event.new), "tab")
-        state.param.watch(lambda *events: self._dress(), ["view", "lesson"])
+        state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda *events: self.lesson.update(), ["frame", "selection"])
         self.lesson.show()
         self._turn(state.tab)
@@ -138,9 +139,15 @@ class Page:
         self._place()
         self.live.look()
 
+    def _on_lesson(self) -> None:
+        """Give a lesson the room of the controls: it has those that it speaks of."""
+        self._place()
+        self._dress()
+
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
         lesson, classroom = self.lesson.view, self.classroom.view
+        self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
         views = (
             (self._beside, [lesson] * lesson.visible + [self.live.view]),
             (self._main, [classroom] * classroom.visible + [self._tabs[self.state.tab]]),
@@ -150,10 +157,12 @@ class Page:
                 place[:] = objects
 
     def _dress(self) -> None:
-        """Show controls but for a projector, in a frame, and beside a lesson, which has its own."""
+        """Have nothing around the plots in the views for a projector and for a frame."""
         is_bare = self.state.view != "page"
-        is_open = not is_bare and not self.state.lesson
-        self.template.param.update(sx=BARE if is_bare else COMPACT, sidebar_open=is_open)
+        self.template.param.update(
+            sx=BARE if is_bare else COMPACT,
+            sidebar_open=not (is_bare or self.lesson.view.visible),
+        )
 
 
 def open_page() -> pmui.Page:
