@@ -111,10 +111,14 @@ class LessonPanel:
         lessons = [lesson for lesson in LESSONS.values() if lesson.subject == subject]
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
         buttons = [
-            _button(lesson.title, lambda event, name=lesson.name: self.open(name), sx=LEFT,
-                    variant="text", description=lesson.question)
+            _button(
+                lesson.title,
+                lambda event, name=lesson.name: self.open(name),
+                sx=LEFT,
+                variant="text",
+            )
             for lesson in lessons
-        ]  # fmt: skip
+        ]
         return pn.Column(pn.pane.Markdown(title, margin=(0, 8)), *buttons, width=380, margin=0)
 
     def _follow_settings(self) -> None:
