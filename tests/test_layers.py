@@ -16,7 +16,6 @@ ROOT = Path(__file__).resolve().parents[1]
 TOP_LEVEL = {"pyproject.toml", "app", "solver", "static", "tests", "Dockerfile", "README.md"}
 LAYERS = [
     ["arrays"],
-    ["phrases"],
     ["refusal"],
     ["laws"],
     ["discrete"],

@@ -34,15 +34,13 @@ MADE = Crossover(
 @pytest.mark.parametrize("scene", list(TINY))
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     settings = CATALOGUE[scene].settings.checked(TINY[scene])
-    shares: list[float] = []
-    found = crossover(settings, lambda doing, share: shares.append(share))
+    found = crossover(settings)
     name = CATALOGUE[scene].grows[0]
     assert found.setting == name
     assert found.sizes == [round(factor * getattr(settings, name)) for factor in FACTORS]
     last = settings.instants - 1
     assert found.instants == [round(factor * last) + 1 for factor in FACTORS]
     assert (found.ratios > 0.0).all()
-    assert shares == sorted(shares)
 
 
 def test_all_that_makes_a_body_larger_grows_together(monkeypatch: pytest.MonkeyPatch) -> None:
