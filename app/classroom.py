@@ -13,7 +13,7 @@ from typing import Any
 import param
 
 from app.history import History
-from app.lessons.poll import Poll
+from app.poll import Poll
 from app.messages import Needs, Order, Ready
 from app.state import PageState
 from app.supervisor import Supervisor

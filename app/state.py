@@ -11,7 +11,7 @@ import param
 
 from app.frame import Frame, Selection
 from app.history import History
-from app.lessons.poll import Poll
+from app.poll import Poll
 from app.messages import (
     WHOLE,
     Began,

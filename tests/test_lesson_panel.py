@@ -13,7 +13,7 @@ from app.frame import Frame
 from app.lessons.catalogue import LESSONS, kinds_of, readings_of, settings_of
 from app.lessons.handout import handout
 from app.lessons.panel import WITHOUT, LessonPanel
-from app.lessons.poll import Poll
+from app.poll import Poll
 from app.lessons.text import PENDING, filled, parts_of, without_controls
 from app.messages import Needs
 from app.state import PageState, default_settings
