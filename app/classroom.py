@@ -13,8 +13,8 @@ from typing import Any
 import param
 
 from app.history import History
-from app.poll import Poll
 from app.messages import Needs, Order, Ready
+from app.poll import Poll
 from app.state import PageState
 from app.supervisor import Supervisor
 

@@ -11,7 +11,6 @@ import param
 
 from app.frame import Frame, Selection
 from app.history import History
-from app.poll import Poll
 from app.messages import (
     WHOLE,
     Began,
@@ -27,6 +26,7 @@ from app.messages import (
     Start,
     Step,
 )
+from app.poll import Poll
 from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE

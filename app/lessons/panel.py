@@ -14,8 +14,8 @@ from app.frame import Selection
 from app.lessons.catalogue import LESSONS, kinds_of, lesson_after, readings_of, settings_of
 from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
-from app.poll import Poll
 from app.lessons.text import filled, parts_of
+from app.poll import Poll
 from app.state import PageState
 from app.transport import Transport
 from app.views.view import View
