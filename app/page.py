@@ -83,8 +83,8 @@ class Page:
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header(actions), self.lesson.dialog, classroom.dialog],
-            main=[self._main],
+            header=[self._header(actions)],
+            main=[self._main, self.lesson.dialog, classroom.dialog],
             busy_indicator=None,
             sx=COMPACT,
         )
