@@ -22,14 +22,13 @@ from pathlib import Path
 
 import pytest
 import yaml
-from browser import Server
+from browser import serving
 from packaging.requirements import Requirement
 from pages import status, visits
 from playwright.sync_api import expect
-from processes import PATIENCE, wait_for
-from test_server_leaves_nothing_behind import end_with_pages
+from processes import PATIENCE, is_alive, wait_for
 
-from app.session.pages import VARIABLE
+from app.pages import VARIABLE
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
@@ -227,18 +226,15 @@ def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path)
 def served(image, tmp_path):
     _, variables = image
     command = [shutil.which("slipfront", path=variables["PATH"]), "serve"]
-    made = Server(tmp_path / "log", serves=command, place=tmp_path)
-    try:
-        made.wait()
+    with serving(tmp_path / "log", serves=command, place=tmp_path) as made:
         yield made
-    finally:
-        made.stop()
 
 
 def test_its_page_runs_in_a_browser_and_an_interrupt_leaves_no_process(served, chrome):
     with visits(served, chrome) as visit:
         page = visit("?lesson=best-k")
         expect(page.get_by_role("button", name="Show me")).to_be_visible()
-        assert page.evaluate("[...document.styleSheets].length") > 0
-        expect(status(page)).to_contain_text("onverged")
-    end_with_pages(served, signal.SIGINT)
+        expect(status(page)).to_contain_text("iteration")
+    workers = served.processes()
+    served.stop(signal.SIGINT)
+    wait_for(lambda: not any(is_alive(pid) for pid in workers))

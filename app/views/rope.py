@@ -81,7 +81,7 @@ class CrossSection(_OfRope):
         unit = unit_for(largest, "Pa")
         low, high = (float(end) / unit.factor for end in (cut.stress.min(), cut.stress.max()))
         self.colors.update(low=low, high=max(high, low + 1e-9))
-        self.bar.title = f"stress, {unit.name}, at x = {unit_for(1.0, 'm')(cut.place)}"
+        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut.place)}"
         self._reach = 1050.0 * float((np.hypot(*cut.centres.T) + cut.radii).max())
         self._fit()
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
@@ -195,7 +195,7 @@ class StressRanges(_OfRope):
             return
         largest = float(found.ranges.max())
         unit = unit_for(largest, "Pa")
-        self.figure.yaxis.axis_label = unit.titled("stress range")
+        self.figure.yaxis.axis_label = unit.titled("range")
         self.figure.x_range.end = len(found.layers) + 0.5
         self.figure.y_range.end = 1.08 * largest / unit.factor or 1.0
         put(

@@ -21,7 +21,7 @@ from solver.arrays import Array
 
 THIN = ("#7A7A7A", "#A0A0A0", "#56B4E9")
 """Colours of paths beside the first."""
-LOW, HIGH, TITLE = -1.15, 1.15, 1.62
+LOW, TITLE = -1.5, 1.62
 """Of the axis up: the paths lie between -1 and 1, their names above."""
 LETTER = 0.0085
 """Width of a letter as a share of the axis, about."""
@@ -81,7 +81,7 @@ class Timeline(View):
         end = float(times[-1])
         margin = 0.01 * end
         across = self.figure.x_range
-        across.update(start=-margin, end=end + margin, bounds=(-margin, end + margin))
+        across.update(bounds=(-margin, end + margin), start=-margin, end=end + margin)
         scaled = [values / (np.abs(values).max() or 1.0) for _, values, _ in paths]
         colors = [FORCE, *THIN[: len(paths) - 1]]
         self.path.data = {"t": times, "load": scaled[0].astype(np.float32)}
@@ -96,7 +96,7 @@ class Timeline(View):
         x = [*np.concatenate([[0.0], ends[:-1]]), 1.0 - 4 * LETTER]
         self.names.data = {
             "x": [end * share for share in x],
-            "y": [TITLE] * count + [LOW + 0.45],
+            "y": [TITLE] * (count + 1),
             "text": texts,
             "color": [*colors, THIN[0]],
         }
@@ -132,7 +132,8 @@ def paths_of(run: Run) -> list[tuple[str, Array, bool]]:
 def _path(
     symbol: str, values: Array, instants: Array, run: Run, unit: str, factor: float
 ) -> tuple[str, Array, bool]:
-    low, high = float(values.min()) / factor, float(values.max()) / factor
+    # Adding 0 takes the sign from a zero.
+    low, high = float(values.min()) / factor + 0.0, float(values.max()) / factor + 0.0
     changes = high - low > 1e-6 * max(abs(low), abs(high))
     separator = "" if unit == "°" else " "
     largest = number(low if abs(low) > abs(high) else high)

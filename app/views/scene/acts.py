@@ -157,7 +157,7 @@ def _word(
         return Word(text, np.array([0.0, 0.5 * layout.size[1] + 14.0]), "center", act)
     align = "left" if side == "right" else "right"
     if aside:
-        return Word(text, places[-1] + [16.0 * away[0], -16.0], align, act)
+        return Word(text, places[-1] + [22.0 * away[0], -16.0], align, act)
     return Word(text, places[-1] + [9.0 * away[0], 15.0], align, act)
 
 

@@ -96,7 +96,7 @@ class Layout:
         share = max(shares)
         if not share > 0.0:
             return factor or 1.0
-        if factor is not None and 0.2 <= factor * share <= 1.3:
+        if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
         power = 10.0 ** math.floor(math.log10(1.0 / share))
         return float(

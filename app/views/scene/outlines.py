@@ -141,7 +141,7 @@ def bands(
     -------
     Lines, (n, 2) each, and their status.
     """
-    is_drawn = np.isfinite(points[:, 0])
+    is_drawn = np.isfinite(points).all(axis=1)
     joined = (chains[1:] == chains[:-1]) & is_drawn[1:] & is_drawn[:-1]
     middles = 0.5 * (points[1:] + points[:-1])
     cuts = np.flatnonzero(~joined | (status[1:] != status[:-1])) + 1

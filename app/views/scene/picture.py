@@ -58,6 +58,8 @@ class Picture:
         Values of arrows of full length, by what acts.
     behind
         Settings behind what acts, by where it does.
+    shows_status
+        Whether there are keys to the colours of what rubs.
     """
 
     def __init__(
@@ -69,10 +71,11 @@ class Picture:
         outlines: Outlines,
         peaks: Mapping[str, float],
         behind: Mapping[str, str],
+        shows_status: bool = True,
     ) -> None:
         self.frame, self.column = frame, column
         self.layout, self.factor, self.outlines = layout, factor, outlines
-        self._peaks, self._behind = peaks, behind
+        self._peaks, self._behind, self._shows_status = peaks, behind, shows_status
         self._geometry = frame.run.geometry
         self._described: Description = self._geometry.description
         # Values of a description are not thinned.
@@ -239,8 +242,8 @@ class Picture:
     def _keys(self) -> dict[str, Columns]:
         """What colours mean, and how much displacements are magnified."""
         run, layout = self.frame.run, self.layout
-        kinds = {0: "stick", 1: "slip →", -1: "slip ←"}
-        if any(interface.bound is None for interface in run.interfaces.values()):
+        kinds = {0: "stick", 1: "slip →", -1: "slip ←"} if self._shows_status else {}
+        if kinds and any(interface.bound is None for interface in run.interfaces.values()):
             kinds[OPEN] = "open"
         note = f"displacement × {number(self.factor)}"
         if self._described.height is None:
@@ -251,8 +254,8 @@ class Picture:
             last = 8.0, 11.0, "left"
         else:
             sizes = [26.0 + LETTER * len(text) for text in kinds.values()]
-            x, y = 14.0 + np.cumsum([0.0, *sizes[:-1]]), np.full(count, 0.5 * FOOT)
-            last = layout.width - 8.0, 0.5 * FOOT, "right"
+            x, y = 14.0 + np.cumsum([0.0, *sizes])[:count], np.full(count, 0.5 * FOOT)
+            last = layout.width - 12.0, 0.5 * FOOT, "right"
             if layout.width < NARROW:
                 last = 8.0, 1.5 * FOOT, "left"
         return {

@@ -41,7 +41,7 @@ class Scene(View):
     """
 
     name = "Scene"
-    fill = 1.0
+    shows_status = True
 
     def make(self) -> figure:
         """A new figure."""
@@ -73,14 +73,19 @@ class Scene(View):
 
     def _draw(self, made: figure) -> None:
         of = self.sources
-        made.patch("x", "y", source=of["image"], color=BODY, fill_alpha=0.4, line_alpha=0.0)
-        body = {"fill_color": BODY, "fill_alpha": self.fill, "line_color": EDGE}
+        made.patch("x", "y", source=of["image"], color=BODY, fill_alpha=0.22, line_alpha=0.0)
+        body = {
+            "fill_color": BODY,
+            "fill_alpha": 0.5 if self.shows_status else 0.0,
+            "line_color": EDGE,
+        }
         made.patch("x", "y", source=of["parts"], line_alpha=0.55, line_width=0.8, **body)
         made.line("x", "y", source=of["ghost"], color=GHOST, width=1.2, dash="dashed")
         made.line("x", "y", source=of["rims"], color=EDGE, width=1.4)
         made.line("x", "y", source=of["holds"], color=EDGE, width=1.3)
-        for color, width in ((EDGE, "edge"), ("color", "width")):
-            made.multi_line("xs", "ys", source=of["bands"], color=color, line_width=width)
+        if self.shows_status:
+            for color, width in ((EDGE, "edge"), ("color", "width")):
+                made.multi_line("xs", "ys", source=of["bands"], color=color, line_width=width)
         made.line("x", "y", source=of["broken"], color="#D55E00", width=3)
         made.multi_line("xs", "ys", source=of["arrows"], color="color", line_width="width")
         made.patches("xs", "ys", source=of["heads"], color="color")
@@ -93,7 +98,8 @@ class Scene(View):
             "x", "y", source=of["words"], text_color="color", text_font_size="14px",
             text_font_style="bold", **more,
         )  # fmt: skip
-        made.scatter("x", "y", source=of["keys"], marker="square", size=11, color="color")
+        if self.shows_status:
+            made.scatter("x", "y", source=of["keys"], marker="square", size=11, color="color")
         made.text("x", "y", source=of["notes"], text_color="#78858C", text_font_size="12px", **more)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -112,7 +118,7 @@ class Scene(View):
         assert self._factor is not None
         self.picture = picture = Picture(
             frame, run.column(selection.phase), layout, self._factor,
-            self._outlines_of("frame", frame), self._peaks, behind(run.settings),
+            self._outlines_of("frame", frame), self._peaks, behind(run.settings), self.shows_status,
         )  # fmt: skip
         for name, columns in picture.columns().items():
             put(self.sources[name], columns)

@@ -25,7 +25,7 @@ class Stress(Scene):
 
     name = "Stress"
     needs = frozenset({"stress"})
-    fill = 0.0
+    shows_status = False
 
     def _draw(self, made: figure) -> None:
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
