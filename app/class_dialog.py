@@ -32,10 +32,18 @@ class ClassDialog:
 
     def __init__(self, member: Member) -> None:
         self._member = member
-        self._message = pn.pane.HTML(margin=(4, 8), css_classes=["class"])
+        self._message = pn.pane.HTML(margin=(4, 8))
         self._act = _button("", self._do, variant="text")
         self._code = _button("Code", lambda: self.open(), variant="text")
-        self.view = pn.Row(self._message, self._act, self._code, visible=False, margin=0)
+        self.view = pn.Row(
+            self._message,
+            self._act,
+            self._code,
+            visible=False,
+            margin=0,
+            align="center",
+            css_classes=["class"],
+        )
         self.dialog = pmui.Dialog(title="A class", width_option="sm", show_close_button=True)
         member.param.watch(lambda event: self._say(), "message")
         self._say()

@@ -70,6 +70,7 @@ class Page:
         self.lesson.view.stylesheets = [STYLE]
         self.lesson.view.stylesheets = [STYLE]
         self.classroom = classroom = ClassDialog(self.member)
+        classroom.view.stylesheets = [STYLE]
         self._beside = column("beside", self.live.view)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
@@ -146,11 +147,13 @@ class Page:
 
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
+        # What comes in front is appended, and put there by the style sheet: a column whose children
+        # change their order loses some of them.
         lesson, classroom = self.lesson.view, self.classroom.view
         self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
         views = (
-            (self._beside, [lesson] * lesson.visible + [self.live.view]),
-            (self._main, [classroom] * classroom.visible + [self._tabs[self.state.tab]]),
+            (self._beside, [self.live.view] + [lesson] * lesson.visible),
+            (self._main, [self._tabs[self.state.tab]] + [classroom] * classroom.visible),
         )
         for place, objects in views:
             if list(place) != objects:
