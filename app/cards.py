@@ -48,7 +48,7 @@ class Card:
         self._fitting: list[View] = []
         self._chosen: View | None = None
         self._is_fitting = False
-        self._changed = changed
+        self._state, self._changed = state, changed
         self.view = pmui.Tabs(
             dynamic=True, sizing_mode="stretch_both", min_height=170, margin=0, sx=TABS
         )
@@ -77,22 +77,17 @@ class Card:
         self._is_fitting = False
         self._turn()
 
-    def show(self, name: str) -> bool:
-        """Bring a view in sight, if it is offered here; whether it is."""
-        names = [view.name for view in self._fitting]
-        if name in names:
-            self.view.active = names.index(name)
-        return name in names
-
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen
             self._turn()
 
     def _turn(self) -> None:
-        """Make the figure of the view in sight, where it was not seen yet."""
-        view = self.seen
+        """Make the figure of the view in sight, where it was not seen yet, and show the frame."""
+        view, state = self.seen, self._state
         if view is not None and not self.view[self.view.active].objects:
             pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+            if state.frame is not None:
+                view.update(state.frame, state.selection, state.ghost)
             self.view[self.view.active].append(pane)
         self._changed()

@@ -12,6 +12,7 @@ import panel_material_ui as pmui
 import param
 
 from app.curves import CurveDialog
+from app.files import FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
 from solver.definitions import CurveParameter, Parameter, about
@@ -39,8 +40,8 @@ GROUP = {
     "& .MuiAccordionDetails-root": {"padding": "0 0 8px"},
 }
 PICTURES = {
-    "& .MuiToggleButtonGroup-root": {"display": "grid", "gridTemplateColumns": "repeat(4, 1fr)"},
-    "&.MuiToggleButtonGroup-root": {"display": "grid", "gridTemplateColumns": "repeat(4, 1fr)"},
+    "display": "grid",
+    "gridTemplateColumns": "repeat(4, 1fr)",
     "& .MuiToggleButton-root": {
         "flexDirection": "column",
         "textTransform": "none",
@@ -102,14 +103,13 @@ class Control:
         finally:
             self._is_updating = False
 
-    # ------------------------------------------------------------------- widgets
-
     def _make(self) -> tuple[Any, Any]:
         definition = self._definition
         more: dict[str, Any] = {"description": definition.doc, "size": "small"}
         more |= {"width": WIDTH, "margin": (4, 0), "label": self._unit.titled(self._about.title)}
         if isinstance(definition, CurveParameter):
-            field = pmui.Select(options=list(definition.presets), variant="standard", **more)
+            options = [*definition.presets, POINTS]
+            field = pmui.Select(options=options, variant="standard", **more)
             edit = pmui.Button(
                 label="Edit points",
                 icon="show_chart",
@@ -170,11 +170,8 @@ class Control:
     def _written(self, value: float) -> str:
         return f"{value / self._unit.factor:.10g}"
 
-    # --------------------------------------------------------------------- shown
-
     def _show(self, value: Any) -> None:
         if isinstance(self._definition, CurveParameter):
-            self.field.options = [*self._definition.presets, POINTS]
             self.field.value = POINTS if isinstance(value, tuple) else value
             self._edit_button.visible = isinstance(value, tuple)
             if self._dialog is not None:
@@ -188,20 +185,19 @@ class Control:
 
     def _show_on_slider(self, value: float) -> None:
         assert self.slider is not None
-        end = self._definition.softbounds[1]
-        most = ends_of(self._state.settings).get(self.name, end)
-        high = self._to_slider(max(min(most, end), self._definition.softbounds[0] + 1))
-        if most < end or high != self.slider.end:
-            self.slider.end = high if most < end else self._to_slider(end)
+        low, high = self._definition.softbounds
+        most = ends_of(self._state.settings).get(self.name, high)
+        self.slider.end = self._to_slider(max(min(most, high), low + 1) if most < high else high)
         place = min(max(self._to_slider(value), self.slider.start), self.slider.end)
+        if (self.slider.value, self.slider.value_throttled) == (place, place):
+            return
+        # What the browser let go at last is reset, since it sends that only when it is new.
         with param.edit_constant(self.slider):
             self.slider.param.update(value=place, value_throttled=place)
 
     def _tell(self, refusal: str) -> None:
-        if hasattr(self.field, "helper_text"):
+        if getattr(self.field, "helper_text", refusal) != refusal:
             self.field.param.update(helper_text=refusal, error_state=bool(refusal))
-
-    # ------------------------------------------------------------------- changed
 
     def _on_field(self, value: Any) -> None:
         if self._is_updating or value is None:
@@ -297,6 +293,7 @@ class Controls:
             sx=GROUP,
         )
         self._groups.param.watch(lambda event: self._open(), "active")
+        self._files = pn.Column(margin=0)
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
@@ -320,7 +317,10 @@ class Controls:
         self._chief[:] = [control.view for control in self._controls]
         self._closed = dict(enumerate(groups.values()))
         self._groups.active = []
-        self._groups[:] = [(title, pn.Column(margin=0)) for title in groups]
+        self._groups[:] = [
+            *((title, pn.Column(margin=0)) for title in groups),
+            ("Files", self._files),
+        ]
 
     def _open(self) -> None:
         """Build the controls of groups that are opened for the first time."""
@@ -328,6 +328,8 @@ class Controls:
             controls = [Control(name, self._state) for name in self._closed.pop(place)]
             self._controls += controls
             self._groups[place][:] = [control.view for control in controls]
+        if len(self._groups) - 1 in self._groups.active and not self._files.objects:
+            self._files.append(FilesPanel(self._state, WIDTH).view)
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:

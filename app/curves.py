@@ -48,7 +48,7 @@ class CurveDialog:
         definition = state.settings.definitions()[name]
         assert isinstance(definition, CurveParameter)
         self._columns = definition.abscissa, definition.ordinate
-        self._units = units_of_points(state.settings.scene, name)
+        self._units = Unit(""), Unit("")
         self._is_updating = False
         self.source = ColumnDataSource({"x": [], "y": []})
         self.source.on_change("data", lambda attribute, old, new: self._on_drag())
@@ -87,6 +87,8 @@ class CurveDialog:
         settings = self._state.settings
         value = getattr(settings, self._name)
         points = points_of(settings, self._name) if isinstance(value, str) else value
+        units = settings.curve_units(self._name)
+        self._units = units_of_points(settings.scene, self._name, units)
         x, y = np.array(points).T / np.array([[unit.factor] for unit in self._units])
         is_short = len(x) <= MOST_DRAGGED
         self._is_updating = True
@@ -105,10 +107,7 @@ class CurveDialog:
             self._is_updating = False
 
     def _plot(self) -> figure:
-        titles = [u.titled(c) for c, u in zip(self._columns, self._units, strict=True)]
         made = figure(
-            x_axis_label=titles[0],
-            y_axis_label=titles[1],
             height=220,
             sizing_mode="stretch_width",
             tools="",
@@ -123,14 +122,17 @@ class CurveDialog:
         return made
 
     def _fit(self, x: Any, y: Any) -> None:
-        """Leave room around the points."""
+        """Leave room around the points, and title the axes."""
+        titles = [u.titled(c) for c, u in zip(self._columns, self._units, strict=True)]
+        self._figure.xaxis.axis_label, self._figure.yaxis.axis_label = titles
         for axis, values in ((self._figure.x_range, x), (self._figure.y_range, [0.0, *y])):
             low, high = float(np.min(values)), float(np.max(values))
             room = (high - low or 1.0) * (0.05 if axis is self._figure.x_range else 0.2)
             axis.update(start=low - room, end=high + room)
 
     def _table(self, x: Any, y: Any) -> str:
-        heads = [_head(c, u) for c, u in zip(self._columns, self._units, strict=True)]
+        columns = zip(self._columns, self._units, strict=True)
+        heads = [f"{title} [{unit.name}]" if unit.name else title for title, unit in columns]
         rows = [f"{a:.6g},{b:.6g}" for a, b in zip(x, y, strict=True)]
         return "\n".join([",".join(heads), *rows])
 
@@ -162,9 +164,3 @@ class CurveDialog:
         self._state.adopt(changed)
         self._message.object = message
         self.update()
-
-
-def _head(title: str, unit: Unit) -> str:
-    """The head of a column; of several possible units none is written, which means SI."""
-    is_written = unit.name and " or " not in unit.name
-    return f"{title} [{unit.name}]" if is_written else title

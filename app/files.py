@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import io
 from typing import NamedTuple
 
+import panel as pn
+import panel_material_ui as pmui
+
+from app.refusals import message_of
+from app.state import PageState, default_settings
+from solver.checked import dump
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables, settings_from_toml
+from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.other_programs.brought import Brought, read_brought
 from solver.tables import Table, read_table
 
 TABLES = ".csv,.txt,.dat,.tsv"
+
+HELP = (
+    "Settings (.toml) that were saved here; or a table (.csv): of time and load, or of x, t and "
+    "friction force or displacement, as another program found them, which is drawn beside the run."
+)
 
 
 class Opened(NamedTuple):
@@ -122,3 +135,74 @@ def _path_of(table: Table, source: str, settings: Settings) -> str:
         raise SettingError("the table", source, "a load path, of which none applies", remedy)
     remedy = f"name the one in its first line, as in time,{next(iter(paths))}"
     raise SettingError("the table", source, f"a table of one of {', '.join(paths)}", remedy)
+
+
+class FilesPanel:
+    """Buttons that save settings and open files, and what was understood of these.
+
+    Parameters
+    ----------
+    state
+        Takes over what is opened.
+
+    Attributes
+    ----------
+    file
+        The widget that takes a file.
+    message
+        What was understood.
+    view
+        What stands on the page.
+    """
+
+    def __init__(self, state: PageState, width: int) -> None:
+        self._state = state
+        more = {"width": width, "margin": (4, 0), "size": "small"}
+        save = pmui.FileDownload(
+            label="Save settings (.toml)", callback=self._saved, filename="settings.toml", **more
+        )
+        # Its constructor warns of a variant, whatever it is.
+        save.variant = more["variant"] = "outlined"
+        default = pmui.Button(
+            label="All settings to default",
+            icon="restart_alt",
+            on_click=lambda event: state.adopt(default_settings(state.settings.scene)),
+            **more,
+        )
+        self.file = pmui.FileInput(
+            label="Open settings or a table", accept=f".toml,{TABLES}", description=HELP, **more
+        )
+        self.file.param.watch(lambda event: self._open(), "value")
+        self.message = pmui.Typography("", variant="body2", width=width, margin=0)
+        self._remove = pmui.Button(icon="close", on_click=lambda event: self._forget(), **more)
+        self.view = pn.Column(save, self.file, self.message, self._remove, default, margin=0)
+        state.param.watch(lambda event: self._show(), "brought")
+        self._show()
+
+    def _saved(self) -> io.StringIO:
+        return io.StringIO(dump(self._state.settings))
+
+    def _open(self) -> None:
+        state = self._state
+        if not self.file.value:
+            return
+        try:
+            content, self.message.object = opened(
+                self.file.filename or "the file", self.file.value, state.settings
+            )
+        except RefusedError as refused:
+            state.refusal = self.message.object = message_of(refused, state.settings)
+            return
+        if isinstance(content, Brought):
+            state.brought = content
+        else:
+            state.adopt(content)
+
+    def _forget(self) -> None:
+        self.message.object = ""
+        self._state.brought = None
+
+    def _show(self) -> None:
+        brought = self._state.brought
+        self._remove.visible = brought is not None
+        self._remove.label = f"Remove {brought.source}" if brought is not None else "Remove"

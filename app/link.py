@@ -21,7 +21,8 @@ from app.messages import Step
 from app.refusals import message_of
 from app.state import PACES, TABS, VIEWS, PageState, default_settings
 from app.views.catalogue import CARDS
-from solver.definitions import SettingError, checked_value, choice, count, parse, quantity
+from solver.checked import dump
+from solver.definitions import SettingError, about, checked_value, choice, count, parse, quantity
 from solver.lessons.lesson import Lesson
 from solver.lessons.reading import lesson_from_file
 from solver.refusal import RefusedError
@@ -29,12 +30,19 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
 LESSONS = Path(__file__).parent / "lessons"
+SHARED = "lesson", "tab", "pace", "plots", "view", "room"
+"""What an address has of a page's state beside settings."""
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
 MOST_TOLD = 3
 """Refusals that are told of one address."""
+COPY = """
+if (page.copied) {
+  navigator.clipboard?.writeText(page.copied).catch(() => prompt("The link", page.copied))
+}
+"""
 BACK = """
-if (back.search != null) { addEventListener("popstate", () => { back.search = location.search }) }
+addEventListener("popstate", () => { page.search = location.search })
 """
 
 
@@ -46,16 +54,12 @@ class Place:
     ----------
     settings
         Of the run.
-    lesson, tab, pace, view
-        As in `PageState`.
+    lesson, tab, pace, plots, view, room
+        As in `PageState`; the room is "class" in an address.
     instant
         As a share of the interval; None leaves it.
     iteration
         At which the run waits; 0 has it go on.
-    plots
-        Views on top of their cards, separated by commas.
-    room
-        Code of the class that is followed; "class" in an address.
     theme
         "light" or "dark"; empty is that of the browser.
     """
@@ -88,10 +92,11 @@ _PLACE: dict[str, Any] = {
 """What an address may say beside settings, scene, lesson, class and plots."""
 
 
-class Back(DataModel):
-    """The address that the browser has gone back, or on, to."""
+class Browser(DataModel):
+    """The address that the browser has gone back, or on, to; and the link that it copies."""
 
     search: str = String(default="")  # type: ignore[assignment]
+    copied: str = String(default="")  # type: ignore[assignment]
 
 
 class Link:
@@ -104,56 +109,57 @@ class Link:
     ----------
     state
         Of the page.
+
+    Attributes
+    ----------
+    query
+        The address, from the question mark on.
     """
 
     def __init__(self, state: PageState) -> None:
         self._state, self._location = state, pn.state.location
-        self._query = query_of(place_of(state))
-        self.back = Back(name="back")
-        self.back.on_change("search", lambda name, old, new: self.go(new))
+        self.query = query_of(place_of(state))
+        self.browser = Browser(name="browser")
+        self.browser.on_change("search", lambda name, old, new: self.go(new))
+        args = {"page": self.browser}
+        self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
         document = pn.state.curdoc
         if document is not None:
-            document.add_root(self.back)
-            document.js_on_event("document_ready", CustomJS(args={"back": self.back}, code=BACK))
-        watched = ["settings", "is_dragged", "lesson", "tab", "pace", "plots", "view", "room"]
-        state.param.watch(lambda *events: self.write(), watched)
+            document.add_root(self.browser)
+            document.js_on_event("document_ready", CustomJS(args=args, code=BACK))
+        state.param.watch(lambda *events: self.write(), ["settings", "is_dragged", *SHARED])
 
     def write(self) -> None:
         """Have the address say what is shown."""
         query = query_of(place_of(self._state))
-        if self._state.is_dragged or query == self._query:
+        if self._state.is_dragged or query == self.query:
             return
-        self._query = query
+        self.query = query
         if self._location is not None:
             # After going back the location has not heard where the browser is.
             is_same = self._location.search == query
             self._location.search = f"{query}&" if is_same else query
 
+    def copy(self) -> str:
+        """Have the browser copy the whole link; what it had to leave out."""
+        self.browser.copied = ""
+        self.browser.copied, message = link_of(self._state)
+        return message
+
     def go(self, query: str) -> None:
         """Bring the page to an address."""
         place, refusal = read(query, self._state.settings)
-        self._query = query_of(place)
+        self.query = query_of(place)
         show(self._state, place)
         self._state.refusal = refusal
 
 
 def show(state: PageState, place: Place) -> None:
     """Show what an address says."""
-    plots = [name for name in place.plots.split(",") if name]
-    state.param.update(
-        lesson=place.lesson,
-        tab=place.tab,
-        pace=place.pace,
-        view=place.view,
-        room=place.room,
-        plots=plots,
-    )
+    state.param.update(**{name: getattr(place, name) for name in SHARED})
     if place.instant is not None:
         state.select(phase=place.instant)
-    if (
-        place.settings.values() != state.settings.values()
-        or place.settings.scene != state.settings.scene
-    ):
+    if dump(place.settings) != dump(state.settings):
         state.adopt(place.settings)
     if place.iteration:
         wait_at(state, place.iteration)
@@ -175,15 +181,7 @@ def wait_at(state: PageState, iteration: int) -> None:
 
 def place_of(state: PageState) -> Place:
     """What is shown, without the instant and the iteration."""
-    return Place(
-        settings=state.settings,
-        lesson=state.lesson,
-        tab=state.tab,
-        pace=state.pace,
-        plots=",".join(state.plots),
-        view=state.view,
-        room=state.room,
-    )
+    return Place(state.settings, **{name: getattr(state, name) for name in SHARED})
 
 
 def link_of(state: PageState) -> tuple[str, str]:
@@ -201,7 +199,7 @@ def link_of(state: PageState) -> tuple[str, str]:
     if location is not None:
         root += f":{location.port}" * bool(location.port) + location.pathname
     long = too_long(state.settings)
-    titles = ", ".join(state.settings.definitions()[n].metadata["about"].title for n in long)
+    titles = ", ".join(about(state.settings.definitions()[name]).title for name in long)
     message = f"Too long for a link, so that a saved file has it alone: {titles}." if long else ""
     return root + query_of(place), message
 
@@ -252,7 +250,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
         given = {"lesson": lesson.name, "instant": lesson.instant}
     given["room"] = pairs.pop("class", "")
     given["plots"] = _plots(pairs.pop("plots", ""), refused)
-    for name in _PLACE.keys() & pairs.keys():
+    for name in [name for name in _PLACE if name in pairs]:
         text = pairs.pop(name)
         try:
             value = parse(text) if name in ("instant", "iteration") else text

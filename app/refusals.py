@@ -56,7 +56,7 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
 def _unit_of(settings: Settings, name: str) -> Unit:
     definition = settings.definitions()[name]
     if isinstance(definition, CurveParameter):
-        return units_of_points(settings.scene, name)[1]
+        return units_of_points(settings.scene, name, settings.curve_units(name))[1]
     return unit_of(definition)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -75,7 +75,7 @@ class PageState(param.Parameterized):
     lesson = param.String(doc="Name of the lesson.")
     tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
-    plots = param.List(default=[], item_type=str, doc="Views on top of their cards, by name.")
+    plots = param.String(doc="Names of the views on top of their cards, between commas.")
     room = param.String(doc="Code of the class that is followed.")
     brought = param.ClassSelector(class_=Brought, default=None, doc="Another program's results.")
     refusal = param.String(doc="What was refused and why.")
@@ -86,7 +86,7 @@ class PageState(param.Parameterized):
         super().__init__(settings=settings, **values)
         self.send: Callable[[Order], None] = lambda order: None
         self.history = History()
-        self.kept = {settings.scene: settings}
+        self._left: dict[str, Settings] = {}
         self.number = 0
         self.began = self.failed_in = 0
         self._sent: Needs | None = None
@@ -122,13 +122,13 @@ class PageState(param.Parameterized):
 
     def adopt(self, settings: Settings) -> None:
         """Take settings over and run them."""
-        self.kept[settings.scene] = settings
+        self._left[self.settings.scene] = self.settings
         self.param.update(settings=settings, refusal="", running=True)
         self.run()
 
     def choose_scene(self, scene: str) -> None:
         """Go to a scene, as it was left."""
-        self.adopt(self.kept.get(scene) or default_settings(scene))
+        self.adopt(self._left.get(scene) or default_settings(scene))
 
     def run(self, *, is_agreed: bool = False) -> None:
         """Run the settings from the start, at the pace."""
@@ -272,4 +272,10 @@ def answer(settings: Settings) -> Settings:
     """Settings with which the answer is there at once, of a search that would show itself."""
     if settings.finish != SEARCH["finish"]:
         return settings
-    return settings.replace(**ANSWER)
+    return settings.replace(**known(settings, ANSWER))
+
+
+def known(settings: Settings, values: Mapping[str, str]) -> dict[str, str]:
+    """Values of choices, as far as the scene has them."""
+    definitions = settings.definitions()
+    return {name: value for name, value in values.items() if value in definitions[name].objects}

@@ -8,7 +8,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app.state import ANSWER, PACES, SEARCH, PageState
+from app.state import ANSWER, PACES, SEARCH, PageState, known
 
 PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
@@ -60,7 +60,14 @@ class Transport:
             margin=(6, 4),
         )
         self._iteration = pmui.IntSlider(
-            label="Iteration", start=1, end=2, value=1, size="small", width=130, margin=(0, 10)
+            label="Iteration",
+            start=1,
+            end=2,
+            value=1,
+            show_value=False,
+            size="small",
+            width=130,
+            margin=(0, 10),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
         self.play_button = pmui.IconButton(
@@ -140,7 +147,8 @@ class Transport:
 
     def _choose_way(self, finish: str) -> None:
         if not self._is_updating and finish != self._state.settings.finish:
-            self._state.change(**(SEARCH if finish == SEARCH["finish"] else ANSWER))
+            values = SEARCH if finish == SEARCH["finish"] else ANSWER
+            self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
         """Show where the run is."""

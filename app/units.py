@@ -9,7 +9,7 @@ from functools import cache
 
 import param
 
-from solver.definitions import CurveParameter, Parameter, about
+from solver.definitions import Parameter, about
 from solver.scenes import CATALOGUE, points_of
 
 PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
@@ -20,6 +20,8 @@ LATER = {"GPa": 10.0, "GN/m³": 10.0, "h": 3.0, "d": 3.0}
 """Where a unit begins that is not taken from 1 on: a stress of 3000 MPa is read as that."""
 TYPED = re.compile(r"([-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?)\s*(.*)", re.IGNORECASE)
 """A number as one types it, and what stands behind it."""
+OTHER_SIZES = {"Pa": 1e6, "m": 1e-3}
+"""Of the points of a path that are of another quantity by default, in SI."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -67,15 +69,23 @@ def unit_of(definition: Parameter) -> Unit:
 
 
 @cache
-def units_of_points(scene: str, name: str) -> tuple[Unit, Unit]:
-    """The units of both columns of a path's points, by the scene's defaults; times are in s."""
-    settings = CATALOGUE[scene].settings.checked({})
-    definition = settings.definitions()[name]
-    assert isinstance(definition, CurveParameter)
-    columns = zip(*points_of(settings, name), strict=True)
+def units_of_points(scene: str, name: str, units: tuple[str, str]) -> tuple[Unit, Unit]:
+    """The units in which the points of a path are read, by the scene's defaults.
+
+    Parameters
+    ----------
+    scene, name
+        The path.
+    units
+        Those of SI, as the other settings have them (`Settings.curve_units`).
+    """
+    default = CATALOGUE[scene].settings.checked({})
+    columns = zip(*points_of(default, name), strict=True)
     sizes = [max(map(abs, column)) for column in columns]
-    across, up = (unit_for(size, unit) for size, unit in zip(sizes, definition.units, strict=True))
-    return (Unit("s") if definition.abscissa == "time" else across), up
+    if default.curve_units(name) != units:
+        sizes[1] = OTHER_SIZES.get(units[1], 1.0)
+    across, up = (unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))
+    return across, up
 
 
 def typed(text: str, unit: Unit, si: str) -> float:

@@ -1,4 +1,4 @@
-"""Views show what a frame has: the first iterate, the last one, the answer, a ghost, a reference."""
+"""Views show what a frame has: an iterate, the answer, a ghost, a reference."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
+from app.cards import Card
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.views.axial_force import AxialForce
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.convergence import Convergence
@@ -38,7 +40,14 @@ SMALL = {
 }
 MORE = {
     "bases": ("bar", {"elements": 60, "linear_stage": "pgd"}),
-    "two points": ("incline", {"elements_x": 1, "substructures": 1}),
+    "two points": (
+        "block",
+        {
+            **{"gap": "flat", "length": 0.1, "height": 0.1, "elements": 1, "elements_up": 1},
+            **{"substructures": 1, "substructures_up": 1, "friction": 0.7, "duration": 8.0},
+            **{"top_normal_slope": 0.5, "top_tangential_load": "cycles", "instants": 65},
+        },
+    ),
 }
 
 
@@ -46,10 +55,7 @@ def settings_of(case: str) -> Settings:
     """Settings of a case, with a search that ends soon."""
     scene, changes = MORE.get(case, (case, SMALL.get(case, {})))
     settings = default_settings(scene)
-    for name, value in {**changes, "max_iterations": 6}.items():
-        if name in settings.definitions():
-            settings = settings.with_change(name, value)
-    return settings
+    return settings.replace(**changes, max_iterations=6)
 
 
 @cache
@@ -61,7 +67,7 @@ def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
     frames = [runner.frame(needs)]
     while runner.rest() is not None:
         runner.advance()
-        if len(runner.history) == 5 and runner.status is None:
+        if len(runner.history) <= 5 and runner.status is None:
             frames[1:] = [runner.frame(needs)]
     return frames[0], frames[1], runner.frame(needs)
 
@@ -198,7 +204,7 @@ def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)
     assert list(view.answer.data["x"]) == [answer.iteration]
-    assert len(view.curves["force error"].data["x"]) == len(answer.history["iteration"]) - 1
+    assert len(view.curves["force"].data["x"]) == len(answer.history["iteration"]) - 1
 
 
 def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
@@ -206,7 +212,7 @@ def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
     view = view_of(Convergence, last)
     view.update(first, Selection(), None)
     assert list(view.shown.data["x"]) == [first.iteration]
-    assert len(view.curves["indicator η"].data["x"]) == len(last.history["iteration"])
+    assert len(view.curves["η"].data["x"]) == len(last.history["iteration"])
 
 
 def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
@@ -241,3 +247,27 @@ def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -
     theirs["quantity"] = "displacement"
     view = view_of(HysteresisLoop, replace(frame, extras={"beside": theirs}))
     assert len(view.sources["beside"].data["x"]) == 3
+
+
+def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> None:
+    state = PageState(default_settings("strand"))
+    card = Card(CARDS[0], state, lambda: None)
+    card.fit(state)
+    assert isinstance(card.seen, ContactForce)
+    card.view.active = 1
+    state.settings = default_settings("bar")
+    card.fit(state)
+    assert isinstance(card.seen, ContactForce)
+    state.settings = default_settings("strand")
+    card.fit(state)
+    assert isinstance(card.seen, AxialForce)
+
+
+def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
+    frame = frames_of("bar")[1]
+    state = PageState(frame.run.settings, frame=frame, newest=frame)
+    card = Card((ContactForce, HysteresisLoop), state, lambda: None)
+    card.fit(state)
+    card.view.active = 1
+    assert isinstance(card.seen, HysteresisLoop)
+    assert len(card.seen.sources["latin"].data["x"]) == len(frame.run.instants)

@@ -49,7 +49,8 @@ class AxialForce(View):
             return
         column, known, stuck = run.column(selection.phase), run.known("axial force"), axial["stuck"]
         key = (*key_of(run), *axial["names"])
-        self._x.hold(key, *extent([axial["x"]]))
+        along = run.interfaces[selection.interface_of(run)].positions
+        self._x.hold(key, *extent([axial["x"]] if stuck is not None else [axial["x"], along]))
         values = [axial["force"], *(curve.up for curve in known)]
         low, high = extent(values if stuck is None else [*values, stuck])
         self._y.hold(key, min(low, 0.0), max(high, 0.0), 0.05)

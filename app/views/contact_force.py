@@ -10,7 +10,7 @@ from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, 
 from app.views.view import Axis, Key, View, extent, hover, key_of, plot, put, source
 from solver.scenes import kind_of
 
-ROOM, MOST = 1.15, 3.0
+ROOM, MOST = 1.15, 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
 
 

@@ -8,17 +8,17 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import Axis, Key, View, curve, hover, plot, put, source, whole
+from app.views.view import Axis, Key, View, curve, extent, hover, plot, put, source, whole
 
 LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
 """What is seen at least, which indicators do not widen, and the smallest error that is seen."""
 SHORTEST = 20
 CURVES = {
-    "indicator η": ("indicator", REFERENCE, 1.2, "solid"),
-    "k-free indicator": ("behaviour", PRESSURE, 1.2, "solid"),
-    "estimated error": ("estimated_error", BESIDE, 1.5, "dashed"),
-    "displacement error": ("error_displacement", DISPLACEMENT, 2.0, "solid"),
-    "force error": ("error_force", ERROR, 3.5, "solid"),
+    "η": ("indicator", REFERENCE, 1.2, "solid"),
+    "k-free": ("behaviour", PRESSURE, 1.2, "solid"),
+    "estimate": ("estimated_error", BESIDE, 1.5, "dashed"),
+    "displ.": ("error_displacement", DISPLACEMENT, 2.0, "solid"),
+    "force": ("error_force", ERROR, 3.5, "solid"),
 }
 """Column, colour, width and dash of each; the last is drawn on top."""
 
@@ -30,7 +30,7 @@ class Convergence(View):
 
     def make(self) -> figure:
         """A new figure."""
-        made = plot("iteration", "relative", y_axis_type="log", y_range=(LEAST, MOST))
+        made = plot("iteration", "error", y_axis_type="log", y_range=(LEAST, MOST))
         whole(made.xaxis[0])
         self._x, self._y = Axis(made, "x", "iteration"), Axis(made, "y", "error")
         self.ghost, self.newest = source("x", "y"), source("x", "y")
@@ -63,7 +63,7 @@ class Convergence(View):
         x = newest.history["iteration"][:searched]
         for title, (column, *_) in CURVES.items():
             curve(self.curves[title], x, newest.history[column][:searched])
-        error = self.curves["force error"].data
+        error = self.curves["force"].data
         put(self.newest, x=error["x"][-1:], y=error["y"][-1:])
         column = "error_force" if len(error["x"]) else "estimated_error"
         if ghost is None:
@@ -71,9 +71,8 @@ class Convergence(View):
         else:
             n = _searched(ghost)
             curve(self.ghost, ghost.history["iteration"][:n], ghost.history[column][:n])
-        seen = [y for source in (self.curves["force error"], self.ghost) for y in source.data["y"]]
-        low, high = min(seen, default=LEAST), max(seen, default=MOST)
-        self._y.decades(run.number, min(max(low, FLOOR), LEAST), max(high, MOST))
+        low, high = extent([[LEAST, MOST], error["y"], self.ghost.data["y"]])
+        self._y.decades(run.number, max(low, FLOOR), high)
         end = max(float(newest.iteration), *map(float, self.ghost.data["x"][-1:]), SHORTEST)
         self._x.hold(run.number, 0.0, _round_up(end))
         back = [frame.iteration] if frame is not newest and not frame.is_answer else []
@@ -82,7 +81,7 @@ class Convergence(View):
         is_answer = [newest.iteration] if newest.is_answer else []
         put(self.answer, x=is_answer, y=[1.6 * foot for _ in is_answer])
         entries: dict[str, bool | str] = {
-            title: bool(len(source.data["x"])) for title, source in self.curves.items()
+            title: len(source.data["x"]) > 1 for title, source in self.curves.items()
         }
         past = self.ghost_name if len(self.ghost.data["x"]) else ""
         self._key.show({**entries, "answer": newest.is_answer, "ghost": past})

@@ -10,8 +10,8 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.colors import ERROR, LATIN, SCALE, scaled
-from app.views.view import Axis, Key, View, extent, hover, key_of, plot, put, source, whole
+from app.views.colors import CUT, ERROR, LATIN, SCALE, scaled
+from app.views.view import Axis, Key, View, extent, hover, key_of, mark, plot, put, source, whole
 from solver.scenes import kind_of
 from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in
@@ -28,8 +28,8 @@ def has_cycles(settings: Settings) -> bool:
 
 def _key(made: figure) -> Key:
     """Legend of the first and the last cycle, and of what becomes of slip."""
-    first, last = (made.scatter([], [], marker="square", size=10, color=SCALE[n]) for n in (0, -1))
-    text = made.scatter([], [], alpha=0)
+    first, last = (mark(made, SCALE[n]) for n in (0, -1))
+    text = mark(made, CUT, alpha=0.0)
     return Key(made, {"cycle 1": [first], "last": [last], "text": [text]})
 
 
@@ -117,7 +117,7 @@ class Fretting(View):
 
     def make(self) -> figure:
         """A new figure."""
-        made = plot("", "last cycle / peak", y_range=Range1d(0.0, 1.1))
+        made = plot("", "share of peak", y_range=Range1d(0.0, 1.1))
         self._x = Axis(made, "x", "x", "m")
         self.values = source("x", "slip", "work")
         work = made.line("x", "work", source=self.values, color=ERROR, width=4, alpha=0.7)

@@ -7,7 +7,19 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.views.colors import ERROR, GHOST, REFERENCE
-from app.views.view import Axis, Key, View, curve, extent, hover, key_of, plot, put, source
+from app.views.view import (
+    Axis,
+    Key,
+    View,
+    curve,
+    extent,
+    few_ticks,
+    hover,
+    key_of,
+    plot,
+    put,
+    source,
+)
 from app.worker.references import has_reference
 from solver.settings import Settings
 
@@ -34,6 +46,7 @@ class ErrorTime(View):
             x_range=(1e-3, 1.0),
             y_range=(LEAST, MOST),
         )
+        few_ticks(made.xaxis[0])
         self._x, self._y = Axis(made, "x", "run time, s"), Axis(made, "y", "force error")
         self.now, self.ghost = source("x", "y"), source("x", "y")
         self.newest, self.reference = source("x", "y"), source("x")

@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import ERROR, RANKS
-from app.views.view import TEXT, Axis, Key, View, extent, plot, put, source, whole
+from app.views.view import Axis, Key, View, extent, plot, put, source, whole
 from app.worker.extras import MOST_MODES
 from solver.scenes import kind_of
 from solver.settings import Settings
@@ -34,17 +34,17 @@ class Modes(View):
             for each, color in list(zip(self.modes, RANKS, strict=False))[::-1]
         ][::-1]
         entries = {str(n): [line] for n, line in enumerate(lines)}
-        self._key = Key(made, {**entries, "text": [made.scatter([], [], alpha=0)]})
+        self._key = Key(made, entries)
         return made
 
-    def _draw(self, x: Floats, values: Floats, names: list[str], text: str) -> None:
+    def _draw(self, x: Floats, values: Floats, names: list[str]) -> None:
         for number, target in enumerate(self.modes):
             if number < len(values):
                 put(target, x=x, y=values[number])
             else:
                 put(target, x=[], y=[])
         names += [""] * (MOST_MODES - len(names))
-        self._key.show({**{str(n): name for n, name in enumerate(names)}, "text": text})
+        self._key.show({str(n): name for n, name in enumerate(names)})
 
 
 class SpaceModes(Modes):
@@ -67,9 +67,10 @@ class SpaceModes(Modes):
         if modes is None:
             return
         x, values = modes["x"], modes["space"]
+        self._x.rename(f"x ({modes['text']})", "m")
         self._x.hold((frame.run.number, modes["substructure"]), *extent([x]))
         names = [f"mode {n + 1}" if n == 0 else str(n + 1) for n in range(len(values))]
-        self._draw(self._x(x), values, names, modes["text"])
+        self._draw(self._x(x), values, names)
 
 
 class TimeFunctions(Modes):
@@ -91,14 +92,13 @@ class TimeFunctions(Modes):
         modes, run = frame.extras.get("modes"), frame.run
         if modes is None:
             return
+        self._x.rename(f"t (substructure {modes['substructure'] + 1})", "s")
         self._x.hold(run.number, *extent([run.instants]))
         sizes = np.abs(modes["time"]).max(axis=1, initial=0.0)
         values = modes["time"] / np.where(sizes > 0.0, sizes, 1.0)[:, None]
         names = [unit_for(float(size), "m")(float(size), 2) for size in sizes]
         put(self.now, x=self._x(run.instants[[run.column(selection.phase)]]))
-        self._draw(
-            self._x(run.instants), values, names, f"substructure {modes['substructure'] + 1}"
-        )
+        self._draw(self._x(run.instants), values, names)
 
 
 class BasisSizes(View):
@@ -128,8 +128,6 @@ class BasisSizes(View):
         made.hspan("y", source=self.chosen, color=ERROR, line_width=2)
         ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         bar = ColorBar(color_mapper=self._colors, ticker=ticker, width=6, padding=4, title="modes")
-        bar.title_text_font_size = bar.major_label_text_font_size = TEXT
-        bar.title_text_font_style, bar.background_fill_alpha = "normal", 0
         made.add_layout(bar, "right")
         made.on_event(Tap, self._select)
         return made

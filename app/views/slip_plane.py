@@ -6,8 +6,8 @@ import numpy as np
 from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
-from app.views.colors import DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
-from app.views.view import Axis, Key, View, extent, plot, put, source
+from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
+from app.views.view import Axis, Key, View, extent, mark, plot, put, source
 from solver.settings import Settings
 
 FAR = 10.0
@@ -45,7 +45,7 @@ class SlipPlane(View):
                 "right slips": lines["right"],
                 "so far": lines["path"],
                 "free in the last cycle": [room],
-                "contact alone holds the block": [made.scatter([], [], alpha=0)],
+                "contact alone holds the block": [mark(made, CUT, alpha=0.0)],
             },
         )
         return made

@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.views.colors import scaled
-from app.views.view import TEXT, Axis, View, plot, put, source, whole
+from app.views.view import Axis, View, hover, plot, put, source, whole
 from solver.settings import Settings
 
 LEAST = 1e-4
@@ -32,25 +32,14 @@ class Spectra(View):
         whole(made.xaxis[0])
         self._x = Axis(made, "x", "mode")
         self.values = source("xs", "ys", "color")
-        made.multi_line("xs", "ys", color="color", source=self.values, width=1.8)
-        made.scatter([], [])
+        lines = made.multi_line("xs", "ys", color="color", source=self.values, width=1.8)
+        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
+        ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
         self._bar = ColorBar(
-            color_mapper=self._colors,
-            ticker=BasicTicker(desired_num_ticks=3, min_interval=1, num_minor_ticks=0),
-            title="substructure",
-            title_text_font_size=TEXT,
-            title_text_font_style="normal",
-            major_label_text_font_size=TEXT,
-            orientation="horizontal",
-            location="top_right",
-            width=120,
-            height=6,
-            padding=0,
-            margin=0,
-            background_fill_alpha=0,
+            color_mapper=self._colors, ticker=ticker, width=8, padding=6, major_tick_line_color=None
         )
-        made.add_layout(self._bar, "above")
+        made.add_layout(self._bar, "right")
         return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -58,6 +47,7 @@ class Spectra(View):
         spectra = frame.extras.get("spectra")
         if spectra is None:
             return
+        count = frame.run.settings.n_substructures
         shown = [values[values > 0.1 * LEAST] for values in spectra]
         put(
             self.values,
@@ -65,7 +55,7 @@ class Spectra(View):
             ys=shown,
             color=scaled(len(shown)),
         )
+        self._x.rename("mode; the colour is the substructure" if count > 1 else "mode", "")
         self._x.hold(frame.run.number, 1.0, float(max([FEWEST, *map(len, shown)])))
-        count = frame.run.settings.n_substructures
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
 from app.views.colors import CUT, ERROR, EXACT, STATUS
-from app.views.view import Axis, Key, View, extent, plot, put, source
+from app.views.view import Axis, Key, View, extent, hover, mark, plot, put, source
 from solver.settings import Settings
 
 ENTRIES = {"slip −": -1, "stick": 0, "slip +": 1, "open": 2}
@@ -36,17 +36,17 @@ class StatusMap(View):
         self.now, self.place, self.cuts = source("t"), source("x"), source("x")
         self.front, self.ghost = source("x", "y"), source("x0", "y0", "x1", "y1")
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        made.image("image", x="x", y="y", dw="dw", dh="dh", source=self.status, color_mapper=colors)
+        image = made.image(
+            "image", x="x", y="y", dw="dw", dh="dh", source=self.status, color_mapper=colors
+        )
         made.vspan("x", source=self.cuts, color=CUT, alpha=0.6, line_width=1)
         front = made.line("x", "y", source=self.front, color=EXACT, width=3)
         ghost = made.segment("x0", "y0", "x1", "y1", source=self.ghost, color="#000000", width=1)
         made.hspan("t", source=self.now, color=ERROR, line_width=2)
         made.vspan("x", source=self.place, color=ERROR, alpha=0.7, line_width=1)
-        squares = {
-            title: [made.scatter([], [], marker="square", size=10, color=STATUS[status])]
-            for title, status in ENTRIES.items()
-        }
+        squares = {title: [mark(made, STATUS[status])] for title, status in ENTRIES.items()}
         self._key = Key(made, {**squares, "closed form": [front], "ghost": [ghost]})
+        hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         made.on_event(Tap, self._select)
         self._ghost_of: object = None
         return made

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
@@ -12,11 +13,14 @@ from bokeh.core.properties import value
 from bokeh.models import (
     ColumnDataSource,
     CrosshairTool,
+    FixedTicker,
     GlyphRenderer,
     HoverTool,
     Legend,
     NumeralTickFormatter,
+    PrintfTickFormatter,
     Range1d,
+    Title,
 )
 from bokeh.plotting import figure
 from numpy.typing import ArrayLike
@@ -28,7 +32,17 @@ from app.views.colors import CUT
 from solver.settings import Settings
 
 TOOLS = "pan,box_zoom,wheel_zoom,reset,save,fullscreen"
-TEXT = "11px"
+TEXT = "12px"
+"""Size of text in plots, of which the theme takes shares."""
+LONGEST = 16
+"""Letters in a line of the title beside a plot: a small one is no higher."""
+CLOSE = """
+.bk-grid { gap: 6px 8px !important; }
+.bk-item { gap: 4px !important; }
+.bk-item .bk-label { min-width: 0 !important; }
+"""
+"""Lets a legend of seven entries stand in one line, from the left end of the figure on; the theme
+keeps them farther apart."""
 
 
 class View:
@@ -93,7 +107,7 @@ class Axis:
     """
 
     def __init__(self, made: figure, side: str, title: str, unit: str = "") -> None:
-        self._model, self._range = getattr(made, f"{side}axis")[0], getattr(made, f"{side}_range")
+        self._made, self._side, self._range = made, side, getattr(made, f"{side}_range")
         self._title, self._si = title, unit
         self._unit, self._key, self._ends = Unit(""), None, (np.nan, np.nan)
         self._label()
@@ -140,7 +154,11 @@ class Axis:
         self.span(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
 
     def _label(self) -> None:
-        self._model.axis_label = self._unit.titled(self._title)
+        text = self._unit.titled(self._title)
+        if self._side == "x":
+            self._made.below[-1].text = text
+        else:
+            self._made.yaxis.axis_label = textwrap.fill(text, LONGEST)
 
 
 class Key:
@@ -172,10 +190,10 @@ def plot(x: str, y: str, **more: Any) -> figure:
     """A figure with the look that all plots share; its ranges are set by whoever fills it."""
     more = {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more
     made = figure(
-        x_axis_label=x,
         y_axis_label=y,
         sizing_mode="stretch_both",
         min_height=120,
+        styles={"font-size": TEXT},
         tools=TOOLS,
         active_drag=None,
         active_scroll="wheel_zoom",
@@ -185,11 +203,10 @@ def plot(x: str, y: str, **more: Any) -> figure:
     made.toolbar.autohide, made.toolbar.logo = True, None
     made.min_border, made.min_border_right = 2, 10
     made.outline_line_color = None
-    for axis in made.axis:
-        axis.axis_label_text_font_size = axis.major_label_text_font_size = TEXT
-        axis.axis_label_text_font_style = "normal"
-        axis.axis_label_standoff, axis.major_label_standoff = 2, 3
-        axis.minor_tick_line_color, axis.major_tick_in, axis.major_tick_out = None, 0, 3
+    made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
+    made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
+    # A title stands nearer than the label of an axis, which the theme moves away.
+    made.add_layout(Title(text=x, align="center", standoff=2), "below")
     made.grid.grid_line_alpha = 0.3
     return made
 
@@ -217,6 +234,12 @@ def _equal(old: Any, new: Any) -> bool:
     return np.array_equal(old, new)
 
 
+def mark(made: figure, color: str, alpha: float = 1.0) -> GlyphRenderer:
+    """A square that stands in a legend only."""
+    nowhere = {"x": [np.nan], "y": [np.nan]}
+    return made.scatter(**nowhere, marker="square", size=10, color=color, alpha=alpha)
+
+
 def curve(target: ColumnDataSource, x: ArrayLike, y: ArrayLike) -> None:
     """Fill a source of x and y with a curve on logarithmic axes: what is positive and finite."""
     x, y = np.asarray(x), np.asarray(y)
@@ -230,17 +253,12 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
         items=list(entries.items()),
         orientation="horizontal",
         location="top_left",
-        label_text_font_size=TEXT,
-        label_standoff=4,
         padding=0,
-        margin=0,
-        spacing=10,
-        border_line_alpha=0,
-        background_fill_alpha=0,
-        glyph_height=12,
-        glyph_width=16,
+        margin=2,
         label_height=12,
         click_policy="hide",
+        styles={"font-size": TEXT, "margin-left": "-44px", "top": "-3px"},
+        stylesheets=[CLOSE],
     )
     made.add_layout(box, "above")
     return box
@@ -249,6 +267,12 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
 def key_of(run: Run) -> tuple[int, bool]:
     """What units and ends of axes are chosen for: a run, and anew once its reference is known."""
     return run.number, bool(run.reference)
+
+
+def few_ticks(axis: Any) -> None:
+    """Have a logarithmic axis of few decades say 1, 2, 5, 10, ... without overlaps."""
+    axis.ticker = FixedTicker(ticks=[f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)])
+    axis.formatter = PrintfTickFormatter(format="%g")
 
 
 def whole(axis: Any) -> None:

@@ -23,6 +23,8 @@ from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
 from solver.scenes import kind_of, structure_of
+from solver.study.other_programs.beside import Beside
+from solver.study.other_programs.brought import Brought
 from solver.study.quantities.clip_measures import can_be_clipped, clips_in, products_in
 from solver.study.quantities.cycles import cycles_of, ends_of
 from solver.study.quantities.shakedown import Fate, fate_of
@@ -266,6 +268,35 @@ def _pairs(sizes: Sizes) -> Floats:
     return floats(np.stack([sizes.numbers, sizes.errors]))
 
 
+@lru_cache(maxsize=1)
+def _laid_beside(brought: Brought, sampler: Sampler, interface: str) -> Beside:
+    return Beside(brought, sampler.problem, interface)
+
+
+def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
+    """Results of another program and their distance to the iterate, if they are of its scene.
+
+    Returns
+    -------
+    "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
+    displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
+    iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.
+    """
+    brought = needs.brought
+    if brought is None or brought.scene != sampler.settings.scene:
+        return None
+    laid = _laid_beside(brought, sampler, needs.interface)
+    return {
+        "name": brought.source,
+        "quantity": brought.quantity,
+        "x": floats(brought.positions),
+        "t": floats(brought.times),
+        "values": floats(brought.values),
+        "distance": laid.of(iterate),
+        "interface": laid.interface,
+    }
+
+
 Extra = Callable[["Sampler", Iterate, Needs], Any]
 EXTRAS: dict[str, Extra] = {
     "spectra": spectra,
@@ -274,5 +305,6 @@ EXTRAS: dict[str, Extra] = {
     "cycles": cycles,
     "modes": modes,
     "clips": clips,
+    "beside": beside,
 }
 """By the name that a view needs them by."""

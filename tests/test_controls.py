@@ -1,0 +1,246 @@
+"""The controls at the side show every setting, and refuse at the control what does not hold."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import param
+import pytest
+
+from app.controls import POINTS, Control, Controls
+from app.files import FilesPanel
+from app.refusals import nearest_allowed
+from app.state import PageState, default_settings
+from app.units import Unit, typed, unit_of
+from solver.definitions import CurveParameter
+from solver.refusal import RefusedError
+from solver.scenes import CATALOGUE, ends_of
+
+
+@cache
+def names(scene: str) -> list[str]:
+    """Settings of a scene."""
+    return list(default_settings(scene).definitions())
+
+
+def of_scene(scene: str) -> PageState:
+    return PageState(default_settings(scene))
+
+
+def held(state: PageState, name: str) -> Any:
+    return getattr(state.settings, name)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_the_widget_of_every_setting_shows_its_value_and_takes_another(scene: str) -> None:
+    for name in names(scene):
+        state = of_scene(scene)
+        control, definition = Control(name, state), state.settings.definitions()[name]
+        value = held(state, name)
+        if control.slider is not None:
+            unit = unit_of(definition)
+            assert typed(control.field.value, unit, definition.metadata["about"].unit) == (
+                pytest.approx(value, rel=1e-9)
+            )
+            another = nearest_allowed(state.settings, name, definition.softbounds[1])
+            control.field.value = f"{another / unit.factor:.12g}"
+            assert held(state, name) == pytest.approx(another, rel=1e-9), name
+        elif isinstance(definition, param.Boolean):
+            control.field.value = not value
+            assert held(state, name) is not value
+        elif len(control.field.options) > 1:
+            another = next(option for option in control.field.options if option != value)
+            control.field.value = another
+            assert held(state, name) == another or state.refusal, name
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_both_ends_of_every_slider_hold_or_are_refused_at_the_control(scene: str) -> None:
+    for name in names(scene):
+        for end in ("start", "end"):
+            state = of_scene(scene)
+            control = Control(name, state)
+            if control.slider is None:
+                break
+            place = getattr(control.slider, end)
+            control.slider.value = place
+            with param.edit_constant(control.slider):
+                control.slider.value_throttled = place
+            assert control.slider.value == pytest.approx(place) or control.field.error_state, name
+            assert control.field.helper_text == (state.refusal if control.field.error_state else "")
+
+
+def test_a_field_keeps_its_unit_whatever_is_typed() -> None:
+    state = of_scene("incline")
+    control = Control("weight", state)
+    assert control.field.label.endswith(", kN")
+    for text, newtons in (("-5", -5e3), ("900", 9e5), ("0,25", 250.0), ("3 MN", 3e6), ("7 N", 7.0)):
+        control.field.value = text
+        if newtons < 0.0:
+            assert "−5 kN" in control.field.helper_text
+        else:
+            assert held(state, "weight") == newtons
+        assert control.field.label.endswith(", kN")
+
+
+def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_holds_is_back() -> (
+    None
+):
+    state = of_scene("bar")
+    young, parts = Control("young", state), Control("substructures", state)
+    young.field.value = "-3"
+    assert young.field.value == "210"
+    assert young.field.error_state
+    assert "Young's modulus E cannot be −3 GPa" in young.field.helper_text
+    parts.field.value = "ten"
+    assert parts.field.helper_text == "Substructures cannot be “ten”: write a number."
+    parts.field.value = "60"
+    assert "raise Elements" in parts.field.helper_text
+    assert state.refusal == parts.field.helper_text
+    parts.field.value = "20"
+    parts.update()
+    assert not parts.field.error_state
+    assert not state.refusal
+
+
+def test_an_empty_field_is_the_default() -> None:
+    state = of_scene("bar")
+    control = Control("peak", state)
+    control.field.value = "1200"
+    control.field.value = ""
+    control.update()
+    assert (held(state, "peak"), control.field.value) == (900.0, "900")
+
+
+def test_a_slider_stops_at_what_other_settings_allow_and_says_nothing_while_it_is_dragged() -> None:
+    state = of_scene("strand")
+    told: list[str] = []
+    state.param.watch(lambda event: told.append(event.new), "refusal")
+    control = Control("friction", state)
+    assert control.slider is not None
+    for place in (0.2, 0.1, 0.0):
+        control.slider.value = place
+        assert state.is_dragged
+    least = held(state, "friction")
+    assert 0.1 < least < 0.2
+    assert not any(told)
+    with param.edit_constant(control.slider):
+        control.slider.value_throttled = 0.0
+    assert held(state, "friction") == least
+    assert control.field.value == f"{least:g}"
+    assert "Friction coefficient μ cannot be 0" in control.field.helper_text
+    assert not state.is_dragged
+
+
+def test_a_slider_ends_where_another_setting_has_it_end() -> None:
+    state = of_scene("strand")
+    control = Control("broken", state)
+    assert control.slider is not None
+    assert control.slider.end == ends_of(state.settings)["broken"]
+    state.change(wires=7)
+    control.update()
+    assert control.slider.end == ends_of(state.settings)["broken"]
+
+
+def test_controls_that_do_nothing_here_are_hidden() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    seed = next(control for control in controls._controls if control.name == "seed")
+    assert not seed.view.visible
+    state.change(load="random")
+    assert seed.view.visible
+
+
+def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
+    for scene in CATALOGUE:
+        controls = Controls(of_scene(scene))
+        built = len(controls._controls)
+        groups = controls._groups
+        groups.active = list(range(len(groups)))
+        shown = {control.name for control in controls._controls}
+        definitions = default_settings(scene).definitions()
+        missing = set(definitions) - shown
+        assert built < len(shown)
+        assert all(len(getattr(definitions[name], "objects", "any")) == 1 for name in missing)
+
+
+def test_each_scene_keeps_its_settings() -> None:
+    state = of_scene("bar")
+    controls = Controls(state)
+    state.change(peak=1100.0)
+    controls._scene.value = "rope"
+    assert state.settings.scene == "rope"
+    controls._scene.value = "bar"
+    assert held(state, "peak") == 1100.0
+
+
+def test_points_are_typed_dragged_and_opened_and_the_run_lasts_as_long_as_they_do() -> None:
+    state = of_scene("bar")
+    control = Control("load", state)
+    control.field.value = POINTS
+    dialog = control._dialog
+    assert dialog is not None
+    assert dialog.view.open
+    assert control.field.value == "sine"
+    dialog.text.value = "time [s],force [kN]\n0,0\n1,0.9\n1.5,0"
+    assert held(state, "load") == ((0.0, 0.0), (1.0, 900.0), (1.5, 0.0))
+    assert (state.settings.duration, control.field.value) == (1.5, "sine")
+    control.update()
+    assert control.field.value == POINTS
+    dialog.source.data = {"x": [0.0, 2.0, 1.0], "y": [0.0, 0.0, 500.0]}
+    assert held(state, "load") == ((0.0, 0.0), (1.0, 500.0), (2.0, 0.0))
+    dialog.text.value = "time,force\n0,0\n1,x"
+    assert dialog.text.error_state
+    assert "line 3" in dialog.text.helper_text
+    assert held(state, "load")[-1] == (2.0, 0.0)
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> None:
+    for name in names(scene):
+        state = of_scene(scene)
+        if isinstance(state.settings.definitions()[name], CurveParameter):
+            if not state.settings.applies(name):
+                continue
+            control = Control(name, state)
+            control.field.value = POINTS
+            dialog = control._dialog
+            assert dialog is not None
+            dialog._take(dialog.text.value, "the text")
+            assert isinstance(held(state, name), tuple), state.refusal
+
+
+def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:
+    state = of_scene("bar")
+    panel = FilesPanel(state, 280)
+    saved = panel._saved().getvalue()
+
+    def open_file(name: str, text: str) -> str:
+        panel.file.filename = name
+        panel.file.value = text.encode()
+        return str(panel.message.object)
+
+    assert "3 points" in open_file("load.csv", "time,force\n0,0\n1,800\n2,0\n")
+    assert state.settings.duration == 2.0
+    rows = "".join(f"{x},{t},{x * t}\n" for x in (0.2, 0.4) for t in (0.5, 1.0))
+    assert "4 points" in open_file("other.csv", f"x,t,friction force\n{rows}")
+    assert state.brought is not None
+    assert state.brought.source == "other.csv"
+    assert "outside of the body" in open_file("far.csv", "x,t,friction force\n3,0,0\n")
+    assert state.brought.source == "other.csv"
+    open_file("bar.toml", saved)
+    assert state.settings.values() == default_settings("bar").values()
+
+
+def test_a_number_in_another_unit_is_refused() -> None:
+    for text in ("5 kg", "1e", "--3", "5 5"):
+        with pytest.raises(ValueError, match="write a number"):
+            typed(text, Unit("kN", 1e3), "N")
+
+
+def test_the_nearest_value_that_holds_is_found() -> None:
+    settings = default_settings("bar")
+    assert nearest_allowed(settings, "substructures", 90) == 50
+    with pytest.raises(RefusedError):
+        settings.with_change("substructures", 51)
