@@ -11,7 +11,7 @@ from app.state import PageState
 from app.views.view import View
 
 TABS = {
-    "& .MuiTabs-root": {"minHeight": "26px"},
+    "&.MuiTabs-root, & .MuiTabs-root": {"minHeight": "26px"},
     "& .MuiTab-root": {
         "minHeight": "26px",
         "minWidth": 0,
@@ -39,55 +39,64 @@ class Card:
     ----------
     view
         What stands on the page.
+    views
+        All views that share it.
     """
 
     def __init__(
         self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
     ) -> None:
-        self._all = [kind(state) for kind in kinds]
+        self.views = [kind(state) for kind in kinds]
         self._fitting: list[View] = []
         self._chosen: View | None = None
         self._is_fitting = False
         self._state, self._changed = state, changed
-        self.view = pmui.Tabs(
-            dynamic=True, sizing_mode="stretch_both", min_height=170, margin=0, sx=TABS
-        )
-        self.view.param.watch(lambda event: self._choose(), "active")
+        self._panes: dict[View, pn.pane.Bokeh] = {}
+        self._tabs = pmui.TabMenu(items=[], margin=0, sx=TABS, sizing_mode="stretch_width")
+        self._tabs.param.watch(lambda event: self._choose(), "active")
+        self.view = pn.Column(self._tabs, sizing_mode="stretch_both", min_height=170, margin=0)
 
     @property
     def seen(self) -> View | None:
         """The view in sight."""
-        return self._fitting[self.view.active] if self._fitting else None
+        return self._fitting[self._tabs.active or 0] if self._fitting else None
 
     def fit(self, state: PageState) -> None:
         """Offer the views that say anything about the present settings.
 
         The one that was chosen last is in sight, wherever it is offered.
         """
-        fitting = [view for view in self._all if view.applies(state.settings)]
-        if fitting == self._fitting:
+        named = [view for view in self.views if view.name in state.plots]
+        self._chosen = named[0] if named else self._chosen
+        fitting = [view for view in self.views if view.applies(state.settings)]
+        if fitting == self._fitting and (not named or self.seen in named):
             return
         self._is_fitting = True
         self._fitting = fitting
         self.view.visible = bool(fitting)
-        self.view.active = 0
-        panes = (pn.Column(sizing_mode="stretch_both", margin=0) for _ in fitting)
-        self.view[:] = [(view.name, pane) for view, pane in zip(fitting, panes, strict=True)]
-        self.view.active = fitting.index(self._chosen) if self._chosen in fitting else 0
+        active = fitting.index(self._chosen) if self._chosen in fitting else 0
+        self._tabs.param.update(items=[view.name for view in fitting], active=active)
         self._is_fitting = False
         self._turn()
 
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen
+            mine = {view.name for view in self.views}
+            others = [name for name in self._state.plots if name not in mine]
+            first = self._chosen is self._fitting[0]
+            self._state.plots = others if first else [*others, self._chosen.name]
             self._turn()
 
     def _turn(self) -> None:
         """Make the figure of the view in sight, where it was not seen yet, and show the frame."""
         view, state = self.seen, self._state
-        if view is not None and not self.view[self.view.active].objects:
-            pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+        if view is not None:
+            if view not in self._panes:
+                pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+                self._panes[view] = pane
             if state.frame is not None:
                 view.update(state.frame, state.selection, state.ghost)
-            self.view[self.view.active].append(pane)
+            if list(self.view) != [self._tabs, self._panes[view]]:
+                self.view[:] = [self._tabs, self._panes[view]]
         self._changed()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 from urllib.parse import quote
@@ -259,6 +260,8 @@ class Controls:
     ----------
     state
         Is changed and shown.
+    copy
+        As in `FilesPanel`.
 
     Attributes
     ----------
@@ -266,8 +269,8 @@ class Controls:
         What stands at the side.
     """
 
-    def __init__(self, state: PageState) -> None:
-        self._state = state
+    def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
+        self._state, self._copy = state, copy
         self._controls: list[Control] = []
         self._closed: dict[int, list[str]] = {}
         self._scene = pmui.RadioButtonGroup(
@@ -329,7 +332,7 @@ class Controls:
             self._controls += controls
             self._groups[place][:] = [control.view for control in controls]
         if len(self._groups) - 1 in self._groups.active and not self._files.objects:
-            self._files.append(FilesPanel(self._state, WIDTH).view)
+            self._files.append(FilesPanel(self._state, self._copy, WIDTH).view)
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Callable
 from typing import NamedTuple
 
 import panel as pn
@@ -144,6 +145,10 @@ class FilesPanel:
     ----------
     state
         Takes over what is opened.
+    copy
+        Has the browser copy the link to what is shown; returns what it had to leave out.
+    width
+        In pixels.
 
     Attributes
     ----------
@@ -155,8 +160,8 @@ class FilesPanel:
         What stands on the page.
     """
 
-    def __init__(self, state: PageState, width: int) -> None:
-        self._state = state
+    def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
+        self._state, self._copy = state, copy
         more = {"width": width, "margin": (4, 0), "size": "small"}
         save = pmui.FileDownload(
             label="Save settings (.toml)", callback=self._saved, filename="settings.toml", **more
@@ -175,12 +180,18 @@ class FilesPanel:
         self.file.param.watch(lambda event: self._open(), "value")
         self.message = pmui.Typography("", variant="body2", width=width, margin=0)
         self._remove = pmui.Button(icon="close", on_click=lambda event: self._forget(), **more)
-        self.view = pn.Column(save, self.file, self.message, self._remove, default, margin=0)
+        link = pmui.Button(
+            label="Copy link", icon="link", on_click=lambda event: self._copy_link(), **more
+        )
+        self.view = pn.Column(link, save, self.file, self.message, self._remove, default, margin=0)
         state.param.watch(lambda event: self._show(), "brought")
         self._show()
 
     def _saved(self) -> io.StringIO:
         return io.StringIO(dump(self._state.settings))
+
+    def _copy_link(self) -> None:
+        self.message.object = f"The link to what is shown is copied. {self._copy()}"
 
     def _open(self) -> None:
         state = self._state

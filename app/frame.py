@@ -79,13 +79,11 @@ class Geometry:
     quads
         Nodes of each quadrilateral, shape (n_quads, 4).
     parts
-        Substructure of each quadrilateral, shape (n_quads,).
+        Substructure of each quadrilateral, or its wire in a rope, shape (n_quads,).
     points
-        Contact points, shape (n_points, 2), m.
+        Contact points, shape (n_points, 2), m; NaN where a line of them is broken.
     chains
         Number of the interface of each contact point, shape (n_points,).
-    seams
-        Lines on the bodies, as between the wires of a rope, broken by NaN, shape (n, 2), m.
     """
 
     description: Description
@@ -94,7 +92,6 @@ class Geometry:
     parts: NDArray[np.intp]
     points: Floats
     chains: NDArray[np.intp]
-    seams: Floats = field(default_factory=lambda: np.zeros((0, 2), dtype=np.float32))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,15 +106,11 @@ class DeformedGeometry:
         Displacement of the contact points, shape (n_points, 2, n_instants), m.
     status
         Of the contact points, shape (n_points, n_instants).
-    quads
-        Status of every quadrilateral where these are wires that slip, shape (n_quads, n_instants);
-        else None.
     """
 
     nodes: Floats
     points: Floats
     status: Bytes
-    quads: Bytes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +227,7 @@ class Frame:
         """Bytes of its arrays."""
         fields = [a for c in self.contact.values() for a in (c.friction, c.pressure, c.status)]
         moved = self.deformed
-        arrays = [*fields, moved.nodes, moved.points, moved.status, moved.quads, self.loop]
+        arrays = [*fields, moved.nodes, moved.points, moved.status, self.loop]
         return sum(array.nbytes for array in arrays if array is not None)
 
     def last(self, name: str) -> float:

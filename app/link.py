@@ -6,8 +6,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
-from functools import cache
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, quote
 
@@ -17,6 +15,7 @@ from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
 from app.frame import Selection
+from app.lessons.catalogue import LESSONS, settings_of
 from app.messages import Step
 from app.refusals import message_of
 from app.state import PACES, TABS, VIEWS, PageState, default_settings
@@ -24,12 +23,10 @@ from app.views.catalogue import CARDS
 from solver.checked import dump
 from solver.definitions import SettingError, about, checked_value, choice, count, parse, quantity
 from solver.lessons.lesson import Lesson
-from solver.lessons.reading import lesson_from_file
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-LESSONS = Path(__file__).parent / "lessons"
 SHARED = "lesson", "tab", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""
 LONGEST = 1500
@@ -191,6 +188,8 @@ def link_of(state: PageState) -> tuple[str, str]:
     is_waiting = is_waiting and (not state.running or frame is not newest)
     place = replace(
         place_of(state),
+        # Who leads a class has its key there, too.
+        room=state.room.partition(".")[0],
         instant=round(state.selection.phase, 4),
         iteration=frame.iteration if is_waiting else 0,
     )
@@ -208,8 +207,8 @@ def query_of(place: Place) -> str:
     """The address that says what differs from the defaults, or from the settings of a lesson."""
     if place.room:
         return f"?class={quote(place.room)}"
-    lesson = lesson_of(place.lesson)
-    base = lesson.settings if lesson else default_settings(place.settings.scene)
+    lesson = LESSONS.get(place.lesson)
+    base = settings_of(lesson) if lesson else default_settings(place.settings.scene)
     pairs = {"lesson": place.lesson} if lesson else {"scene": place.settings.scene}
     changed = place.settings.changed(base)
     long = too_long(place.settings)
@@ -275,7 +274,7 @@ def _message(refused: list[str]) -> str:
 
 
 def _lesson(name: str, refused: list[str]) -> Lesson | None:
-    lesson = lesson_of(name)
+    lesson = LESSONS.get(name)
     if name and lesson is None:
         refused.append(f"there is no lesson {name[:40]}")
     return lesson
@@ -286,7 +285,7 @@ def _base(lesson: Lesson | None, scene: str, refused: list[str]) -> Settings:
     if lesson is not None:
         if scene not in ("", lesson.settings.scene):
             refused.append(f"the lesson has a scene of its own, {lesson.settings.scene}")
-        return lesson.settings
+        return settings_of(lesson)
     if scene and scene not in CATALOGUE:
         refused.append(f"there is no scene {scene[:40]}: choose {', '.join(CATALOGUE)}")
     return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE)))
@@ -337,10 +336,3 @@ def too_long(settings: Settings) -> list[str]:
     return [
         n for n, value in values if isinstance(value, tuple) and len(json.dumps(value)) > LONGEST
     ]
-
-
-@cache
-def lesson_of(name: str) -> Lesson | None:
-    """The lesson of a name, if there is one."""
-    names = {path.stem: path for path in LESSONS.glob("*.toml")}
-    return lesson_from_file(names[name]) if name in names else None

@@ -1,40 +1,37 @@
-"""The page: controls at the side, the scene, its load path as time line, and four plots."""
+"""The page: its header, the controls at the side, and the tabs of the main area."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 
-from app.cards import Card
+from app.class_dialog import ClassDialog
+from app.classroom import Member
 from app.controls import Controls
-from app.display import Display
 from app.keys import listen
+from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
+from app.live import STYLE, Live, column
 from app.pages import FULL, PAGES
 from app.state import TABS, PageState
-from app.status import figures_line, status_line
 from app.supervisor import Supervisor
-from app.transport import Transport
-from app.views.catalogue import CARDS
-from app.views.scene import Scene
-from app.views.timeline import Timeline
-from app.views.view import View
 
-STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
-HEADER = 52
+HEADER = 48
 """Pixels that the header takes."""
-COMPACT = {"& .MuiToolbar-root": {"minHeight": f"{HEADER}px !important"}}
+COMPACT = {
+    "& .MuiToolbar-root": {"minHeight": f"{HEADER}px !important"},
+}
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 IN_HEADER = {
     "& button": {
         "color": "#fff",
         "borderColor": "#ffffff80",
         "textTransform": "none",
-        "padding": "3px 10px",
+        "padding": "2px 10px",
         "whiteSpace": "nowrap",
     },
     "& button.Mui-selected, & button.Mui-selected:hover": {
@@ -62,41 +59,48 @@ class Page:
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
         self.state, self._iteration = state, iteration
-        Link(state)
         document = pn.state.curdoc
+        link = Link(state)
         self._supervisor = Supervisor(state, document)
-        self._status = words("status", margin=(8, 6))
-        self._sentence, self._figures = words("sentence"), words("figures", width_policy="min")
-        self.display = Display(state, self._say)
-        document.add_root(self.display.pulse)
-        state.param.watch(lambda *e: self._say(), ["running", "message", "refusal", "is_costly"])
-        self._scene, self._timeline = Scene(state), Timeline(state)
-        self._cards = [Card(kinds, state, self._look) for kinds in CARDS]
-        self._transport = Transport(state, document)
-        state.param.watch(lambda event: self._fit(), "settings")
-        self.controls = Controls(state)
-        self.live = self._make_live()
-        self._main = pn.Column(self.live, sizing_mode="stretch_width", margin=0)
-        self._built: dict[str, Any] = {TABS[0]: self.live}
+        self.live = Live(state, document)
+        self.member = Member(state, self._supervisor, document)
+        self.lesson = LessonPanel(
+            state, self.live.transport, self._arrange, lambda: self.member.open_counts()
+        )
+        self.lesson.view.stylesheets = [STYLE]
+        self.lesson.view.stylesheets = [STYLE]
+        self.classroom = classroom = ClassDialog(self.member)
+        self._beside = column("beside", self.live.view)
+        self._tabs: dict[str, Any] = {TABS[0]: self._beside}
+        self._main = column("main", self._beside)
+        classroom.view.param.watch(lambda event: self._place(), "visible")
+        actions = {
+            "Lessons": ("school", self.lesson.offer),
+            "A class": ("groups", classroom.open),
+            "Presenter view (p)": ("slideshow", self.present),
+        }
         self.template = pmui.Page(
             title="Slipfront",
-            sidebar=[self.controls.view],
+            sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header()],
+            header=[self._header(actions), self.lesson.dialog, classroom.dialog],
             main=[self._main],
             busy_indicator=None,
             sx=COMPACT,
         )
-        self._fit()
-        keys = {**self._transport.keys(), "p": self._present}
-        listen(document, keys)
+        self.lesson.view.param.watch(lambda event: self._on_lesson(), "visible")
+        listen(document, {**self.live.transport.keys(), "p": self.present})
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
+        state.param.watch(lambda *events: self.lesson.update(), ["frame", "selection"])
+        self.lesson.show()
         self._turn(state.tab)
         self._dress()
 
     def loaded(self) -> None:
         """Start the worker and the first run, now that a browser is there."""
+        if self.member.enter(self.state.room):
+            return
         self._supervisor.begin()
         if self._iteration:
             wait_at(self.state, self._iteration)
@@ -105,95 +109,60 @@ class Page:
 
     def end(self, _context: Any) -> None:
         """Leave nothing behind."""
+        self.member.close()
         self._supervisor.end()
         PAGES.leave()
 
-    def _make_live(self) -> pn.Column:
-        pane = lambda view, **more: pn.pane.Bokeh(view.figure, margin=0, **more)  # noqa: E731
-        above = pn.Row(self._transport.view, self._status, sizing_mode="stretch_width", margin=0)
-        below = pn.FlexBox(self._sentence, self._figures, justify_content="space-between", margin=0)
-        scene = pn.Column(
-            pane(self._scene, sizing_mode="stretch_both"),
-            sizing_mode="stretch_width",
-            css_classes=["scene"],
-            margin=0,
-        )
-        timeline = pn.Row(
-            self._transport.play_button,
-            pane(self._timeline, sizing_mode="stretch_width", height=56),
-            sizing_mode="stretch_width",
-            margin=0,
-        )
-        plots = pn.Column(
-            *(card.view for card in self._cards),
-            sizing_mode="stretch_width",
-            css_classes=["plots"],
-            margin=0,
-            stylesheets=[STYLE],
-        )
-        return pn.Column(
-            above,
-            below,
-            scene,
-            timeline,
-            plots,
-            sizing_mode="stretch_width",
-            css_classes=["live"],
-            margin=0,
-            stylesheets=[STYLE],
-        )
+    def present(self) -> None:
+        """Show the page as a projector needs it, or as before."""
+        self.state.view = "present" if self.state.view == "page" else "page"
 
-    def _header(self) -> pn.Row:
+    def _header(self, actions: dict[str, tuple[str, Callable[[], Any]]]) -> pn.Row:
         tabs = pmui.RadioButtonGroup.from_param(
             self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
         )
-        present = pmui.IconButton(icon="slideshow", description="Presenter view (p)", color="light")
-        present.on_click(lambda event: self._present())
-        return pn.Row(
-            tabs, pn.layout.HSpacer(), present, sizing_mode="stretch_width", align="center"
-        )
+        buttons = []
+        for title, (icon, action) in actions.items():
+            button = pmui.IconButton(icon=icon, description=title, color="light", margin=0)
+            button.on_click(lambda event, action=action: action())
+            buttons.append(button)
+        space = pn.layout.HSpacer()
+        return pn.Row(tabs, space, *buttons, sizing_mode="stretch_width", align="center")
 
-    def _fit(self) -> None:
-        for card in self._cards:
-            card.fit(self.state)
-
-    def _look(self) -> None:
-        """Have the views in sight updated, and no others."""
-        seen: list[View] = []
-        if self.state.tab == TABS[0]:
-            cards = getattr(self, "_cards", [])
-            seen = [self._scene, self._timeline, *(v for card in cards if (v := card.seen))]
-        self.display.views = seen
+    def _arrange(self) -> None:
+        self.live.arrange(self.lesson.kinds)
 
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
-        if tab not in self._built:
-            self._built[tab] = pn.pane.Markdown(tab)
-            self._main.append(self._built[tab])
-        for name, view in self._built.items():
-            view.visible = name == tab
-        self._look()
+        if tab not in self._tabs:
+            self._tabs[tab] = pn.pane.Markdown(tab)
+        self._place()
+        self.live.look()
 
-    def _present(self) -> None:
-        self.state.view = "present" if self.state.view == "page" else "page"
+    def _on_lesson(self) -> None:
+        """Give a lesson the room of the controls: it has those that it speaks of."""
+        self._place()
+        self._dress()
+
+    def _place(self) -> None:
+        """Have on the page what is seen: beside what is hidden figures are not painted."""
+        lesson, classroom = self.lesson.view, self.classroom.view
+        self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
+        views = (
+            (self._beside, [lesson] * lesson.visible + [self.live.view]),
+            (self._main, [classroom] * classroom.visible + [self._tabs[self.state.tab]]),
+        )
+        for place, objects in views:
+            if list(place) != objects:
+                place[:] = objects
 
     def _dress(self) -> None:
         """Have nothing around the plots in the views for a projector and for a frame."""
         is_bare = self.state.view != "page"
-        self.template.param.update(sx=BARE if is_bare else COMPACT, sidebar_open=not is_bare)
-
-    def _say(self) -> None:
-        """Bring the words of the run up to the frame."""
-        frame = self.state.frame
-        self._status.object = status_line(self.state)
-        if frame is not None:
-            self._figures.object = figures_line(frame, self.state.selection)
-            self._sentence.object = frame.run.sentence
-
-
-def words(role: str, **more: Any) -> pn.pane.HTML:
-    """A pane of words, which tests and style sheets know by its role."""
-    return pn.pane.HTML(css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more})
+        self.template.param.update(
+            sx=BARE if is_bare else COMPACT,
+            sidebar_open=not (is_bare or self.lesson.view.visible),
+        )
 
 
 def open_page() -> pmui.Page:

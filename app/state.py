@@ -11,6 +11,7 @@ import param
 
 from app.frame import Frame, Selection
 from app.history import History
+from app.lessons.poll import Poll
 from app.messages import (
     WHOLE,
     Began,
@@ -73,6 +74,8 @@ class PageState(param.Parameterized):
     readings = param.List(default=[], doc="Quantities that a lesson names.")
     is_dragged = param.Boolean(doc="Whether a slider is being dragged.")
     lesson = param.String(doc="Name of the lesson.")
+    prediction = param.Integer(default=None, doc="The choice predicted; -1 did without.")
+    poll = param.ClassSelector(class_=Poll, default=None, doc="What the class predicts.")
     tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
     plots = param.String(doc="Names of the views on top of their cards, between commas.")
@@ -92,6 +95,7 @@ class PageState(param.Parameterized):
         self._sent: Needs | None = None
         self._last_run: Frame | None = None
         self._waiting: list[Callable[[Any], None]] = []
+        self.param.watch(lambda event: self.param.update(prediction=None), "lesson")
         self.param.watch(
             lambda *events: self.send_needs(is_news=False),
             ["selection", "needs", "readings", "brought"],
@@ -140,6 +144,14 @@ class PageState(param.Parameterized):
         """Whether the run that was ordered last has ended."""
         newest = self.newest
         return newest is not None and newest.run.number == self.number and newest.status is not None
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether a lesson's question is open: in a class until its leader goes on."""
+        is_answered = self.prediction is not None
+        if self.poll is not None:
+            is_answered = self.poll.is_answered
+        return bool(self.lesson) and not is_answered
 
     def pause(self) -> None:
         """Have the run wait."""

@@ -91,10 +91,14 @@ def key_figures(frame: Frame, selection: Selection) -> dict[str, str]:
     status = frame.deformed.status[:, column] if frame.deformed.status.size else np.zeros(1)
     figures["Slips"] = percent(float(np.mean((status != 0) & (status != OPEN))))
     figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
+    beside = frame.extras.get("beside")
+    if beside is not None:
+        figures[f"Distance to {beside['name']}"] = percent(beside["distance"])
     return figures
 
 
 def figures_line(frame: Frame, selection: Selection) -> str:
     """The key figures in a line (HTML)."""
-    words = (f"<span>{n} <b>{v}</b></span>" for n, v in key_figures(frame, selection).items())
+    figures = key_figures(frame, selection).items()
+    words = (f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures)
     return "".join(words)

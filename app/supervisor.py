@@ -39,7 +39,8 @@ class Supervisor:
 
     def begin(self) -> None:
         """Start the worker."""
-        self._callback = self._document.add_periodic_callback(self._look, LOOK)
+        if self._callback is None:
+            self._callback = self._document.add_periodic_callback(self._look, LOOK)
         self._state.send = self.send
         self._start()
 

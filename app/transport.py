@@ -33,7 +33,7 @@ class Transport:
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
-        self._playing: tuple[Any, float, float] | None = None
+        self._playing: tuple[Any, float, float, float] | None = None
         self._is_updating = False
         small: dict[str, Any] = {"size": "small", "margin": (2, 2)}
         self._run = pmui.IconButton(icon="pause", description="Run or pause (space)", **small)
@@ -105,14 +105,14 @@ class Transport:
         else:
             self._state.go_on()
 
-    def play(self) -> None:
-        """Go through time from the selected instant, or stop."""
+    def play(self, until: float = 1.0) -> None:
+        """Go through time from the selected instant, up to a share of the interval, or stop."""
         if self._playing is not None:
             self.stop()
             return
         phase = self._state.selection.phase
         callback = self._document.add_periodic_callback(self._play_on, TICK)
-        self._playing = callback, time.monotonic(), phase if phase < 1.0 else 0.0
+        self._playing = callback, time.monotonic(), phase if phase < until else 0.0, until
         self.play_button.icon = "pause_circle"
 
     def stop(self) -> None:
@@ -124,8 +124,8 @@ class Transport:
 
     def _play_on(self) -> None:
         assert self._playing is not None
-        _, began, phase = self._playing
-        self._state.select(phase=(phase + (time.monotonic() - began) / PLAYED_IN) % 1.0)
+        _, began, phase, until = self._playing
+        self._state.select(phase=(phase + (time.monotonic() - began) / PLAYED_IN) % until)
 
     def _move(self, instants: int) -> None:
         """Select an instant so many later."""

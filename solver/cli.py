@@ -243,7 +243,8 @@ def _distance(problem: Problem, limit: Seconds | None) -> Distance | None:
     lost, several = np.count_nonzero(~reference.converged), np.count_nonzero(reference.ambiguous)
     if lost:
         found = f"the reference finds no solution at {lost} of {problem.n_instants} instants"
-        found += ": friction softens until the structure jumps" if reference.jumps else ""
+        if reference.jumps_at is not None:
+            found += ": friction softens until the structure jumps"
         print(f"slipfront: no errors are known: {found}", file=sys.stderr)
         return None
     if several:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,8 +31,37 @@ def interpolate(points: Pairs | Array, where: Array) -> Array:
     return found
 
 
-def _polyline(ordinates: Array) -> Callable[[Array, int], Array]:
-    return lambda phase, seed: _evenly(ordinates, phase)
+@dataclass(frozen=True)
+class Preset:
+    """A path over the phase of an interval, from 0 to 1; called with phases and a seed.
+
+    Attributes
+    ----------
+    value
+        Values at phases, for a seed of what is random.
+    corners
+        Phases inside the interval at which it turns back or bends, for such a seed.
+    """
+
+    value: Callable[[Array, int], Array]
+    corners: Callable[[int], Array] = lambda seed: np.zeros(0)
+
+    def __call__(self, phase: Array, seed: int) -> Array:
+        """Evaluate it."""
+        return self.value(phase, seed)
+
+
+def _equal_pieces(number: int, begins: float = 0.0) -> Callable[[int], Array]:
+    """Corners between equal pieces of what comes after a beginning, and where that ends."""
+    phases = begins + (1.0 - begins) * np.linspace(0.0, 1.0, number + 1)[:-1]
+    return lambda seed: phases[phases > 0.0]
+
+
+def _polyline(ordinates: Array, begins: float = 0.0) -> Preset:
+    return Preset(
+        lambda phase, seed: _evenly(ordinates, _after_hold(phase) if begins else phase),
+        _equal_pieces(len(ordinates) - 1, begins),
+    )
 
 
 def _evenly(ordinates: Array, phase: Array) -> Array:
@@ -39,10 +69,22 @@ def _evenly(ordinates: Array, phase: Array) -> Array:
     return interpolate(points, phase)
 
 
-def _random_walk(phase: Array, seed: int) -> Array:
+def _walk(seed: int) -> Array:
     steps = np.random.default_rng(seed).uniform(-1.0, 1.0, RANDOM_POINTS)
     walk = np.concatenate([[0.0], np.cumsum(steps)])
-    return _polyline(walk / np.max(np.abs(walk)))(phase, seed)
+    return np.asarray(walk / np.max(np.abs(walk)))
+
+
+def _random_walk(phase: Array, seed: int) -> Array:
+    return _evenly(_walk(seed), phase)
+
+
+def _corners_of_size(seed: int) -> Array:
+    """Corners of a random walk's size: its own, and where it changes its sign."""
+    walk = _walk(seed)
+    crossed = np.flatnonzero(walk[:-1] * walk[1:] < 0.0)
+    zeros = crossed + walk[crossed] / (walk[crossed] - walk[crossed + 1])
+    return np.sort(np.concatenate([np.arange(1, RANDOM_POINTS), zeros])) / RANDOM_POINTS
 
 
 def _sine(phase: Array) -> Array:
@@ -58,49 +100,47 @@ def _pulsating(phase: Array) -> Array:
     return _sine(phase) ** 2
 
 
-_cycles = _polyline(np.array([0.0, *[1.0, 0.0, -1.0, 0.0] * CYCLES]))
-_pulls = _polyline(np.array([0.0, *[1.0, 0.0] * CYCLES]))
-PRESETS: dict[str, Callable[[Array, int], Array]] = {
+PRESETS: dict[str, Preset] = {
     "ramp": _polyline(np.array([0.0, 1.0])),
     "triangle": _polyline(np.array([0.0, 1.0, 0.0])),
     "cycle": _polyline(np.array([0.0, 1.0, 0.0, -1.0, 0.0, 1.0])),
-    "sine": lambda phase, seed: _sine(phase),
+    "sine": Preset(lambda phase, seed: _sine(phase), _equal_pieces(4)),
     "decaying": _polyline(np.concatenate([[0.0], DECAY, [0.0]])),
-    "random": _random_walk,
-    "hold": lambda phase, seed: np.minimum(phase / HELD, 1.0),
-    "delayed": lambda phase, seed: _sine(_after_hold(phase)),
-    "cycles": lambda phase, seed: _cycles(_after_hold(phase), seed),
+    "random": Preset(_random_walk, _equal_pieces(RANDOM_POINTS)),
+    "hold": Preset(lambda phase, seed: np.minimum(phase / HELD, 1.0), _equal_pieces(1, HELD)),
+    "delayed": Preset(lambda phase, seed: _sine(_after_hold(phase)), _equal_pieces(4, HELD)),
+    "cycles": _polyline(np.array([0.0, *[1.0, 0.0, -1.0, 0.0] * CYCLES]), HELD),
 }
 
-PULLS: dict[str, Callable[[Array, int], Array]] = {
+PULLS: dict[str, Preset] = {
     "ramp": PRESETS["ramp"],
     "triangle": PRESETS["triangle"],
     "cycle": _polyline(np.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])),
-    "sine": lambda phase, seed: _pulsating(phase),
+    "sine": Preset(lambda phase, seed: _pulsating(phase), _equal_pieces(4)),
     "decaying": _polyline(np.concatenate([[0.0], 0.5 + 0.5 * DECAY, [0.0]])),
-    "random": lambda phase, seed: np.abs(_random_walk(phase, seed)),
+    "random": Preset(lambda phase, seed: np.abs(_random_walk(phase, seed)), _corners_of_size),
     "hold": PRESETS["hold"],
-    "delayed": lambda phase, seed: _pulsating(_after_hold(phase)),
-    "cycles": lambda phase, seed: _pulls(_after_hold(phase), seed),
+    "delayed": Preset(lambda phase, seed: _pulsating(_after_hold(phase)), _equal_pieces(4, HELD)),
+    "cycles": _polyline(np.array([0.0, *[1.0, 0.0] * CYCLES]), HELD),
 }
 """Presets that never push, for what carries tension alone."""
 
-_loosening = _polyline(np.array([1.0, LOOSE]))
-_pulsating_press = _polyline(np.array([1.0, *[LOOSE, 1.0] * CYCLES]))
-PRESSURES: dict[str, Callable[[Array, int], Array]] = {
-    "steady": lambda phase, seed: np.ones_like(phase),
-    "loosening": lambda phase, seed: _loosening(_after_hold(phase), seed),
-    "tightening": lambda phase, seed: 1.0 + LOOSE - _loosening(_after_hold(phase), seed),
-    "shaken": lambda phase, seed: _pulsating_press(_after_hold(phase), seed),
+_loosening = _polyline(np.array([1.0, LOOSE]), HELD)
+PRESSURES: dict[str, Preset] = {
+    "steady": Preset(lambda phase, seed: np.ones_like(phase)),
+    "loosening": _loosening,
+    "tightening": Preset(
+        lambda phase, seed: 1.0 + LOOSE - _loosening(phase, seed), _loosening.corners
+    ),
+    "shaken": _polyline(np.array([1.0, *[LOOSE, 1.0] * CYCLES]), HELD),
 }
 """Presets of what presses: all of it at first, or in the end, and never nothing."""
 
-_pulses = _polyline(np.array([1.0, *[0.0, 1.0] * CYCLES]))
-INJECTIONS: dict[str, Callable[[Array, int], Array]] = {
+INJECTIONS: dict[str, Preset] = {
     "steady": PRESSURES["steady"],
-    "stopped": lambda phase, seed: np.where(phase <= 0.5, 1.0, 0.0),
+    "stopped": Preset(lambda phase, seed: np.where(phase <= 0.5, 1.0, 0.0), _equal_pieces(2)),
     "rising": _polyline(np.array([0.0, 1.0])),
-    "pulses": _pulses,
+    "pulses": _polyline(np.array([1.0, *[0.0, 1.0] * CYCLES])),
     "random": PULLS["random"],
 }
 """Presets of a fluid that is let in from the beginning."""
@@ -118,9 +158,23 @@ BEGINS = {
 """Share of the interval from which on a preset comes back to where it is, and may be repeated."""
 
 
-def instants_of(duration: float, number: int) -> Array:
-    """Spread instants evenly over a time interval, shape (number,), s; a single one ends it."""
-    return np.linspace(0.0, duration, number) if number > 1 else np.array([duration])
+def knots_of(
+    path: str | Pairs,
+    duration: float,
+    seed: int,
+    presets: Mapping[str, Preset] = PRESETS,
+    cycles: int = 1,
+) -> Array:
+    """Return the times at which a path turns or bends, as for `load_path`; a table's points."""
+    if not isinstance(path, str):
+        return np.array(path)[:, 0]
+    phases = presets[path].corners(seed)
+    if cycles > 1 and path in BEGINS:
+        begins = BEGINS[path]
+        turn = np.concatenate([[begins], phases[phases > begins]]) - begins
+        later = begins + (np.arange(cycles)[:, None] * (1.0 - begins) + turn) / cycles
+        phases = np.concatenate([phases[phases < begins], later.ravel()])
+    return np.asarray(duration * phases)
 
 
 def load_path(
@@ -129,7 +183,7 @@ def load_path(
     duration: float,
     peak: float,
     seed: int,
-    presets: Mapping[str, Callable[[Array, int], Array]] = PRESETS,
+    presets: Mapping[str, Preset] = PRESETS,
     cycles: int = 1,
 ) -> Array:
     """Evaluate a load path at the instants of a run.

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.discrete.small_strain import beyond_small_strain
 from solver.discrete.stack.data import StackData
 from solver.discrete.stack.equilibrium import is_upright
 from solver.latin import Iterate
 from solver.laws import OPEN
 from solver.phrases import Phrase
-from solver.scenes import structure_of
+from solver.scenes import left_out, structure_of
 from solver.settings import Settings
 
 MOST_GROWTH = 2
@@ -28,7 +29,9 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     settings, iterate
         Of a run, at its end or on the way.
     """
-    remarks: list[str] = []
+    remarks = list(left_out(settings))
+    beyond = beyond_small_strain(structure_of(settings), iterate.problem, iterate.displacement)
+    remarks += [] if beyond is None else [beyond]
     standing = _standing_on_an_end(settings, iterate)
     if standing.any():
         first = float(iterate.problem.instants[np.argmax(standing)])

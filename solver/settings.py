@@ -239,6 +239,11 @@ class Settings(Checked):
         return self.substructures
 
     @property
+    def n_instants(self) -> int:
+        """Number of instants: at least as many as are set."""
+        return self.instants
+
+    @property
     def k_factors(self) -> tuple[float, float]:
         """Give further factors on k of contacts, along and across them."""
         return self.k_friction_scale, 1.0

@@ -145,7 +145,7 @@ def test_a_slider_ends_where_another_setting_has_it_end() -> None:
 
 def test_controls_that_do_nothing_here_are_hidden() -> None:
     state = of_scene("bar")
-    controls = Controls(state)
+    controls = Controls(state, str)
     seed = next(control for control in controls._controls if control.name == "seed")
     assert not seed.view.visible
     state.change(load="random")
@@ -154,7 +154,7 @@ def test_controls_that_do_nothing_here_are_hidden() -> None:
 
 def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() -> None:
     for scene in CATALOGUE:
-        controls = Controls(of_scene(scene))
+        controls = Controls(of_scene(scene), str)
         built = len(controls._controls)
         groups = controls._groups
         groups.active = list(range(len(groups)))
@@ -167,7 +167,7 @@ def test_groups_are_built_when_they_are_opened_and_hold_all_that_is_not_chief() 
 
 def test_each_scene_keeps_its_settings() -> None:
     state = of_scene("bar")
-    controls = Controls(state)
+    controls = Controls(state, str)
     state.change(peak=1100.0)
     controls._scene.value = "rope"
     assert state.settings.scene == "rope"
@@ -213,7 +213,7 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> N
 
 def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:
     state = of_scene("bar")
-    panel = FilesPanel(state, 280)
+    panel = FilesPanel(state, str, 280)
     saved = panel._saved().getvalue()
 
     def open_file(name: str, text: str) -> str:

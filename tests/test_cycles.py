@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from solver.definitions import SettingError
 from solver.loads import BEGINS, INJECTIONS, PRESETS, PRESSURES, PULLS
 from solver.scenes import CATALOGUE
 from solver.study.quantities.cycles import LoadCycles, cycles_in, cycles_of, ends_of, turning_points
@@ -195,9 +194,9 @@ def test_a_rocked_block_walks_the_way_it_is_sheared() -> None:
 def test_rocked_less_it_comes_to_rest() -> None:
     cycles = cut(ran("block", **ROCKED, top_normal_slope=5.0))
     assert word(cycles) == "shakedown with slip that dies"
-    np.testing.assert_allclose(
-        cycles.slip.max(axis=0)[1:] / cycles.slip.max(axis=0)[:-1], 0.29, atol=0.01
-    )
+    shares = cycles.slip.max(axis=0)[1:] / cycles.slip.max(axis=0)[:-1]
+    assert shares.max() < 0.4
+    assert shares[-1] == pytest.approx(shares[-2], abs=1e-3)
 
 
 def test_friction_that_still_hardens_gets_no_word_until_it_has_hardened() -> None:
@@ -248,11 +247,10 @@ def test_what_does_not_come_back_is_not_repeated() -> None:
         np.testing.assert_array_equal(*paths)
 
 
-def test_more_cycles_than_instants_show_are_refused() -> None:
+def test_more_cycles_than_instants_are_all_there() -> None:
     bar = CATALOGUE["bar"].settings
-    bar.checked({"cycles": 25})
-    with pytest.raises(SettingError, match="at most 25 with 101 instants"):
-        bar.checked({"cycles": 26})
+    counted = [cycles_in(bar.checked({"cycles": 300, "instants": n})) for n in (11, 101, 1201)]
+    assert counted == [299] * 3
 
 
 def test_a_load_that_stands_still_has_no_cycles() -> None:

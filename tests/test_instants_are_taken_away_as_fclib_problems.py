@@ -174,7 +174,7 @@ def test_the_command_writes_the_instant_that_is_nearest(tmp_path, capsys):
     path = tmp_path / "one.hdf5"
     sizes = [f"--set={name}={json.dumps(value)}" for name, value in SMALL["block"].items()]
     assert main(["fclib", "block", *sizes, "--out", str(path), "--instant", "0.31"]) == 0
-    assert "t = 0.3 s, 17 points" in capsys.readouterr().out
+    assert "t = 0.296875 s, 17 points" in capsys.readouterr().out
     compliance, free, friction, solution, _ = read(path)
     assert set(solution) == {"u", "r"}
     force = gauss_seidel(compliance, free, friction)

@@ -104,11 +104,11 @@ def test_instants_are_halved_and_doubled_between_the_same_ends() -> None:
     [
         ("bar elements=40 instants=11 load=ramp", "first_slip_time@0.5", "instants"),
         ("bar elements=10 instants=41 load=cycle", "dissipation@1", "elements"),
-        # Contact grows by three points at each end from an instant to the next.
+        # Contact grows by several points from an instant to the next.
         (
             "block gap=parabola radius=30 friction=0.5 top_normal_displacement=-2e-5 elements=96 "
-            "elements_up=8 instants=41",
-            "peak_friction",
+            "elements_up=8 instants=21",
+            "dissipation",
             "instants",
         ),
     ],

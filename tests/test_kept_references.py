@@ -39,7 +39,7 @@ OF_THE_PHYSICS: dict[str, dict[str, Any]] = {
         "length": 1.1,
         "support_displacement": 1e-4,
         "body_force": 10.0,
-        "instants": 12,
+        "instants": 21,
         "elements": 21,
     },
     "strand": {"pressure": 5001.0, "break_position": 0.25, "grip": "displacement", "broken": 1},

@@ -22,7 +22,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 @pytest.fixture
 def transport(clock: Clock) -> Transport:
-    session = lone_session(BarSettings.checked({"instants": 11}), clock)
+    session = lone_session(BarSettings.checked({"instants": 11, "load": "triangle"}), clock)
     session.watch(phase=0.4)
     return Transport(session)
 

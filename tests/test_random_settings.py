@@ -114,7 +114,7 @@ def with_others(draw, definitions, chosen):
     }
     for name in sorted(some - chosen.keys()):
         chosen[name] = draw(values_of(name, definitions[name], extents))
-    # A cycle that too few instants show is refused.
+    # Every cycle has instants of its own, and a run is to be short.
     most = max(1, (chosen.get("instants", 41) - 1) // 4)
     return {**chosen, "cycles": min(chosen.get("cycles", 1), most)}
 

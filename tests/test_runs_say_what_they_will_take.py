@@ -57,7 +57,8 @@ def test_more_of_anything_takes_more(scene: str, name: str, sizes: tuple[int, ..
 
 
 def test_a_reference_grows_up_to_the_cube_of_its_jumps_and_matrices_with_the_square() -> None:
-    few, many = (cost("layers", layers=20, elements=count, instants=5) for count in (48, 96))
+    same = {"layers": 20, "instants": 5, "bend_load": "triangle"}
+    few, many = (cost("layers", elements=count, **same) for count in (48, 96))
     assert 4.0 < many.reference / few.reference < 8.0
     assert 3.5 < many.memory / few.memory < 4.5
 

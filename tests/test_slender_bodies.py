@@ -25,8 +25,8 @@ def problem_of(scene, **values):
 
 def layers_of(ratio, **values):
     """Give layers so many times as long as thick, pressed so that they slide a part of the time."""
-    pressure = 2e6 * (50 / ratio) ** 2
-    return problem_of("layers", thickness=0.5 / ratio, pressure=pressure, **values)
+    own = {"thickness": 0.5 / ratio, "pressure": 2e6 * (50 / ratio) ** 2, "instants": 33}
+    return problem_of("layers", **{**own, **values})
 
 
 def error_after(most, settings, problem):

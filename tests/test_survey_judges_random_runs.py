@@ -8,6 +8,7 @@ import math
 import shlex
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from ropes import SMALL_ROPE
 
@@ -67,6 +68,19 @@ def test_a_run_is_bounded_by_its_mesh_times_its_instants(scene):
         settings = draw(scene, 2, row)
         elements = settings.elements * getattr(settings, "elements_up", 1)
         assert elements * settings.instants <= LARGEST_FIELD
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_tables_with_peaks_between_instants_are_drawn(scene):
+    narrow = 0
+    for row in range(200):
+        settings = draw(scene, 6, row)
+        for name in settings.paths:
+            table = getattr(settings, name)
+            if not isinstance(table, str) and len(table) > 2:
+                widths = np.diff(np.array(table)[:, 0]) * settings.instants / settings.duration
+                narrow += np.any((widths[:-1] < 0.5) & (widths[1:] < 0.5))
+    assert narrow >= 1
 
 
 @pytest.mark.parametrize("scene", CATALOGUE)

@@ -16,6 +16,7 @@ import pytest
 from shown_pages import SMALL, Shown
 
 from app.picture.recording import COLUMNS
+from app.picture.shown import instant_of
 from app.takeaway.snippet import NOTE, snippet
 from app.wire.orders import Tabulate
 from app.worker.offline import OFFLINE
@@ -80,18 +81,23 @@ def test_every_table_has_the_settings_in_front_and_equal_rows(scene: str, what: 
 
 
 def test_points_are_those_of_the_chosen_instant() -> None:
-    scene = run_of("block").scene(instant=9)
+    scene = run_of("block").scene()
+    chosen = instant_of(scene.look.phase, scene.frame.fields.friction.shape[1])
     _, rows = read(table("points", scene))
     fields, stand = scene.frame.fields, scene.run.stand
     assert scene.run.reference is not None
     assert fields.pressure is not None
     assert column(rows, "LATIN", "position (m)") == pytest.approx(stand.positions, rel=1e-6)
-    assert column(rows, "LATIN", "friction (Pa)") == pytest.approx(fields.friction[:, 9], rel=1e-6)
-    assert column(rows, "LATIN", "pressure (Pa)") == pytest.approx(fields.pressure[:, 9], rel=1e-6)
-    assert column(rows, "LATIN", "status") == fields.status[:, 9].tolist()
-    other = scene.run.reference.friction[:, 9]
+    assert column(rows, "LATIN", "friction (Pa)") == pytest.approx(
+        fields.friction[:, chosen], rel=1e-6
+    )
+    assert column(rows, "LATIN", "pressure (Pa)") == pytest.approx(
+        fields.pressure[:, chosen], rel=1e-6
+    )
+    assert column(rows, "LATIN", "status") == fields.status[:, chosen].tolist()
+    other = scene.run.reference.friction[:, chosen]
     assert column(rows, "reference", "friction (Pa)") == pytest.approx(other, rel=1e-6)
-    assert {float(row["time (s)"]) for row in rows} == {float(stand.instants[9])}
+    assert {float(row["time (s)"]) for row in rows} == {float(stand.instants[chosen])}
 
 
 def test_tables_of_two_runs_have_both_and_the_settings_of_both() -> None:

@@ -21,6 +21,7 @@ class ContactForce(View):
     """
 
     name = "Contact force"
+    needs = frozenset({"beside"})
 
     def make(self) -> figure:
         """A new figure."""

@@ -15,6 +15,7 @@ class HysteresisLoop(View):
     """Force over displacement of LATIN, of the reference, and of the closed form."""
 
     name = "Loop"
+    needs = frozenset({"beside"})
 
     @staticmethod
     def applies(settings: Settings) -> bool:

@@ -4,30 +4,60 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from bokeh.core.properties import value
 from bokeh.events import Pan, Tap
-from bokeh.models import PanTool
+from bokeh.models import PanTool, Range1d
 from bokeh.plotting import figure
 
-from app.frame import Frame, Selection
-from app.views.colors import FORCE
+from app.frame import Frame, Run, Selection
+from app.units import number, unit_for
+from app.views.colors import ERROR, FORCE
+from app.views.scene.acts import unit_of
+from app.views.scene.layout import is_opposite
+from app.views.scene.scene import put
 from app.views.view import View, source
+from solver.arrays import Array
+
+THIN = ("#7A7A7A", "#A0A0A0", "#56B4E9")
+"""Colours of paths beside the first."""
+LOW, TITLE = -1.5, 1.62
+"""Of the axis up: the paths lie between -1 and 1, their names above."""
+LETTER = 0.0085
+"""Width of a letter as a share of the axis, about."""
 
 
 class Timeline(View):
-    """The load over time, and the selected instant."""
+    """What is given over time, each path over its largest value, and the selected instant."""
 
     name = "Load path"
 
     def make(self) -> figure:
         """A new figure."""
-        made = figure(sizing_mode="stretch_both", min_height=40, tools="", toolbar_location=None)
-        made.min_border, made.outline_line_color = 2, None
+        made = figure(
+            sizing_mode="stretch_both", min_height=40, tools="", toolbar_location=None,
+            x_range=Range1d(-0.01, 1.01, bounds=(-0.01, 1.01)), y_range=Range1d(LOW, TITLE + 0.35),
+            min_border=0,
+        )  # fmt: skip
+        made.outline_line_color = None
+        made.background_fill_alpha = made.border_fill_alpha = 0.0
         made.yaxis.visible = made.grid.visible = False
-        made.xaxis.major_label_text_font_size = "11px"
+        axis = made.xaxis
+        axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
+        axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
+        axis.axis_line_alpha = 0.4
         self.path, self.now = source("t", "load"), source("t", "load")
-        made.varea("t", 0, "load", source=self.path, color=FORCE, alpha=0.18)
+        self.others, self.names = source("xs", "ys", "color"), source("x", "y", "text", "color")
+        made.varea("t", 0, "load", source=self.path, color=FORCE, alpha=0.16)
+        made.multi_line("xs", "ys", source=self.others, color="color", width=1.4)
         made.line("t", "load", source=self.path, color=FORCE, width=2)
+        made.ray("t", LOW, length=0, angle=np.pi / 2, source=self.now, color=ERROR, alpha=0.5)
         made.scatter("t", "load", source=self.now, color=FORCE, size=13)
+        made.text(
+            "x", "y", text="text", source=self.names, text_color="color", text_font_size="12px",
+            text_font=value("Roboto, sans-serif"), text_baseline="middle",
+        )  # fmt: skip
+        # The range has bounds, so that the tool only keeps a touch from scrolling the page.
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             made.on_event(event, self._select)
@@ -35,17 +65,78 @@ class Timeline(View):
         return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the load path of a run, and the instant."""
-        run, column = frame.run, frame.run.column(selection.phase)
-        load = frame.loop[1] if run.load is None else run.load
-        if run.number != self._run or run.load is None:
+        """Show the load paths of a run, and the instant."""
+        run = frame.run
+        unit = unit_for(float(run.instants[-1]), "s")
+        times = run.instants / np.float32(unit.factor)
+        if run.number != self._run:
             self._run = run.number
-            self.path.data = {"t": run.instants, "load": load}
-            self.figure.x_range.start, self.figure.x_range.end = 0.0, float(run.instants[-1])
-        self.now.data = {"t": run.instants[[column]], "load": load[[column]]}
+            self._show_paths(run, times, unit.name)
+        column = run.column(selection.phase)
+        load = self.path.data["load"]
+        put(self.now, {"t": times[[column]], "load": np.asarray(load)[[column]]})
+
+    def _show_paths(self, run: Run, times: Array, unit: str) -> None:
+        paths = paths_of(run)
+        end = float(times[-1])
+        margin = 0.01 * end
+        across = self.figure.x_range
+        across.update(bounds=(-margin, end + margin), start=-margin, end=end + margin)
+        scaled = [values / (np.abs(values).max() or 1.0) for _, values, _ in paths]
+        colors = [FORCE, *THIN[: len(paths) - 1]]
+        self.path.data = {"t": times, "load": scaled[0].astype(np.float32)}
+        count = len(colors)
+        self.others.data = {
+            "xs": [times] * (count - 1),
+            "ys": [values.astype(np.float32) for values in scaled[1:count]],
+            "color": colors[1:],
+        }
+        texts = [text for text, _, _ in paths[:count]] + [f"t, {unit}"]
+        ends = np.cumsum([(len(text) + 4) * LETTER for text in texts[:-1]])
+        x = [*np.concatenate([[0.0], ends[:-1]]), 1.0 - 4 * LETTER]
+        self.names.data = {
+            "x": [end * share for share in x],
+            "y": [TITLE] * (count + 1),
+            "text": texts,
+            "color": [*colors, THIN[0]],
+        }
 
     def _select(self, event: Any) -> None:
-        frame = self.state.frame
-        if frame is not None:
-            end = float(frame.run.instants[-1])
+        end = self.figure.x_range.end / 1.01
+        if self.state.frame is not None:
             self.state.select(phase=min(max(event.x / end, 0.0), 1.0))
+
+
+def paths_of(run: Run) -> list[tuple[str, Array, bool]]:
+    """What is given over time: its name with its range, values, and whether these change.
+
+    Those that change come first.
+    """
+    described = run.geometry.description
+    paths = []
+    if described.tilt is not None:
+        paths.append(_path("slope", np.degrees(described.tilt), described.instants, run, "°", 1.0))
+    shown: list[Any] = []
+    for act in described.acts:
+        if any(is_opposite(act, other) for other in shown):
+            continue
+        shown.append(act)
+        unit = unit_of(act)
+        values = act.values if act.values.ndim == 1 else act.values[len(act.values) // 2]
+        paths.append(_path(act.symbol, values, described.instants, run, unit.name, unit.factor))
+    if not paths:
+        paths.append(("nothing acts", np.zeros(len(run.instants)), False))
+    return sorted(paths, key=lambda path: not path[2])
+
+
+def _path(
+    symbol: str, values: Array, instants: Array, run: Run, unit: str, factor: float
+) -> tuple[str, Array, bool]:
+    # Adding 0 takes the sign from a zero.
+    low, high = float(values.min()) / factor + 0.0, float(values.max()) / factor + 0.0
+    changes = high - low > 1e-6 * max(abs(low), abs(high))
+    separator = "" if unit == "°" else " "
+    largest = number(low if abs(low) > abs(high) else high)
+    text = f"{number(low)} to {number(high)}" if changes else largest
+    sampled = np.interp(run.instants, instants, values)
+    return f"{symbol} = {text}{separator}{unit}", sampled, changes

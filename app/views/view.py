@@ -65,7 +65,7 @@ class View:
     needs: ClassVar[frozenset[str]] = frozenset()
 
     def __init__(self, state: PageState) -> None:
-        self.state = state
+        self.state, self._type = state, TEXT
 
     @staticmethod
     def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
@@ -75,7 +75,19 @@ class View:
     @cached_property
     def figure(self) -> figure:
         """The figure."""
-        return self.make()
+        made = self.make()
+        self._magnify(made)
+        return made
+
+    def magnify(self, size: str) -> None:
+        """Have its type in a size, as CSS has it."""
+        self._type = size
+        if "figure" in self.__dict__:
+            self._magnify(self.figure)
+
+    def _magnify(self, made: figure) -> None:
+        for model in (made, *made.legend):
+            model.styles = {**model.styles, "font-size": self._type}
 
     def make(self) -> figure:
         """A new figure, with the sources that `update` fills."""

@@ -11,7 +11,8 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import floats, thinned
+from app.worker.geometry import Stress, floats, thinned
+from app.worker.rope_extras import ROPE_EXTRAS
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
 from solver.discrete.rope.forces import WireForces
@@ -297,6 +298,11 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     }
 
 
+def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> Stress:
+    """Stress of all quadrilaterals that are drawn, at all instants."""
+    return sampler.drawn.stress(iterate, needs.stress, sampler.settings)
+
+
 Extra = Callable[["Sampler", Iterate, Needs], Any]
 EXTRAS: dict[str, Extra] = {
     "spectra": spectra,
@@ -306,5 +312,7 @@ EXTRAS: dict[str, Extra] = {
     "modes": modes,
     "clips": clips,
     "beside": beside,
+    "stress": stress,
+    **ROPE_EXTRAS,
 }
 """By the name that a view needs them by."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 from app.frame import DeformedGeometry, Floats, Geometry
 from solver.arrays import Array
 from solver.discrete import Problem
+from solver.discrete.elements import von_mises
 from solver.discrete.inside import Inside
+from solver.discrete.probes import AxialForce
 from solver.discrete.structure import Description
 from solver.latin import Iterate
+from solver.settings import Settings
 
-THICKNESS, PITCH = 0.07, 0.1
+THICKNESS, PITCH = 0.08, 0.1
 """Of a rod as it is drawn, which has none in the model, and between two rods; shares of length."""
 MOST_POINTS = 200
 """Contact points of an interface, and nodes of a rod, that are drawn at most."""
@@ -29,6 +32,17 @@ class Drawn(Protocol):
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How they have moved in an iterate."""
+
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+        """Stress of every quadrilateral at all instants."""
+
+
+class Stress(NamedTuple):
+    """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
+
+    title: str
+    unit: str
+    values: Floats
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
@@ -82,26 +96,30 @@ class DrawnContacts:
 
 
 class DrawnRods:
-    """Rods as rectangles above each other."""
+    """Rods as rectangles above each other; they rub between them, or on what is below."""
 
     def __init__(
         self, problem: Problem, description: Description, columns: NDArray[np.intp]
     ) -> None:
         per_rod = len(problem.substructures) // description.bodies
-        kept, corners, parts, lows = [], [], [], []
+        length, between = description.length, 0.5 * (PITCH - THICKNESS)
+        kept, corners, parts, lows, elements = [], [], [], [], []
         heights = np.zeros(problem.n_dofs)
-        size = 0
+        size = first_element = 0
         for number, part in enumerate(problem.substructures):
-            dofs = part.dofs[thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))]
-            low = PITCH * description.length * (number // per_rod)
-            heights[part.dofs] = low
-            first = size + 2 * np.arange(len(dofs) - 1)
+            places = thinned(len(part.dofs), max(MOST_POINTS // per_rod, 2))
+            low = PITCH * length * (number // per_rod)
+            heights[part.dofs] = low - between * length
+            first = size + 2 * np.arange(len(places) - 1)
             corners.append(np.stack([first, first + 2, first + 3, first + 1], axis=1))
-            parts.append(np.full(len(dofs) - 1, number))
-            kept.append(np.repeat(dofs, 2))
-            lows.append(np.tile([low, low + THICKNESS * description.length], len(dofs)))
-            size += 2 * len(dofs)
+            parts.append(np.full(len(places) - 1, number))
+            kept.append(np.repeat(part.dofs[places], 2))
+            lows.append(np.tile([low, low + THICKNESS * length], len(places)))
+            elements.append(first_element + (places[:-1] + places[1:]) // 2)
+            size += 2 * len(places)
+            first_element += len(part.dofs) - 1
         self._dofs, self._columns = np.concatenate(kept), columns
+        self._force, self._elements = AxialForce(problem), np.concatenate(elements)
         self._contacts = DrawnContacts(problem, columns, heights)
         nodes = np.stack([problem.positions[self._dofs], np.concatenate(lows)], axis=1)
         self.geometry = Geometry(
@@ -119,15 +137,19 @@ class DrawnRods:
         nodes = floats(np.stack([along, np.zeros_like(along)], axis=1))
         return DeformedGeometry(nodes, *self._contacts.moved(iterate))
 
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+        """Axial force, as rods have no height."""
+        moved = iterate.displacement[:, self._columns].T
+        force = np.stack([self._force(at_once)[self._elements] for at_once in moved], axis=1)
+        return Stress("axial force", "N", floats(force))
+
+
+STRESSES = {"σ xx": 0, "σ yy": 1, "τ xy": 2}
+"""Components beside von Mises' equivalent."""
+
 
 class DrawnMesh:
-    """Plane bodies of the same size, each with a mesh thinned alike.
-
-    Attributes
-    ----------
-    quad
-        The drawn quadrilateral that each element lies in, shape (n_elements,).
-    """
+    """Plane bodies, each with its mesh thinned where that is a grid."""
 
     def __init__(
         self, problem: Problem, description: Description, columns: NDArray[np.intp]
@@ -135,10 +157,10 @@ class DrawnMesh:
         assert problem.inside is not None
         self._inside, self._columns = problem.inside, columns
         self._contacts = DrawnContacts(problem, columns, None)
-        self._nodes, quads, self.quad = thinned_mesh(problem.inside)
-        self._counts = np.bincount(self.quad)
+        self._nodes, quads, self._quad = thinned_mesh(problem.inside)
+        self._counts = np.bincount(self._quad)
         parts = np.zeros(len(self._counts), dtype=np.intp)
-        parts[self.quad] = problem.inside.parts
+        parts[self._quad] = problem.inside.parts
         self.geometry = Geometry(
             description,
             floats(problem.inside.nodes[self._nodes]),
@@ -154,31 +176,63 @@ class DrawnMesh:
         nodes = floats(whole[self._nodes][:, :, self._columns])
         return DeformedGeometry(nodes, *self._contacts.moved(iterate))
 
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+        """A component of stress, or von Mises' equivalent, its mean in every quadrilateral."""
+        moved = self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]
+        values = settings.values()
+        means = []
+        for place in range(len(self._columns)):
+            stress = self._inside.stress(moved[:, :, place])
+            if component in STRESSES:
+                shown = stress[:, STRESSES[component]]
+            else:
+                shown = von_mises(stress, values["poisson"], values["plane"])
+            means.append(np.bincount(self._quad, weights=shown) / self._counts)
+        title = component if component in STRESSES else "von Mises stress"
+        return Stress(title, "Pa", floats(np.stack(means, axis=1)))
+
 
 def thinned_mesh(
     inside: Inside,
 ) -> tuple[NDArray[np.intp], NDArray[np.int32], NDArray[np.intp]]:
-    """Nodes and quadrilaterals that are drawn of a mesh, and in which each element lies.
+    """Nodes and quadrilaterals that are drawn of a mesh, and in which each element lies."""
+    bodies = np.unique(inside.bodies)
+    most = max(MOST_QUADS // len(bodies), 1)
+    nodes, quads, quad_of = [], [], np.zeros(len(inside.elements), dtype=np.intp)
+    n_nodes = n_quads = 0
+    for body in bodies:
+        elements = np.flatnonzero(inside.bodies == body)
+        kept, corners, places = _thinned_body(inside.nodes, inside.elements[elements], most)
+        nodes.append(kept)
+        quads.append(corners + n_nodes)
+        quad_of[elements] = places + n_quads
+        n_nodes += len(kept)
+        n_quads += len(corners)
+    return np.concatenate(nodes), np.concatenate(quads).astype(np.int32), quad_of
 
-    Bodies have the same size, and their nodes run body by body, row by row.
-    """
-    bodies = int(inside.bodies.max()) + 1
-    columns = len(np.unique(inside.nodes[:, 0])) - 1
-    rows = len(inside.nodes) // (bodies * (columns + 1)) - 1
-    across, up = _lines(columns, rows, max(MOST_QUADS // bodies, 1))
-    grid = np.arange(len(inside.nodes)).reshape(bodies, rows + 1, columns + 1)
-    kept = grid[np.ix_(np.arange(bodies), up, across)]
-    corners = np.arange(kept.size).reshape(kept.shape)
-    around = ((0, 0), (0, 1), (1, 1), (1, 0))
-    quads = [corners[:, a : a - 1 or None, b : b - 1 or None].ravel() for a, b in around]
-    body, row, column = np.unravel_index(inside.elements[:, 0], grid.shape)
-    place = (
-        body,
-        np.searchsorted(up, row, side="right") - 1,
-        np.searchsorted(across, column, side="right") - 1,
+
+def _thinned_body(
+    nodes: Array, elements: NDArray[np.intp], most: int
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """The same of one body; a mesh that is no grid is drawn as it is."""
+    kept, corners = np.unique(elements, return_inverse=True)
+    corners = corners.reshape(-1, 4)
+    (x, column), (y, row) = (
+        np.unique(values.round(9), return_inverse=True) for values in nodes[kept].T / np.ptp(nodes)
     )
-    quad = np.ravel_multi_index(place, (bodies, len(up) - 1, len(across) - 1))
-    return kept.ravel(), np.stack(quads, axis=1).astype(np.int32), quad
+    columns, rows = len(x) - 1, len(y) - 1
+    if len(kept) != len(x) * len(y) or len(elements) != columns * rows:
+        return kept, corners, np.arange(len(elements))
+    across, up = _lines(columns, rows, most)
+    grid = np.zeros((rows + 1, columns + 1), dtype=np.intp)
+    grid[row, column] = kept
+    drawn = np.arange(len(up) * len(across)).reshape(len(up), len(across))
+    around = drawn[:-1, :-1], drawn[:-1, 1:], drawn[1:, 1:], drawn[1:, :-1]
+    first_row, first_column = row[corners].min(axis=1), column[corners].min(axis=1)
+    at = np.searchsorted(up, first_row, side="right") - 1
+    beside = np.searchsorted(across, first_column, side="right") - 1
+    quads = np.stack([corner.ravel() for corner in around], axis=1)
+    return grid[np.ix_(up, across)].ravel(), quads, at * (len(across) - 1) + beside
 
 
 def _lines(columns: int, rows: int, most: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

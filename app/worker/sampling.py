@@ -24,6 +24,7 @@ from solver.remarks import remarks_on
 from solver.scenes import exact_of, loop_of, structure_of, words_of
 from solver.settings import Settings
 from solver.study.quantities.finished import FinishedRun
+from solver.study.quantities.quantities import reading
 
 MOST_INSTANTS, MOST_POINTS = 401, 401
 """Instants, and points of an interface, that a frame has at most."""
@@ -92,9 +93,8 @@ class Sampler:
         self, iterate: Iterate, history: Sequence[Record], status: Status | None, needs: Needs
     ) -> Frame:
         """What is shown of an iterate, with the extras that views need."""
-        run = FinishedRun(
-            self.settings, Solution(iterate, [], status or CANCELLED), False, self.loop
-        )
+        solution = Solution(iterate, list(history), status or CANCELLED)
+        run = FinishedRun(self.settings, solution, bool(self.run.reference), self.loop)
         return Frame(
             run=self.run,
             iteration=iterate.iterations,
@@ -110,6 +110,7 @@ class Sampler:
             extras={
                 name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
             },
+            readings={name: reading(name)(run) for name in needs.readings},
         )
 
     def _names(self, needs: Needs) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solver.arrays import Array
+from solver.discrete.problem import Problem
 from solver.latin.criteria.converged import Proven, agrees
 from solver.latin.criteria.estimate import LAST
 from solver.latin.criteria.judged_numbers import Numbers
@@ -43,8 +44,13 @@ FAR = 0.1
 
 JUMPS = (
     "At some instant no equilibrium goes on from the one before: friction falls with slip faster "
-    "than the structure unloads, so that it jumps. Lower the load, raise friction_ratio or "
-    "slip_length, or prescribe displacements."
+    "than the structure unloads, so that it jumps, and none is found beyond. Lower the load, raise "
+    "friction_ratio or slip_length, or prescribe a displacement in place of a force."
+)
+_JUMPED = (
+    " At {:.4g} s no equilibrium goes on from the one before, as friction falls with slip faster "
+    "than the structure unloads: it jumps to another. Where it should not, raise friction_ratio, "
+    "slip_length or the number of elements."
 )
 
 
@@ -95,8 +101,16 @@ def proven(
         if found > FAR:
             said = _BY_INCREMENTS.format(before, f"{away:g}" if found <= 1.0 else "more than 100")
         advice += said + _ON_BASES * (finish.reduction is not None) + f" {why}" * bool(why)
-    status = Status(Ending.CONVERGED, advice)
+    status = with_jump(Status(Ending.CONVERGED, advice), finish.problem, certificate)
     return Decision(seconds, math.nan, math.nan, residual, status, certificate)
+
+
+def with_jump(status: Status, problem: Problem, certificate: Certificate | None) -> Status:
+    """Status that also says when the certified solution jumps, if it does."""
+    if certificate is None or certificate.jumps_at is None:
+        return status
+    message = _JUMPED.format(problem.instants[certificate.jumps_at])
+    return replace(status, advice=status.advice + message)
 
 
 class StopRules:
@@ -147,6 +161,8 @@ class StopRules:
         is_over = status is not None or not self._searches
         if certificate is None or not (self._may_finish and is_over):
             estimated = numbers.known("estimated_error")
+            if status is not None:
+                status = with_jump(status, iterate.problem, certificate)
             return Decision(seconds, indicator, behaviour, estimated, status, certificate)
         began = time.perf_counter()
         self._found = estimated = certificate.distance.of_friction_force(iterate)
@@ -202,7 +218,7 @@ class StopRules:
 
     def _exhausted_advice(self, numbers: Numbers, status: Status) -> str:
         why = self._criterion.lacks(numbers) or "The run has come to its limit"
-        remedy = of_bases(self._latin) or "Raise max_iterations, or try another k_scale."
+        remedy = of_bases(self._latin) or f"Raise max_iterations, or {remedy_of_k(self._latin)}."
         return f"{why}. {status.advice or remedy}"
 
 
@@ -254,17 +270,19 @@ class Stall:
             return (
                 "The LATIN indicator is below its tolerance, yet the k-free indicator shows that "
                 "the contact laws are broken: k is far from what suits, or rigid motion so large "
-                f"that it hides how the body deforms. {self._remedy('Try')}"
+                f"that it hides how the body deforms. {remedy_of_k(self._latin).capitalize()}."
             )
         if self._latin.relaxation > 0.9:
             return "The LATIN indicator has stopped falling. Lower the relaxation to 0.8."
-        remedy = modes or self._remedy("Accept a larger tolerance, or try")
+        remedy = modes or f"Accept a larger tolerance, or {remedy_of_k(self._latin)}."
         return f"The LATIN indicator has stopped falling. {remedy}"
 
-    def _remedy(self, begin: str) -> str:
-        """Say what helps; a status step needs neither k nor the digits of W + F/k."""
-        also = ", or finish=at-once" if self._latin.finish is None else ""
-        return f"{begin} another k_scale{also}."
+
+def remedy_of_k(latin: Latin) -> str:
+    """Say what helps against an unsuitable k, as part of a sentence; a status step needs none."""
+    if latin.finish is None:
+        return "set finish=at-once, for which k does not matter"
+    return "try a k_scale ten times smaller, and if that is no better ten times larger"
 
 
 def of_bases(latin: Latin) -> str:

@@ -74,10 +74,29 @@ class Rules:
             self.slip_length[moving],
         )
 
-    def bounds(self, force: Array) -> Array:
-        """Give the largest friction force, r + mu f_n, of all forces, (n, n_instants)."""
+    @property
+    def change(self) -> bool:
+        """Whether friction changes with slip anywhere."""
+        return bool(np.any(np.isfinite(self.slip_length) & (self.ratio != 1.0)))
+
+    def factor(self, gone: Array) -> Array:
+        """Factor on the friction bound after accumulated slip, shape (n, n_instants) both."""
+        share = np.minimum(gone / self.slip_length[:, None], 1.0)
+        return np.asarray(1.0 + (self.ratio[:, None] - 1.0) * share)
+
+    def bounds(self, force: Array, slip: Array) -> Array:
+        """Largest friction force, (r + mu f_n) times its factor, shape (n, n_instants).
+
+        Parameters
+        ----------
+        force, slip
+            Of all jumps, slip per instant, same shape.
+        """
         carried = self.friction[:, None] * force[self.partner]
-        return np.asarray(self.bound + np.maximum(carried, 0.0))
+        most = self.bound + np.maximum(carried, 0.0)
+        if self.change:
+            most = most * self.factor(np.cumsum(np.abs(slip), axis=1))
+        return np.asarray(most)
 
 
 def stacked(rules: Sequence[Rules]) -> Rules:

@@ -126,6 +126,18 @@ class Tangential(ABC):
         """Largest value that slip may give the bound, of its shape."""
         return self.bound
 
+    @property
+    def softens(self) -> bool:
+        """Whether the bound falls with slip anywhere."""
+        return self.ratio is not None and bool(np.any(self.ratio < 1.0))
+
+    @property
+    def steepest_fall(self) -> Array:
+        """Largest force by which a known bound falls per slip, shape (n_pairs,)."""
+        if self.ratio is None or self.slip_length is None:
+            return np.zeros(len(self.bound))
+        return np.asarray(self.most * np.maximum(1.0 - self.ratio, 0.0) / self.slip_length)
+
     def during(self, some: slice) -> Self:
         """Give the law of some instants alone."""
         return self if self.bound.shape[1] == 1 else self._with(bound=self.bound[:, some])

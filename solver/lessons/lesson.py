@@ -114,6 +114,10 @@ class Lesson:
         Name of that which its plots are of; empty is the first one.
     draw
         Name of the setting over which one may draw the answer as a curve; empty for none.
+    beside
+        Names of the plots that stand beside the question already; the others would answer it.
+    until
+        Where its picture, which moves, begins anew before the choice, as a share of the interval.
     """
 
     name: str
@@ -133,6 +137,8 @@ class Lesson:
     instant: float
     interface: str
     draw: str = ""
+    beside: tuple[str, ...] = ()
+    until: float = 1.0
 
     @property
     def curve(self) -> list[tuple[float, float]]:

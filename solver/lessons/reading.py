@@ -41,10 +41,12 @@ KEYS = {
     "instant": (int, float),
     "interface": str,
     "draw": str,
+    "beside": list,
+    "until": (int, float),
     "checkpoints": list,
 }
 """Keys of a lesson, and the type of each; `OPTIONAL` may be left out."""
-OPTIONAL = "interface", "draw"
+OPTIONAL = "interface", "draw", "beside", "until"
 OF_CHECKPOINT = {
     "claim": str,
     "settings": dict,
@@ -115,6 +117,14 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         raise SettingError(
             "subject", values["subject"], ", ".join(SUBJECTS), "say what it is about"
         )
+    until = values.get("until", 1.0)
+    if not 0.0 < until <= 1.0:
+        allowed = "a share of the interval, above 0 and up to 1"
+        raise SettingError("until", until, allowed, "say how far its picture moves")
+    views = _names("views", values)
+    beside = _names("beside", values) if "beside" in values else ()
+    if not set(beside) <= set(views):
+        raise SettingError("beside", beside, ", ".join(views), "choose some of its views")
     _check_controls(controls, settings)
     with _in("text"):
         text = _paragraphs(values["text"], controls)
@@ -131,13 +141,15 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         why=values["why"],
         settings=settings,
         controls=controls,
-        views=_names("views", values),
+        views=views,
         text=text,
         explanation=explanation,
         checkpoints=tuple(_checkpoints(values["checkpoints"], settings)),
         instant=float(values["instant"]),
         interface=values.get("interface", ""),
         draw=values.get("draw", ""),
+        beside=beside,
+        until=float(until),
     )
     points = [place for place, value in found.curve if place > 0.0 and math.isfinite(value)]
     if found.draw and len(points) < FEWEST_POINTS:

@@ -10,7 +10,7 @@ points pass the slip length within the instant is found by trial; their bound is
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -78,38 +78,29 @@ def bounds_of(problem: Problem) -> list[Bounds]:
 def least_with_changing_bound(
     band: Band, bounds: Bounds, movable: Array, force: Array, status: Array, gone: Array
 ) -> Minimum | None:
-    """Find the minimum that the instant before goes over into.
+    """Minimum that the instant before certainly goes over into, None where that is not sure.
 
-    Returns
-    -------
-    None where there is none: friction falls faster with slip than the structure unloads, so that it
-    jumps.
+    It is sure if the structure is stable where points slip, however far they have softened on the
+    way: then no other minimum slips there alone.
     """
-    passes = gone >= bounds.length
+    before = passes = gone >= bounds.length
     for _ in range(TRIALS):
         slope = np.where(passes, 0.0, bounds.slope) * movable
         bound = np.where(passes, bounds.last, bounds.first + bounds.slope * gone) * movable
         softer = band.stiffened(slope)
-        found = _least(Search(softer, bound, movable), force, status)
-        band.solutions += softer.solutions
-        if found is None:
-            return None
-        slip = np.abs(found.increment)
-        corrected = gone + slip >= bounds.length
-        if np.array_equal(corrected, passes):
-            pull = found.pull + slope * found.increment
-            return Minimum(found.increment, pull, found.status, found.violation, found.residual)
-        passes, status = corrected, found.status
-    return None
-
-
-def _least(search: Search, force: Array, status: Array) -> Minimum | None:
-    """Seek the minimum from the statuses, and where softening forbids these, from rest."""
-    status = status * search.rubs
-    ways = (search, status), (search.released, status), (search.released, np.zeros_like(status))
-    for seek, begin in ways:
+        search = Search(softer, bound, movable)
         try:
-            return seek(force, begin)
+            least = search(force, status * search.rubs)
+            slip = np.abs(least.increment)
+            corrected = gone + slip >= bounds.length
+            if np.array_equal(corrected, passes):
+                softest = band.stiffened(np.where(before, 0.0, bounds.slope) * movable)
+                softest.solve_kept(movable * (slip > 0.0), np.zeros_like(force))
+                pull = least.pull + slope * least.increment
+                return replace(least, pull=pull)
         except LinAlgError:
-            continue
+            return None
+        finally:
+            band.solutions += softer.solutions
+        passes, status = corrected, least.status
     return None

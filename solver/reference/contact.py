@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.discrete.problem import Problem
-from solver.reference.condensation import Condensation, NoReferenceError, TooLargeError
+from solver.reference.changing_friction import NewtonWithChangingFriction
+from solver.reference.condensation import Condensation, TooLargeError
 from solver.reference.contact_states import all_forces, status_of
 from solver.reference.newton import CONVERGED, Marched, Newton
 from solver.reference.residual import Shown, unbalanced_of
@@ -51,8 +52,6 @@ class IncrementalContact:
     ------
     TooLargeError
         If there are more than `MOST_JUMPS` jumps.
-    NoReferenceError
-        If friction changes with slip.
     NotHeldError
         If the structure can move with all contacts closed and stuck.
     """
@@ -63,11 +62,6 @@ class IncrementalContact:
             raise TooLargeError(
                 f"a reference would condense {n_jumps} components of contact (at most "
                 f"{MOST_JUMPS}); take fewer elements, layers or wires to have one"
-            )
-        if any(law.tangential.ratio is not None for law in problem.rubbing.values()):
-            raise NoReferenceError(
-                "Friction that changes with slip has a reference on rods that rub on a rigid "
-                "support alone."
             )
         self._problem = problem
         self._condensed, self._rules = Condensation(problem), rules_of(problem)
@@ -100,11 +94,11 @@ class IncrementalContact:
         problem, condensed, rules = self._problem, self._condensed, self._rules
         own = rules.kept(condensed.moving)
         guesses = None if guess is None else guess[condensed.moving]
-        newton = Newton(condensed, own, problem.rest, guesses)
-        n_instants = problem.n_instants
+        kind = NewtonWithChangingFriction if own.change else Newton
+        newton = kind(condensed, own, problem.rest, guesses)
         done = self._nothing_done()
-        ambiguous, reached = np.zeros((2, n_instants), dtype=bool)
-        for instant in range(n_instants):
+        ambiguous, reached = np.zeros((2, problem.n_instants), dtype=bool)
+        for instant in range(problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
             if most is not None and newton.response.solutions >= most:
@@ -118,6 +112,8 @@ class IncrementalContact:
             found,
             ambiguous=ambiguous & found.converged,
             steps=newton.response.solutions,
+            jumps_at=newton.jumps_at,
+            is_lost=bool(np.any(reached & ~found.converged)),
             seconds=time.perf_counter() - start,
         )
 

@@ -27,9 +27,9 @@ def all_forces(condensed: Condensation, rules: Rules, jumps: Array, force: Array
     found[condensed.moving] = force
     given = ~rules.normal
     given[condensed.moving] = False
-    bound = rules.bounds(found)
-    slip = np.sign(np.diff(jumps, axis=1, prepend=0.0))
-    found[given] = (-bound * slip)[given]
+    slip = np.diff(jumps, axis=1, prepend=0.0)
+    bound = rules.bounds(found, slip)
+    found[given] = (-bound * np.sign(slip))[given]
     sprung = np.flatnonzero(given & (rules.compliance > 0.0))
     if len(sprung):
         soft, jump = rules.compliance[sprung, None], jumps[sprung]

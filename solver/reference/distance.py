@@ -173,7 +173,8 @@ def held_instants(problem: Problem, contact_force: Array) -> NDArray[np.bool_]:
     force = contact_force / problem.scales.force
     small = VANISHING * np.abs(force).max(initial=0.0)
     force = np.where(force > small, force, 0.0)
-    holds = np.where(rules.normal[:, None], force, rules.bounds(force)) > 0.0
+    bound = rules.bounds(force, np.zeros_like(force))
+    holds = np.where(rules.normal[:, None], force, bound) > 0.0
     moved = jumps(problem) @ problem.motions
     patterns, kind = np.unique(holds, axis=1, return_inverse=True)
     sure = [np.linalg.matrix_rank(moved[pattern]) == moved.shape[1] for pattern in patterns.T]

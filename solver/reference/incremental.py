@@ -15,16 +15,21 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from solver.discrete.problem import Problem
 from solver.reference.assembled_rods import AssembledRods
 from solver.reference.condensation import LEFT_INSIDE
+from solver.reference.contact import IncrementalContact
 from solver.reference.search import Minimum
 from solver.reference.solution import Interrupted, Reference, States
 from solver.reference.starts import Starts
 from solver.reference.supports import rubs_on_supports
+
+DEARER = 30
+"""Points that make a system of the general solver cost one more of the band's (measured)."""
 
 
 def incremental(problem: Problem, stop: Callable[[], bool] | None = None) -> Reference:
@@ -59,6 +64,11 @@ class IncrementalRod:
             raise ValueError("this solver knows Coulomb's friction of known bound on supports")
         self._structure = AssembledRods(problem)
 
+    @cached_property
+    def _general(self) -> IncrementalContact:
+        """The solver that also follows friction which softens faster than a rod unloads."""
+        return IncrementalContact(self._problem)
+
     def march(
         self,
         guess: States | None = None,
@@ -82,14 +92,16 @@ class IncrementalRod:
         ------
         Interrupted
             As soon as `stop` gives True.
+        TooLargeError
+            If friction softens so fast that the general solver is needed, and there are too many
+            points for it.
         """
         start = time.perf_counter()
-        structure = self._structure
+        structure, starts = self._structure, Starts()
         guesses = None if guess is None else structure.at_dofs(guess)
-        solved, starts = structure.band.solutions, Starts()
+        solved = structure.band.solutions
         found: list[Minimum] = []
         balance, status, gone = np.zeros((3, self._problem.n_dofs))
-        jumps = False
         for instant in range(self._problem.n_instants):
             if stop is not None and stop():
                 raise Interrupted
@@ -97,17 +109,21 @@ class IncrementalRod:
                 break
             done, from_guess = structure.band.solutions, starts.from_guess
             begin = guesses[instant] if guesses is not None and from_guess else status
-            load = structure.load_steps[instant] + balance
-            least = structure.minimise(instant, load, structure.moves[instant], begin, gone)
+            load, move = structure.load_steps[instant] + balance, structure.moves[instant]
+            least = structure.minimise(instant, load, move, begin, gone)
             if least is None:
-                jumps = True
-                break
+                return self._general.march(guess, most and most // self._dearer, stop)
             found.append(least)
             starts.took(structure.band.solutions - done, from_guess=from_guess)
             balance, status = least.pull, least.status
             gone = gone + np.abs(least.increment)
-        steps = structure.band.solutions - solved
-        return replace(self._gathered(found, steps, time.perf_counter() - start), jumps=jumps)
+        seconds = time.perf_counter() - start
+        return self._gathered(found, structure.band.solutions - solved, seconds)
+
+    @property
+    def _dearer(self) -> int:
+        """How many of these systems one of the general solver takes as long as."""
+        return 1 + len(self._structure.point_dofs) // DEARER
 
     def _gathered(self, found: list[Minimum], steps: int, seconds: float) -> Reference:
         """Put together the minima of the first instants, from which on nothing moves."""

@@ -45,7 +45,15 @@ class Marched(NamedTuple):
 
 
 class Newton:
-    """Finds jumps and forces of one instant after the other."""
+    """Finds jumps and forces of one instant after the other.
+
+    Attributes
+    ----------
+    jumps_at
+        First instant at which no solution goes on from the one before; None while all do.
+    """
+
+    jumps_at: int | None = None
 
     def __init__(
         self, condensed: Condensation, rules: Rules, rest: Array | None, guesses: States | None
@@ -172,7 +180,7 @@ class Newton:
         held = states == HELD
         # A contact that closes rubs as its overlap and its slip would have it.
         carries = np.where(held, force[rules.partner], -moved[rules.partner])
-        most = sides.bound[:, 0] + np.maximum(rules.friction * carries, 0.0) + slack * held
+        most = sides.bound[:, 0] + np.maximum(response.friction * carries, 0.0) + slack * held
         pulled = np.where(held, -force, moved)
         found = (pulled > most).view(np.int8) - (pulled < -most).view(np.int8)
         found = np.where(np.abs(states) == 1, states * (states * moved >= -blur), found)

@@ -38,7 +38,7 @@ def unbalanced_of(condensed: Condensation, rules: Rules, shown: Shown) -> NDArra
     vanish.
     """
     forces, unit = shown.forces, condensed.unit[:, None]
-    bound = rules.bounds(forces)
+    bound = rules.bounds(forces, shown.slip)
     pressed = np.maximum(forces - unit * shown.opening, 0.0)
     rubbed = np.clip(forces - unit * shown.slip, -bound, bound)
     wrong = np.abs(forces - np.where(rules.normal[:, None], pressed, rubbed))

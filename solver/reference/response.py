@@ -28,6 +28,8 @@ class Response:
     ----------
     unit
         Stiffness of every jump alone, with what is in series, shape (n, 1), scaled.
+    friction
+        Coefficient mu of each jump, shape (n,).
     solutions
         Systems solved.
     unbalanced
@@ -41,7 +43,8 @@ class Response:
 
     def __init__(self, condensed: Condensation, rules: Rules) -> None:
         self._stiffness, self._gauge = condensed.stiffness, condensed.gauge
-        self._partner, self._friction = rules.partner, rules.friction
+        self._partner, self.friction = rules.partner, rules.friction
+        self._growth = np.zeros_like(rules.friction)
         self._base, self._soft = condensed.base, rules.compliance[:, None]
         self._base_rows = as_slice(condensed.base)
         self._others: Indices = np.setdiff1d(np.arange(len(rules.gap)), self._base)
@@ -70,6 +73,10 @@ class Response:
         found[self._others, np.arange(n_base, size)] = 1.0
         return found
 
+    def set_friction(self, friction: Array, growth: Array) -> None:
+        """Take other coefficients of friction, and bounds that grow by so much per slip, (n,)."""
+        self.friction, self._growth, self._states = friction, growth, None
+
     def __call__(self, states: States, sides: Sides) -> Increment:
         """Solve for the step from the instant before."""
         if self._states is None or not np.array_equal(states, self._states):
@@ -84,6 +91,8 @@ class Response:
         force = stays
         given = -self._way * sides.bound[rows]
         right = given - force[rows] - self._slope * force[self._under]
+        if self._grows:
+            right += self._stiffer * (sides.held[rows] - self._slips @ unknown[:n_base])
         if not self._is_plain:
             right = np.concatenate([right, self._gauge_kept.T @ unknown[kept]])
             if len(sprung):
@@ -99,6 +108,9 @@ class Response:
             stays[self._base_rows] -= sides.load
         force = stays + self._forces(unknown, self._unknowns, self._own)
         carried = given - self._slope * force[self._under]
+        if self._grows:
+            slip = self._slips @ (unknown[:n_base] + self._gauge @ motion) - sides.held[rows]
+            carried -= self._stiffer * slip
         carried[sprung] = force[rows[sprung]]
         self.unbalanced = float(np.abs(force[rows] - carried).max(initial=0.0))
         force[rows] = carried
@@ -164,7 +176,9 @@ class Response:
         self._rows, own = rows, states[rows]
         self._sprung: Indices = np.flatnonzero(own == HELD)
         way = np.where(np.abs(own) == 1, own, 0).astype(float)
-        slope = way * self._friction[rows]
+        slope = way * self.friction[rows]
+        self._stiffer = (np.abs(way) * self._growth[rows])[:, None]
+        self._grows = bool(self._stiffer.any())
         self._under: Indices = self._partner[rows]
         self._way, self._slope = way[:, None], slope[:, None]
         others = np.arange(len(self._base), len(self._of_unknowns))
@@ -176,6 +190,9 @@ class Response:
         if len(tied):
             under = self._of_unknowns[np.ix_(self._under[tied], unknowns)]
             matrix[tied] += slope[tied, None] * under
+        if self._grows:
+            self._slips = self._jumps_of(rows)
+            matrix[:, : len(self._free)] += self._stiffer * self._slips[:, self._free]
         if not self._is_plain:
             matrix = self._with_motions(matrix)
         self._factors = Factors(matrix, scaled=not self._is_plain)
@@ -202,6 +219,8 @@ class Response:
             shifts[self._kept] = -kept
             pulls = self._forces(shifts, self._kept)
             matrix[:n_rows, n_rows:] = pulls[self._rows] + self._slope * pulls[self._under]
+            if self._grows:
+                matrix[:n_rows, n_rows:] += self._stiffer * (self._slips[:, free] @ gauge[free])
         if len(sprung):
             come = self._come = self._jumps_of(own)
             soft, size = self._soft[own], (len(own), len(self._others))

@@ -54,9 +54,12 @@ class Reference:
     deformation
         Displacement but for rigid motions of bodies that contact alone holds, which would hide it;
         shape (n_dofs, n_instants), m. None where nothing moves so.
-    jumps
-        Whether the first instant that is not solved has no solution that goes on from the instant
-        before: friction falls with slip faster than the structure unloads.
+    jumps_at
+        First instant that has no solution that goes on from the instant before, as friction falls
+        with slip faster than the structure unloads: what follows, if anything is solved, is another
+        equilibrium. None where there is no such instant.
+    is_lost
+        Whether an instant that was tried is not solved.
     """
 
     problem: Problem
@@ -71,7 +74,8 @@ class Reference:
     seconds: float
     rounding: float = 0.0
     deformation: Array | None = None
-    jumps: bool = False
+    jumps_at: int | None = None
+    is_lost: bool = False
 
     @property
     def friction_force(self) -> Array:

@@ -90,6 +90,12 @@ def points_of(settings: Settings, name: str) -> Pairs:
     return settings.points(name)
 
 
+def left_out(settings: Settings) -> list[str]:
+    """Return what a run does not see of the tables of its settings, a sentence each."""
+    assert isinstance(settings, SceneSettings)
+    return list(settings.left_out())
+
+
 def chief_of(settings: type[Settings]) -> Sequence[str]:
     """Name the settings that a scene is about, in the order in which one thinks of them."""
     assert issubclass(settings, SceneSettings)

@@ -14,6 +14,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
 from solver.loads import PRESETS, interpolate
 from solver.phrases import Amount, Phrase, Sentence
+from solver.profiles import harmonic_means, means, shares_of
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_rods import exact_bar
@@ -136,8 +137,8 @@ class BarSettings(SceneSettings):
         "position",
         "factor",
         ("m", ""),
-        "Factor on S along the bar, taken at the middle of every element: a preset, or points "
-        "(m, factor).",
+        "Factor on S along the bar: a preset, taken at the middle of every element; or points "
+        "(m, factor), where an element is as stiff as all that lies in it.",
         group="Bar",
         title="S along the bar",
     )
@@ -163,9 +164,10 @@ class BarSettings(SceneSettings):
 
     def points(self, name: str) -> Pairs:
         """Give points of the preset that a curve setting has at present."""
-        if not name.endswith("_profile"):
+        own: str | Pairs = getattr(self, name)
+        if not name.endswith("_profile") or not isinstance(own, str):
             return super().points(name)
-        return tuple((x * self.length, factor) for x, factor in PROFILES[getattr(self, name)])
+        return tuple((x * self.length, factor) for x, factor in PROFILES[own])
 
     def check_together(self) -> None:
         """Refuse negative factors too."""
@@ -207,19 +209,17 @@ class BarSettings(SceneSettings):
 def bar(settings: BarSettings) -> Rods:
     """Make the friction bar that the settings describe (paper, section 3 and Table 1).
 
-    One instant stands at the end of the interval; more are spread evenly from 0 on, and the bar
-    is at rest and free of stress before the first.
+    The bar is at rest and free of stress before the first instant.
     """
     nodes = np.linspace(0.0, settings.length, settings.elements + 1)
-    mu = settings.friction * _profile(settings.friction_profile, nodes, settings.length)
-    spread = _profile(settings.pressure_profile, nodes, settings.length)
+    density = settings.friction * _density(settings, nodes)
     mean, section = _section(settings)
     return Rods(
         length=settings.length,
         stiffness=settings.young * settings.section * mean,
         elements=settings.elements,
         substructures=settings.substructures,
-        bound=shared.bound_of(settings, mu * spread),
+        bound=shared.bound_of(settings, density),
         load=settings.path("load"),
         instants=settings.times(),
         duration=settings.duration,
@@ -253,16 +253,22 @@ def _section(settings: BarSettings) -> tuple[float, Array | None]:
     if settings.section_profile == "uniform":
         return 1.0, None
     ends = np.linspace(0.0, settings.length, settings.elements + 1)
-    middles = 0.5 * (ends[:-1] + ends[1:])
-    factors = _profile(settings.section_profile, middles, settings.length)
+    table = settings.section_profile
+    if isinstance(table, str):
+        factors = interpolate(PROFILES[table], 0.5 * (ends[:-1] + ends[1:]) / settings.length)
+    else:
+        factors = harmonic_means(table, ends)
     mean = float(1.0 / np.mean(1.0 / factors))
     return mean, factors / mean
 
 
-def _profile(profile: str | tuple[tuple[float, float], ...], nodes: Array, length: float) -> Array:
-    if isinstance(profile, str):
-        return interpolate(PROFILES[profile], nodes / length)
-    return interpolate(profile, nodes)
+def _density(settings: BarSettings, nodes: Array) -> Array:
+    """Return the factors on mu and p together: presets at the nodes, tables over their shares."""
+    names = "friction_profile", "pressure_profile"
+    mu, pressure = tables = [settings.points(name) for name in names]
+    if all(isinstance(getattr(settings, name), str) for name in names):
+        return interpolate(mu, nodes) * interpolate(pressure, nodes)
+    return means(tables, shares_of(nodes))
 
 
 def _coarser(settings: BarSettings) -> Iterator[Problem]:

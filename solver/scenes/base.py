@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.definitions import Pairs, SettingError, choice, count, quantity
+from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning_knots
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
-from solver.loads import BEGINS, PRESETS, PRESSURES, instants_of, load_path
+from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
 from solver.phrases import Phrase
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
 """Nodes times instants; a run keeps about ten fields over them."""
+EVERY_POINT = 2_000_000
+"""Nodes times instants up to which every point of a table of a path is an instant: 10 s along the
+bar. Beyond, those stay without which it would be wrong by `THINNED` somewhere."""
+THINNED = 1e-3
+"""Share of its range by which a path that is thinned may differ from its table."""
 POINTS = 9
-"""Of a table that stands for a preset."""
-FEWEST = 4
-"""Instants a cycle, with which one sees that it turns."""
+"""Of a table that stands for a preset which is not linear between its corners."""
+STRAIGHT = 1e-9
+"""Share of its range by which rounding bends a straight part of a path."""
 
 
 class SceneSettings(Settings):
@@ -87,7 +94,7 @@ class SceneSettings(Settings):
     """Settings that say how much it is loaded; the first that applies counts."""
     PATH: ClassVar[str] = "load"
     """Setting that says how that goes on over time."""
-    SHAPES: ClassVar[Mapping[str, Callable[[Array, int], Array]]] = PRESETS
+    SHAPES: ClassVar[Mapping[str, Preset]] = PRESETS
     """What the presets of paths over time stand for."""
 
     @classmethod
@@ -125,30 +132,110 @@ class SceneSettings(Settings):
     @property
     def is_repeatable(self) -> bool:
         """Whether any load path is a preset that comes back to where it began."""
+        return any(getattr(self, name) in BEGINS for name in self.paths)
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Names of the settings that are paths over time and do something."""
         names = (name for name in self.definitions() if f"_{name}".endswith("_load"))
-        return any(getattr(self, name) in BEGINS for name in names if self.applies(name))
+        return tuple(name for name in names if self.applies(name))
 
     def times(self) -> Array:
-        """Give the instants, shape (n_instants,), s; a single one stands at the end."""
+        """Instants, shape (n_instants,), s: points of all paths, and others spread between them."""
+        return self._times
+
+    @property
+    def n_instants(self) -> int:
+        """Number of instants: at least as many as are set."""
+        return len(self._times)
+
+    @cached_property
+    def _times(self) -> Array:
+        instants = self._instants({name: getattr(self, name) for name in self._tables})
+        if self.n_nodes * len(instants) > EVERY_POINT and self._tables:
+            instants = self._instants({name: self._thinned(name) for name in self._tables})
+        instants.flags.writeable = False
+        return instants
+
+    @property
+    def _tables(self) -> tuple[str, ...]:
+        return tuple(name for name in self.paths if not isinstance(getattr(self, name), str))
+
+    def _thinned(self, name: str) -> Pairs:
+        """Points of a table without which its path would be wrong by a share of its range."""
+        table: Pairs = getattr(self, name)
+        kept = thinned(table, THINNED * float(np.ptp(np.array(table)[:, 1])))
+        return tuple(table[place] for place in kept)
+
+    def _instants(self, tables: Mapping[str, Pairs]) -> Array:
+        """Instants for these tables and all presets; a single one has those where paths turn."""
         own: Any = self  # every scene defines these, where it shows them
-        return instants_of(own.duration, own.instants)
+        acting = [name for name in self.paths if name in tables or self.size_of(name)]
+        knots = {name: self._knots(tables.get(name, getattr(self, name))) for name in acting}
+        if own.instants == 1:
+            knots = {name: self._turning(name, times) for name, times in knots.items()}
+        given = [knots[name] for name in tables]
+        corners = [times for name, times in knots.items() if name not in tables]
+        joined = (np.concatenate([NO_KNOTS, *times]) for times in (given, corners))
+        return instants_of(own.duration, own.instants, *joined)
+
+    def _knots(self, path: str | Pairs) -> Array:
+        own: Any = self
+        return knots_of(path, own.duration, own.seed, self._shapes, self.cycles)
+
+    def _turning(self, name: str, knots: Array) -> Array:
+        own: Any = self
+        inside = knots[(knots > 0.0) & (knots < own.duration)]
+        every = np.concatenate([[0.0], inside, [own.duration]])
+        return turning_knots(every, self._along(name, every))
+
+    def left_out(self) -> Iterator[str]:
+        """Yield what a run does not see of its tables: paths of too many points are thinned."""
+        own: Any = self
+        times = self.times()
+        for name in self._tables:
+            when, values = np.array(getattr(self, name)).T
+            inside = (when >= times[0]) & (when <= times[-1])
+            seen = interpolate(np.column_stack([times, self.path(name)]), when[inside])
+            lost = float(np.abs(values[inside] - seen).max(initial=0.0))
+            span = float(np.ptp(values))
+            count = len(apart(when[inside], times, SAME * own.duration))
+            if own.instants > 1 and count and lost > STRAIGHT * span:
+                yield Phrase(
+                    "{}: {} of {} points are left out; they differ from the path that is solved by "
+                    "at most {} % of their range",
+                    name,
+                    count,
+                    len(values),
+                    f"{100.0 * lost / span:.2g}",
+                )
 
     def path(self, name: str) -> Array:
         """Give a quantity over time from the setting of its path; a table has its own size."""
         return self._along(name, self.times())
 
     def points(self, name: str) -> Pairs:
-        """Give points of the preset that a curve setting has at present."""
+        """Return the points of a curve setting, or those that stand for its preset."""
         own: Any = self
-        instants = np.linspace(0.0, own.duration, (POINTS - 1) * self.cycles + 1)
-        return as_points(instants, self._along(name, instants))
+        if not isinstance(getattr(self, name), str):
+            table: Pairs = getattr(self, name)
+            return table
+        even = np.linspace(0.0, own.duration, (POINTS - 1) * self.cycles + 1)
+        times = instants_of(own.duration, 2, NO_KNOTS, self._knots(getattr(self, name)))
+        times = instants_of(own.duration, 2, times, even)
+        values = self._along(name, times)
+        kept = thinned(np.column_stack([times, values]), STRAIGHT * float(np.ptp(values)))
+        return as_points(times[kept], values[kept])
 
     def _along(self, name: str, instants: Array) -> Array:
         own: Any = self
         curve: str | Pairs = getattr(self, name)
         size = self.size_of(name) if isinstance(curve, str) else 0.0
-        shapes = {**self.SHAPES, **PRESSURES}
-        return load_path(curve, instants, own.duration, size, own.seed, shapes, self.cycles)
+        return load_path(curve, instants, own.duration, size, own.seed, self._shapes, self.cycles)
+
+    @property
+    def _shapes(self) -> Mapping[str, Preset]:
+        return {**self.SHAPES, **PRESSURES}
 
     def with_change(self, name: str, value: object) -> Self:
         """Change one setting; numbers of parts that exceed it come down with it."""
@@ -175,19 +262,15 @@ class SceneSettings(Settings):
                     Phrase("{} to {} ({})", self.definitions()[part].bounds[0], whole, most),
                     Phrase("lower {} or raise {}", part, whole),
                 )
-        if self.is_repeatable and 1 < self.cycles > (own.instants - 1) // FEWEST:
-            raise SettingError(
-                "cycles",
-                self.cycles,
-                Phrase("at most {} with {} instants", (own.instants - 1) // FEWEST, own.instants),
-                "give more instants",
-            )
-        if self.n_nodes * own.instants > LARGEST_FIELD:
+        most = LARGEST_FIELD // self.n_nodes
+        if self.n_instants > most:
             raise SettingError(
                 "instants",
-                own.instants,
-                Phrase("at most {} with {} nodes", LARGEST_FIELD // self.n_nodes, self.n_nodes),
-                "give fewer instants, or a coarser mesh",
+                self.n_instants,
+                Phrase("at most {} with {} nodes", most, self.n_nodes),
+                "give fewer instants, or a coarser mesh"
+                if self.n_instants == own.instants
+                else "give paths with fewer points or cycles, or a coarser mesh",
             )
 
 

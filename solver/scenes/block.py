@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -15,8 +15,9 @@ from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Spring, Support
 from solver.discrete.stack.equilibrium import loss_of_equilibrium
 from solver.discrete.stack.stack import Stack
-from solver.loads import PRESETS, interpolate
+from solver.loads import PRESETS
 from solver.phrases import Phrase, Sentence, plain
+from solver.profiles import gap_at, unseen
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
@@ -130,10 +131,18 @@ class BlockSettings(SideSettings):
 
     def points(self, name: str) -> Pairs:
         """Give points of the preset that a curve setting has at present."""
-        if name != "gap":
+        if name != "gap" or not isinstance(self.gap, str):
             return super().points(name)
         x = np.linspace(0.0, self.length, POINTS)
         return as_points(x, _gap(self, x))
+
+    def left_out(self) -> Iterator[str]:
+        """Yield what a run does not see of its tables, the gap among them."""
+        yield from super().left_out()
+        if not isinstance(self.gap, str):
+            message = unseen("gap", self.gap, self.length, self.elements, self.order)
+            if message is not None:
+                yield message
 
     def check_together(self) -> None:
         """Refuse loads under which contact alone cannot hold the body."""
@@ -157,7 +166,9 @@ class BlockSettings(SideSettings):
 def block(settings: BlockSettings) -> Stack:
     """Make the block that the settings describe; one metre thick."""
     sides = {side: settings.side(side) for side in ("left", "right", "top")}
-    gap = _gap(settings, np.linspace(0.0, settings.length, settings.nodes[0]))
+    nodes = np.linspace(0.0, settings.length, settings.nodes[0])
+    table = settings.gap
+    gap = _gap(settings, nodes) if isinstance(table, str) else gap_at(table, nodes)
     return settings.stack(
         support=Support(gap, settings.friction),
         sides=sides,
@@ -167,9 +178,7 @@ def block(settings: BlockSettings) -> Stack:
 
 
 def _gap(settings: BlockSettings, x: Array) -> Array:
-    """Give the gap at places along the lowest side, m."""
-    if not isinstance(settings.gap, str):
-        return interpolate(settings.gap, x)
+    """Return the gap of a preset at places along the lowest side, m."""
     if settings.gap == "flat":
         return np.zeros_like(x)
     return np.asarray((x - 0.5 * settings.length) ** 2 / (2.0 * settings.radius))

@@ -17,9 +17,11 @@ from solver.definitions import Pairs, SettingError, curve, quantity, redefined
 from solver.discrete.problem import Problem
 from solver.discrete.stack.data import Support
 from solver.discrete.stack.fault import Fault, sheared
+from solver.instants import instants_of
 from solver.laws import Coulomb
-from solver.loads import INJECTIONS, instants_of, interpolate
+from solver.loads import INJECTIONS, interpolate
 from solver.phrases import Amount, Phrase, Sentence
+from solver.profiles import means, shares_of
 from solver.reference.closed_forms.diffusion import spread
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.reference.closed_forms.slip_front import fronts, stress_ahead
@@ -38,6 +40,8 @@ FINE = 4000
 INFINITE = 0.3
 """Largest front, over the sides of the body, that is still that of an infinite one: to 2 %
 (tests/test_a_fluid_drives_slip.py)."""
+MOST_SPREAD = 300_000_000
+"""Nodes times instants times points of a path, at most, as each point spreads on its own."""
 ROUND = 1e-9
 """Share of the strength that rounding adds to it or takes away."""
 
@@ -155,32 +159,51 @@ class FaultSettings(PlaneSettings):
 
     def points(self, name: str) -> Pairs:
         """Give points of the preset that a curve setting has at present."""
-        if name != "normal_profile":
+        own = self.normal_profile
+        if name != "normal_profile" or not isinstance(own, str):
             return super().points(name)
-        return tuple((x * self.length, factor) for x, factor in PROFILES[str(self.normal_profile)])
+        return tuple((x * self.length, factor) for x, factor in PROFILES[own])
 
     def pressing(self, place: Array) -> Array:
         """Give the normal stress before any fluid is let in, shape (n_places,), Pa."""
-        own = self.normal_profile
-        given = self.points("normal_profile") if isinstance(own, str) else own
-        return np.asarray(self.normal_stress * interpolate(given, place))
+        return np.asarray(self.normal_stress * interpolate(self.points("normal_profile"), place))
 
     def fluid(self, place: Array) -> Array:
         """Give the pressure of the fluid along the fault, shape (n_places, n_instants), Pa."""
-        instants = instants_of(self.duration, max(self.instants, 2))
-        given = self._along("injection_load", instants)
-        return spread(place, instants, given, self.diffusivity)[:, -self.instants :]
+        times = start = self.times()
+        if self.instants == 1:  # a fluid needs all of the time before
+            start = instants_of(self.duration, 2, self._knots(self.injection_load), times)
+        found = spread(place, start, self._along("injection_load", start), self.diffusivity)
+        return found if start is times else found[:, np.searchsorted(start, times)]
 
     def strength(self, place: Array) -> Array:
         """Give the largest friction per area, shape (n_places, n_instants), Pa."""
         return np.asarray(self.friction * (self.pressing(place)[:, None] - self.fluid(place)))
 
+    def pressing_at_nodes(self) -> Array:
+        """Return the normal stress of the nodes: of a table, its mean over the share of each."""
+        if isinstance(self.normal_profile, str):
+            return self.pressing(self._places)
+        shares = shares_of(self._places, self.order)
+        return np.asarray(self.normal_stress * means([self.normal_profile], shares))
+
+    def strength_at_nodes(self) -> Array:
+        """Return the largest friction per area of the nodes, shape (n_nodes, n_instants), Pa."""
+        pressing = self.pressing_at_nodes()
+        return np.asarray(self.friction * (pressing[:, None] - self.fluid(self._places)))
+
+    @property
+    def _places(self) -> Array:
+        return np.linspace(0.0, self.length, self.nodes[0])
+
     def check_together(self) -> None:
         """Refuse a fluid that would open the fault, or that sucks."""
         super().check_together()
-        place = np.linspace(0.0, self.length, self.nodes[0])
-        pressing, fluid = self.pressing(place), self.fluid(place)
-        if pressing.min() < 0.0:
+        self._check_work()
+        place = self._places
+        pressing, fluid = self.pressing_at_nodes(), self.fluid(place)
+        table = self.normal_profile
+        if not isinstance(table, str) and min(factor for _, factor in table) < 0.0:
             raise SettingError(
                 "normal_profile",
                 self.normal_profile,
@@ -198,15 +221,26 @@ class FaultSettings(PlaneSettings):
                 "it would open the fault: lower the pressure of the fluid, or press more",
             )
 
+    def _check_work(self) -> None:
+        """Refuse a fluid whose pressure would take minutes to spread."""
+        bends = len(self._knots(self.injection_load))
+        if bends > (most := MOST_SPREAD // (self.nodes[0] * self.n_instants)):
+            raise SettingError(
+                "injection_load",
+                f"a path of {bends} points",
+                Phrase("at most {} points with {} instants", most, self.n_instants),
+                "give fewer points, or fewer elements along",
+            )
+
 
 def fault(settings: FaultSettings) -> Fault:
     """Make the quarter of the body that the settings describe; one metre thick."""
-    place = np.linspace(0.0, settings.length, settings.nodes[0])
     modulus = 0.5 * settings.young / (1.0 + settings.poisson)
     stress, height = settings.shear_stress, settings.height
+    strength = settings.strength_at_nodes()
     body = settings.stack(
-        support=Support(np.zeros(len(place)), settings.friction, settings.strength(place)),
-        sides=sheared(stress, modulus, height, settings.instants),
+        support=Support(np.zeros(len(strength)), settings.friction, strength),
+        sides=sheared(stress, modulus, height, settings.n_instants),
     )
     return Fault(body, stress, settings.path("injection_load"))
 
@@ -225,6 +259,8 @@ def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:
     It does where strength falls with time, everywhere, and grows away from the well.
     """
     stress = settings.shear_stress
+    if np.any(np.diff(settings.path("injection_load")) < 0.0):
+        return
     place = np.linspace(0.0, settings.length, FINE + 1)
     lack = settings.strength(place) - stress
     small = ROUND * float(np.abs(lack).max())
@@ -236,8 +272,8 @@ def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:
         return
     yield ExactCurve("front", front, settings.times())
     nodes = problem.rubbing["support"].positions
-    friction = np.full((len(nodes), settings.instants), stress)
-    strength = settings.strength(nodes)
+    friction = np.full((len(nodes), settings.n_instants), stress)
+    strength = settings.strength_at_nodes()
     for instant in np.flatnonzero(front):
         ahead = nodes > front[instant]
         added = stress_ahead(nodes[ahead], place, lack[:, instant], float(front[instant]))

@@ -163,7 +163,7 @@ class LayersSettings(PlaneSettings):
 
 def layers(settings: LayersSettings) -> Stack:
     """Make the stack that the settings describe; its left end is clamped; one metre thick."""
-    rest = np.zeros(settings.instants)
+    rest = np.zeros(settings.n_instants)
     held, free = Given(True, rest), Given(False, rest)
     pressing = settings.path("pressure_load")
     pull = settings.path("pull_load")

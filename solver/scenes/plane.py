@@ -156,13 +156,6 @@ class PlaneSettings(SceneSettings):
         return self.n_bodies * self.substructures * self.substructures_up
 
     @property
-    def paths(self) -> tuple[str, ...]:
-        """Names of the settings that are load paths and do something."""
-        return tuple(
-            name for name in self.definitions() if name.endswith("_load") and self.applies(name)
-        )
-
-    @property
     def is_random(self) -> bool:
         """Whether any load path is random."""
         return any(getattr(self, name) == "random" for name in self.paths)

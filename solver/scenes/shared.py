@@ -60,7 +60,8 @@ def instants(default: int) -> param.Integer[int]:
         default,
         (1, 20_001),
         (11, 401),
-        "Number of instants at which the problem is solved; the load is linear between them.",
+        "Number of instants at which the problem is solved, at least: points at which a path turns "
+        "or bends are instants too, and the load is linear between them.",
         group="Load",
         title="Instants",
     )

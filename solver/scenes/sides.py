@@ -126,7 +126,7 @@ class SideSettings(PlaneSettings):
         kind = getattr(self, side)
         prescribed = self._prescribes(side, component)
         if kind in AT_REST:
-            rest = np.zeros(self.instants)
+            rest = np.zeros(self.n_instants)
             return Given(prescribed, rest, rest)
         sign = OUTWARD[side] if component == "normal" else 1.0
         mean = sign * self.path(f"{side}_{component}_load")

@@ -170,8 +170,7 @@ class StrandSettings(SceneSettings):
 def strand(settings: StrandSettings) -> Rods:
     """Make the strand that the settings describe.
 
-    One instant stands at the end of the interval; more are spread evenly from 0 on, and the wires
-    are at rest and free of stress before the first.
+    The wires are at rest and free of stress before the first instant.
     """
     return Rods(
         length=settings.length,

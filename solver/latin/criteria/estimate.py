@@ -94,7 +94,7 @@ class ErrorEstimate:
 
     @property
     def jumps(self) -> bool:
-        """Whether a status step came to an instant to which no solution goes on."""
+        """Whether a status step found nothing any more after the structure had jumped."""
         return self._step is not None and self._step.jumps
 
     @property

@@ -24,6 +24,9 @@ APART = 40
 """The same of rods on supports of their own, so many that LATIN needs its 20 to 30 iterations for
 the last of them: from any statuses a step takes 5 to 30 systems an instant, each rod on its own
 way, and so ends for sure (measured on 37 and 91 wires near a clamp, 60 and 200 elements)."""
+FOLLOWING = 40
+"""The same where friction softens, and a solution is followed in parts of an instant: blocks and
+faults take 2 to 35 systems an instant, whatever k is (measured)."""
 AT_REST, SAVED = 0.02, 10
 """Share of the jumps that move up to which statuses are right at once, as nothing slips and nothing
 is open but while nothing presses; and the iterations that a step then saves, at least. Layers 200
@@ -148,9 +151,11 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     passes = products / DENSE + PASSES * PASS * problem.n_rows
     shift = 0.0 if slide_of(problem) is None else SHIFT
     iteration = OF_ITERATION + problem.n_instants * (passes + shift)
+    softens = any(law.tangential.softens for law in problem.rubbing.values())
+    room = FOLLOWING if softens else SYSTEMS
     if rubs_on_supports(problem):
         system = BAND_CALLS + BAND * n_jumps
-        room = APART if len(problem.rubbing) > 1 else SYSTEMS
+        room = APART if len(problem.rubbing) > 1 else room
         return Costs(0.0, system, iteration, problem.n_instants, in_any_case=room)
     for part in problem.substructures:
         stiffness = part.elasticity.stiffness
@@ -161,4 +166,4 @@ def costs_of(problem: Problem, moving: float | None = None) -> Costs:
     system = CALLS + 2.0 / 3.0 * n_moving**3 / FACTOR
     system += (GATHER * n_moving + READ * n_jumps) * n_moving
     is_at_rest = moving is not None and moving <= AT_REST
-    return Costs(condensing, system, iteration, problem.n_instants, is_at_rest)
+    return Costs(condensing, system, iteration, problem.n_instants, is_at_rest, room)

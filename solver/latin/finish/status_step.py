@@ -53,6 +53,8 @@ class Certificate:
     residual
         Its KKT residual, relative to the contact force: the largest of all points and instants as
         if it were that of each.
+    jumps_at
+        Instant at which it jumps, as of `Reference`.
     """
 
     displacement: Array
@@ -60,6 +62,7 @@ class Certificate:
     contact_force: Array
     distance: Distance
     residual: float
+    jumps_at: int | None = None
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ class StatusSolver:
     Attributes
     ----------
     jumps
-        Whether the last one came to an instant to which no solution goes on.
+        Whether the last one found nothing any more after friction had made the structure jump.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -112,7 +115,7 @@ class StatusSolver:
             If the problem has no incremental solver, or none that is worth its size.
         """
         found = self._solver.march(guess=states, most=most, stop=stop)
-        self.jumps = found.jumps
+        self.jumps = found.jumps_at is not None and found.is_lost
         if not found.converged.all():
             return None
         distance = distance_to(found, self._problem)
@@ -121,7 +124,12 @@ class StatusSolver:
             return None
         deformation = found.displacement if found.deformation is None else found.deformation
         return Certificate(
-            found.displacement, deformation, found.contact_force, distance, float(residual)
+            found.displacement,
+            deformation,
+            found.contact_force,
+            distance,
+            float(residual),
+            found.jumps_at,
         )
 
     @cached_property

@@ -88,6 +88,10 @@ def reversals(instants: int, peak: float) -> Pairs:
     return tuple((number * step, peak * (-1.0) ** number) for number in range(instants))
 
 
+JUMP_WIDTH = 1e-9
+"""Share of an element beside its ends, within which a section changes to that of the next."""
+
+
 def graded(contrast: float, elements: int) -> Pairs:
     """Give a section that grows by equal factors from element to element of a bar of 1 m.
 
@@ -99,7 +103,11 @@ def graded(contrast: float, elements: int) -> Pairs:
         Number of elements.
     """
     factors = contrast ** np.linspace(-0.5, 0.5, elements)
-    return tuple(((i + 0.5) / elements, float(factor)) for i, factor in enumerate(factors))
+    return tuple(
+        ((i + end) / elements, float(factor))
+        for i, factor in enumerate(factors)
+        for end in (JUMP_WIDTH, 1.0 - JUMP_WIDTH)
+    )
 
 
 JUMP: Pairs = ((0.0, 0.0), (0.5, 0.0), (0.51, 900.0), (1.0, 900.0))

@@ -15,9 +15,9 @@ import numpy as np
 import param
 from numpy.random import Generator
 
+from solver.arrays import Array
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import CATALOGUE
-from solver.scenes.base import FEWEST
 from solver.settings import Settings
 from solver.study.audit.random_loads import LOADS
 
@@ -39,6 +39,10 @@ WIDE = {"poisson": (0.0, 0.4999), "friction": (0.02, 2.0), "relaxation": (0.4, 1
 """Ranges other than those of the sliders."""
 KEPT = {"max_iterations", "method"}
 """Settings that are not drawn by their definition alone."""
+INSTANTS_A_CYCLE = 4
+"""At least, of what is drawn: more cycles take more instants than there is room for."""
+NARROW = (1e-5, 1e-2)
+"""Widths of narrow peaks, as shares of the interval or the length: most lie between instants."""
 CHANGED = 0.15
 """How often a setting differs from its default."""
 FOOLISH = 10.0
@@ -110,7 +114,8 @@ def _values(kind: Any, generator: Generator) -> dict[str, Any]:
         _stretch(kind.across, values, definitions, generator)
     usual = {name: definition.default for name, definition in definitions.items()}
     if "cycles" in values:
-        values["cycles"] = min(values["cycles"], max((values["instants"] - 1) // FEWEST, 1))
+        most = max((values["instants"] - 1) // INSTANTS_A_CYCLE, 1)
+        values["cycles"] = min(values["cycles"], most)
     loads = LOADS.get(kind.scene)
     sizes = loads({**usual, **values}, generator) if loads is not None else {}
     for name, size in sizes.items():
@@ -207,16 +212,34 @@ SPECIAL: dict[str, Callable[[Generator], float]] = {
 
 
 def _profile(name: str, generator: Generator) -> list[list[float]]:
-    """Draw factors along a body, now and then zero but for a section."""
+    """Draw factors along a body, now and then zero but for a section, or with a narrow peak."""
     places = np.sort(generator.uniform(0.0, 1.0, int(generator.integers(2, 7))))
     factors = 10.0 ** generator.uniform(-1.0, 1.0, len(places))
     if name != "section_profile":
         factors[generator.random(len(places)) < 0.2] = 0.0
-    return [[float(place), float(factor)] for place, factor in zip(places, factors, strict=True)]
+    peak = float(10.0 ** generator.uniform(-1.0, 1.0))
+    return _with_peak(places, factors, peak, 1.0, generator)
 
 
 def _path(size: float, duration: float, generator: Generator) -> list[list[float]]:
-    """Draw a path over time through a few points, reversals and jumps among them."""
+    """Draw a path over time through a few points: reversals, jumps, narrow peaks among them."""
     times = np.sort(generator.uniform(0.0, duration, int(generator.integers(1, 8))))
     values = abs(size) * generator.uniform(-1.0, 1.0, len(times))
-    return [[float(when), float(value)] for when, value in zip(times, values, strict=True)]
+    return _with_peak(times, values, size, duration, generator)
+
+
+def _with_peak(
+    where: Array, values: Array, peak: float, extent: float, generator: Generator
+) -> list[list[float]]:
+    """Put a narrow peak onto a table, every third time."""
+    if generator.random() < 1.0 / 3.0:
+        half = 0.5 * extent * log_uniform(generator, *NARROW)
+        middle = float(generator.uniform(half, extent - half))
+        feet = middle + half * np.array([-1.0, 1.0])
+        outside = (where < feet[0]) | (where > feet[1])
+        left, right = np.interp(feet, where, values)
+        where = np.concatenate([where[outside], [feet[0], middle, feet[1]]])
+        values = np.concatenate([values[outside], [left, peak, right]])
+        order = np.argsort(where)
+        where, values = where[order], values[order]
+    return [[float(place), float(value)] for place, value in zip(where, values, strict=True)]

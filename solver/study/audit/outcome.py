@@ -143,5 +143,7 @@ def _reference(problem: Problem) -> tuple[Reference | None, str]:
     lost = np.count_nonzero(~reference.converged)
     if lost:
         return None, f"the reference finds no solution at {lost} of {problem.n_instants} instants"
+    if reference.jumps_at is not None:
+        return reference, f"it jumps at instant {reference.jumps_at} to another equilibrium"
     several = np.count_nonzero(reference.ambiguous)
     return reference, f"there are several solutions at {several} instants" if several else ""

@@ -107,6 +107,11 @@ def rope_loads(values: Values, generator: Generator) -> Sizes:
     return {"tension": tension, "tension_load": tension, "curvature": bent, "load": bent}
 
 
+def incline_loads(values: Values, generator: Generator) -> Sizes:
+    """Draw the angle of a slope up to which a table goes."""
+    return {"slope_load": float(values["slope"] * generator.uniform(0.0, 1.0))}
+
+
 def fault_loads(values: Values, generator: Generator) -> Sizes:
     """Draw what presses, shears and loosens a fault: the fluid presses less than the rest does."""
     pressing = values["young"] * 10.0 ** generator.uniform(-6.0, -3.0)
@@ -127,6 +132,7 @@ LOADS: dict[str, Callable[[Values, Generator], Sizes]] = {
     "layers": layers_loads,
     "rope": rope_loads,
     "fault": fault_loads,
+    "incline": incline_loads,
 }
 """Sizes of loads by name, which depend on the other values; of curves, those of their tables. A
 scene without an entry has its loads drawn by their definitions alone."""

@@ -63,8 +63,8 @@ def _broken_laws(problem: Problem, stiffness: sparse.csr_array, jump: Array, for
     unit = (abs(jumps(problem)) @ stiffness.diagonal())[:, None]
     unit = unit / (1.0 + unit * rules.compliance[:, None])
     opening = unit * (jump + rules.gap[:, None])
-    slip = unit * np.diff(jump, axis=1, prepend=0.0)
-    bound = rules.bounds(force)
+    moved = np.diff(jump, axis=1, prepend=0.0)
+    slip, bound = unit * moved, rules.bounds(force, moved)
     overlap, tension = np.maximum(-opening, 0.0), np.maximum(-force, 0.0)
     apart = np.minimum(np.maximum(opening, 0.0), np.maximum(force, 0.0))
     of_normal = np.maximum(np.maximum(overlap, tension), apart)

@@ -145,7 +145,9 @@ def _growing_strength() -> KnownCase:
         "normal_profile": [
             [0.0, 1.0],
             [half_length, 1.0 + DROP / STRENGTH],
-            [1.001 * half_length, STUCK],
+            # The last node that slips has no part of its share, half an element, that sticks.
+            [half_length * (1.0 + 0.5 / ZONE), 1.0 + DROP / STRENGTH],
+            [half_length * (1.0 + 0.501 / ZONE), STUCK],
         ],
         "instants": 1,
     }

@@ -1,0 +1,65 @@
+"""A curve that one draws before the measured one is shown."""
+
+from __future__ import annotations
+
+import math
+
+from bokeh.models import FixedTicker, FreehandDrawTool, Range1d
+from bokeh.plotting import figure
+
+from app.views.colors import FORCE, LATIN
+from app.views.view import legend, source
+from solver.definitions import about
+from solver.lessons.lesson import Lesson
+
+
+class DrawnCurve:
+    """Axes over a setting on which the expected curve is drawn, and then the measured one.
+
+    Attributes
+    ----------
+    figure
+        What stands in the lesson, and on its handout.
+    drawn, measured
+        Sources of what was drawn by hand, and of what the lesson's checkpoints measure.
+    """
+
+    def __init__(self, lesson: Lesson) -> None:
+        self._curve = lesson.curve
+        places = [place for place, _ in self._curve]
+        finite = [value for _, value in self._curve if math.isfinite(value)]
+        self._top = 10.0 ** math.ceil(math.log10(max(finite)))
+        made = figure(
+            x_axis_type="log",
+            y_axis_type="log",
+            x_axis_label=about(lesson.settings.definitions()[lesson.draw]).title,
+            y_axis_label=lesson.drawn_quantity.split(" to ")[0],
+            x_range=Range1d(places[0] / 1.3, places[-1] * 1.3),
+            y_range=Range1d(1.0, self._top),
+            height=200,
+            sizing_mode="stretch_width",
+            toolbar_location=None,
+            tools="",
+        )
+        made.xaxis.ticker = FixedTicker(ticks=places)
+        made.xaxis.major_label_overrides = {place: f"{place:g}" for place in places}
+        made.min_border = 4
+        self.drawn, self.measured = source("xs", "ys"), source("x", "y", "text")
+        line = made.multi_line("xs", "ys", source=self.drawn, color=FORCE, width=3)
+        points = made.scatter("x", "y", source=self.measured, color=LATIN, size=11)
+        made.text("x", "y", "text", source=self.measured, y_offset=20, text_font_size="12px",
+                  text_align="center", text_color=LATIN)  # fmt: skip
+        legend(made, {"drawn by hand": [line], "measured": [points]})
+        self._tool = FreehandDrawTool(renderers=[line], num_objects=1)
+        made.add_tools(self._tool)
+        made.toolbar.active_drag = self._tool
+        self.figure = made
+
+    def reveal(self) -> None:
+        """Show what was measured; nothing is drawn any more."""
+        self.figure.toolbar.active_drag = None
+        self.measured.data = {
+            "x": [place for place, _ in self._curve],
+            "y": [min(value, 0.85 * self._top) for _, value in self._curve],
+            "text": ["" if math.isfinite(value) else "never" for _, value in self._curve],
+        }

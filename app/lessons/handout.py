@@ -1,0 +1,120 @@
+"""A lesson on paper: the question with room to write, and overleaf the answer with its plots."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from io import BytesIO
+from typing import Any
+
+from bokeh.embed import file_html
+from bokeh.resources import INLINE
+from jinja2 import Template
+from markdown_it import MarkdownIt
+
+from app.addresses import address_for_others
+from app.lessons.catalogue import LESSONS, kinds_of
+from app.lessons.curve import DrawnCurve
+from app.lessons.text import filled, without_controls
+from app.state import PageState
+from app.views.scene import Scene
+from app.views.view import View
+from solver.lessons.lesson import Lesson
+
+WIDTH, HEIGHT = 660, 230
+"""Pixels of the picture; two plots stand side by side in its width."""
+PAGE = """{% macro plot(name) -%}
+<div id="{{ roots[name].elementid }}" data-root-id="{{ roots[name].id }}"></div>
+{%- endmacro %}<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
+{{ bokeh_css|safe }}{{ bokeh_js|safe }}<style>
+@page { size: A4; margin: 16mm; }
+:root { color-scheme: light; }
+body { max-width: 178mm; margin: 0 auto; font: 11pt/1.45 system-ui, sans-serif; color: #000;
+  background: #fff; }
+h1 { font-size: 18pt; margin: 0; } h2 { font-size: 14pt; }
+.question { font-weight: 600; } ul.choices { list-style: "☐  "; padding-left: 2em; }
+.room { height: 60mm; background: repeating-linear-gradient(#fff 0 9mm, #bbb 9mm 9.4mm);
+  print-color-adjust: exact; }
+.overleaf { break-before: page; }
+.plots { display: grid; grid-template-columns: 1fr 1fr; gap: 4mm; }
+</style></head><body>
+<small>Slipfront, {{ place }}</small><h1>{{ title }}</h1>
+{{ text|safe }}
+{{ plot("picture") }}
+<p class="question">{{ question }}</p>
+<ul class="choices">{% for choice in choices %}<li>{{ choice }}</li>{% endfor %}</ul>
+{% if has_curve %}{{ plot("blank") }}{% endif %}
+<p>Why?</p><div class="room"></div>
+<section class="overleaf"><h2>{{ right }}.</h2><p>{{ why }}</p>
+{{ explanation|safe }}
+<div class="plots">{% for name in plots %}{{ plot(name) }}{% endfor %}</div>
+{% if address %}<p><small>To try it: {{ address }}</small></p>{% endif %}
+</section>{{ plot_script|safe }}</body></html>"""
+
+
+def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> BytesIO:
+    """A page to print (HTML, UTF-8), of the frame that is shown; it needs no network.
+
+    Parameters
+    ----------
+    state
+        Of the page, in the lesson.
+    lesson
+        The one that is open.
+    curve
+        What was drawn by hand and measured, of a lesson that has one drawn.
+    """
+    picture = _drawn(Scene(state), state, lesson, WIDTH, HEIGHT)
+    kinds = [kind for kind in kinds_of(lesson, is_answered=True) if kind.applies(state.settings)]
+    figures = {"picture": picture}
+    for kind in kinds:
+        figures[kind.name] = _drawn(kind(state), state, lesson, WIDTH // 2 - 10, HEIGHT)
+    plots = [kind.name for kind in kinds]
+    if curve is not None:
+        blank, measured = DrawnCurve(lesson), DrawnCurve(lesson)
+        measured.drawn.data = dict(curve.drawn.data)
+        measured.reveal()
+        figures |= {"blank": blank.figure, "curve": measured.figure}
+        plots.insert(0, "curve")
+    for name, figure in figures.items():
+        figure.name = re.sub(r"\W", "-", name)
+    text = file_html(
+        list(figures.values()),
+        INLINE,
+        title=lesson.title,
+        template=Template(PAGE, autoescape=True),
+        template_variables={
+            "place": f"lesson {list(LESSONS).index(lesson.name) + 1} of {len(LESSONS)}",
+            "text": _html(lesson.text, state),
+            "question": lesson.question,
+            "choices": lesson.choices,
+            "right": lesson.choices[lesson.right],
+            "why": lesson.why,
+            "explanation": _html(tuple(map(without_controls, lesson.explanation)), state),
+            "plots": [figures[name].name for name in plots],
+            "has_curve": curve is not None,
+            "address": _address(lesson),
+        },
+        suppress_callback_warning=True,
+    )
+    return BytesIO(text.encode())
+
+
+def _drawn(view: View, state: PageState, lesson: Lesson, width: int, height: int) -> Any:
+    """A figure of its own, for paper."""
+    figure = view.figure
+    figure.update(sizing_mode=None, width=width, height=height, toolbar_location=None)
+    if state.frame is not None:
+        selection = replace(state.selection, phase=lesson.instant, interface=lesson.interface)
+        view.update(state.frame, selection, None)
+    return figure
+
+
+def _html(paragraphs: tuple[str, ...], state: PageState) -> str:
+    texts = (filled(text, state.frame) for text in paragraphs)
+    return str(MarkdownIt("commonmark", {"html": True}).render("\n\n".join(texts)))
+
+
+def _address(lesson: Lesson) -> str:
+    address = address_for_others()
+    return f"{address}?lesson={lesson.name}" if address else ""

@@ -1,0 +1,125 @@
+"""The live run: buttons and words, the scene, its load path as time line, and four plots."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+
+from app.cards import Card
+from app.display import Display
+from app.state import TABS, PageState
+from app.status import figures_line, status_line
+from app.transport import Transport
+from app.views.catalogue import CARDS
+from app.views.scene import Scene
+from app.views.timeline import Timeline
+from app.views.view import TEXT, View
+
+STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
+LARGE = "2.6vh"
+"""Size of the type of plots on a projector."""
+PRESENTED = 2
+"""Plots that a projector has room for beside the scene."""
+
+
+class Live:
+    """The live run on the page.
+
+    Parameters
+    ----------
+    state, document
+        Of the page.
+
+    Attributes
+    ----------
+    view
+        What stands on the page.
+    transport, display
+        Its buttons, and what paints its views.
+    """
+
+    def __init__(self, state: PageState, document: Any) -> None:
+        self.state = state
+        self._status = words("status", margin=(8, 6))
+        self._sentence, self._figures = words("sentence"), words("figures")
+        self._views: list[View] = [Scene(state), Timeline(state)]
+        self._all = self._cards = [Card(kinds, state, self.look) for kinds in CARDS]
+        self.transport = Transport(state, document)
+        self.display = Display(state, self._say)
+        document.add_root(self.display.pulse)
+        self._above = pn.Row(
+            self.transport.view, self._status, sizing_mode="stretch_width", margin=0
+        )
+        self._plots = column("plots")
+        self.view = self._arranged()
+        watch = state.param.watch
+        watch(lambda *events: self._say(), ["running", "message", "refusal", "is_costly"])
+        watch(lambda event: self.arrange(), "view")
+        watch(lambda event: self._fit(), ["settings", "plots"])
+
+    def arrange(self, kinds: list[type[View]] | None = None) -> None:
+        """Show the cards, or the plots of a lesson; what gives its answer away waits."""
+        state = self.state
+        self._cards = self._all
+        if kinds is not None:
+            self._cards = [Card((kind,), state, self.look) for kind in kinds]
+        elif state.view != "page":
+            self._cards = self._all[:PRESENTED]
+        self._above.visible = not state.is_asked and state.view != "embed"
+        self._figures.visible = not state.is_asked
+        self._plots.visible = bool(self._cards)
+        self._plots[:] = [card.view for card in self._cards]
+        self.transport.view.visible = state.view == "page"
+        size = LARGE if state.view == "present" else TEXT
+        for view in (*self._views, *(view for card in self._cards for view in card.views)):
+            view.magnify(size)
+        bare = [state.view] if state.view != "page" else []
+        self.view.css_classes = ["live", *bare]
+        self._fit()
+
+    def look(self) -> None:
+        """Have the views in sight updated, and no others."""
+        seen: list[View] = []
+        if self.state.tab == TABS[0]:
+            seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
+        self.display.views = seen
+
+    @property
+    def seen(self) -> list[View]:
+        """The views in sight."""
+        return list(self.display.views)
+
+    def _fit(self) -> None:
+        for card in self._cards:
+            card.fit(self.state)
+        self.look()
+
+    def _arranged(self) -> pn.Column:
+        scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
+        scene.sizing_mode = "stretch_both"
+        timeline.param.update(sizing_mode="stretch_width", height=56)
+        below = column("words", self._sentence, self._figures)
+        row = pn.Row(self.transport.play_button, timeline, sizing_mode="stretch_width", margin=0)
+        return column("live", self._above, below, column("scene", scene), row, self._plots)
+
+    def _say(self) -> None:
+        """Bring the words up to the frame."""
+        frame = self.state.frame
+        self._status.object = status_line(self.state)
+        if frame is not None:
+            self._figures.object = figures_line(frame, self.state.selection)
+            self._sentence.object = frame.run.sentence
+
+
+def column(role: str, *parts: Any) -> pn.Column:
+    """A column that style sheets know by its role."""
+    return pn.Column(
+        *parts, css_classes=[role], stylesheets=[STYLE], sizing_mode="stretch_width", margin=0
+    )
+
+
+def words(role: str, **more: Any) -> pn.pane.HTML:
+    """A pane of words, which tests and style sheets know by its role."""
+    return pn.pane.HTML(css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more})

@@ -1,0 +1,191 @@
+"""Where bodies lie on the screen, and how much their displacement is magnified."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.frame import Geometry
+from solver.arrays import Array
+from solver.discrete.structure import Act, Description
+
+THICK = 52.0
+"""Most pixels that a rod is thick."""
+BAND = 7.0
+"""Thickness of what rubs, px."""
+FOOT, COLUMN = 18.0, 150.0
+"""Height of the line of keys below the bodies, or width of their column, px."""
+LETTER = 7.8
+"""Width of a letter of a word, about, px."""
+LONG = 5.0
+"""Length over height of bodies that are long, at least."""
+WALL = 54.0
+"""Pixels from a body to the wall that its spring is fixed to."""
+DEEPEST, IMAGE = 18.0, 26.0
+"""Pixels that a gap is deep at most, and of the image below the bodies."""
+NARROW = 560.0
+"""Width below which keys take two lines, px."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """From metres to pixels.
+
+    Attributes
+    ----------
+    width, height
+        Of the figure, px.
+    length, top
+        Of the bodies as they are drawn, m.
+    scale
+        Pixels per metre, along x and y; these differ for rods alone.
+    origin
+        The middle of the foot of the bodies, px.
+    arrow
+        Length of an arrow at its largest value, px.
+    motion
+        Pixels that the largest displacement takes at most, along x and y.
+    keys_beside
+        Whether keys stand at the left of the bodies, and not below them.
+    """
+
+    width: float
+    height: float
+    length: float
+    top: float
+    scale: tuple[float, float]
+    origin: tuple[float, float]
+    arrow: float
+    motion: tuple[float, float]
+    keys_beside: bool
+
+    @property
+    def size(self) -> Array:
+        """Length and height of the bodies, px."""
+        return np.array([self.length, self.top]) * self.scale
+
+    def local(self, places: Array) -> Array:
+        """Pixels from the middle of the foot, along the bodies, of places in m, (..., 2)."""
+        return np.asarray((places - np.array([0.5 * self.length, 0.0])) * self.scale)
+
+    def shift(self, moved: Array, factor: float) -> Array:
+        """Pixels of magnified displacements, (..., 2)."""
+        return np.asarray(moved * np.multiply(factor, self.scale))
+
+    def page(self, local: Array, tilt: float) -> Array:
+        """Pixels of the figure, of such that are turned with the bodies by an angle, rad."""
+        return turned(local, tilt) + self.origin
+
+    def fitting(self, largest: tuple[float, float], factor: float | None) -> float:
+        """Factor on displacements: the present one as long as motion is seen and has room.
+
+        Parameters
+        ----------
+        largest
+            Displacement in size over all instants, along x and y, m.
+        factor
+            The present factor; None for none.
+        """
+        shares = [
+            size * scale / room
+            for size, scale, room in zip(largest, self.scale, self.motion, strict=True)
+            if room > 0.0
+        ]
+        share = max(shares)
+        if not share > 0.0:
+            return factor or 1.0
+        if factor is not None and 0.2 <= factor * share <= 1.8:
+            return factor
+        power = 10.0 ** math.floor(math.log10(1.0 / share))
+        return float(
+            f"{max(step * power for step in (1, 2, 5) if step * power <= 1.001 / share):.6g}"
+        )
+
+
+def turned(points: Array, angle: float) -> Array:
+    """Points turned about the origin, (..., 2)."""
+    if angle == 0.0:
+        return np.asarray(points)
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.asarray(points @ np.array([[cos, sin], [-sin, cos]]))
+
+
+def is_aside(act: Act) -> bool:
+    """Whether it acts along the side that it acts on."""
+    return np.ndim(act.towards) == 1 and abs(float(np.dot(act.towards, act.away))) < 0.5
+
+
+def is_opposite(act: Act, other: Act) -> bool:
+    """Whether two acts are the same pressure from both sides."""
+    return act.unit == other.unit and np.array_equal(act.values, -other.values)
+
+
+def layout_of(geometry: Geometry, width: float, height: float) -> Layout:
+    """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
+    below = _layout(geometry, width, height, 0.0, FOOT * (2 if width < NARROW else 1))
+    beside = _layout(geometry, width, height, COLUMN, 0.0)
+    return beside if beside.scale[0] > below.scale[0] else below
+
+
+def _layout(geometry: Geometry, width: float, height: float, column: float, foot: float) -> Layout:
+    description, top = geometry.description, float(geometry.nodes[:, 1].max())
+    arrow = min(max(0.19 * height, 18.0), 38.0)
+    left, right, below, above = _margins(description, arrow)
+    left, below = left + column, below + foot
+    room = np.maximum([width - left - right, height - below - above], 24.0)
+    low, high = _extent(description.length, top, description.tilt)
+    is_long = description.length > LONG * top
+    motion = np.array([0.04 * width, (0.12 if is_long else 0.06) * height])
+    if description.height is None:
+        motion[1] = 0.0
+    across, up = np.maximum(room - 2.0 * motion, 20.0) / (high - low)
+    if description.height is None:
+        up = min(up, THICK * description.bodies / top)
+    else:
+        across = up = min(across, up)
+    free = room - (high - low) * [across, up]
+    x, y = left + 0.5 * free[0] - low[0] * across, below + 0.5 * free[1] - low[1] * up
+    motion[0] = min(motion[0], 0.12 * description.length * across)
+    return Layout(
+        width, height, description.length, top, (float(across), float(up)), (x, y), arrow,
+        (float(motion[0]), float(motion[1])), column > 0.0,
+    )  # fmt: skip
+
+
+def _extent(length: float, top: float, tilt: Array | None) -> tuple[Array, Array]:
+    """Corners of the box that bodies take as they are tilted, from the middle of their foot, m."""
+    half = 0.5 * length
+    corners = np.array([[-half, 0.0], [half, 0.0], [half, top], [-half, top]])
+    angles = np.zeros(1) if tilt is None else np.linspace(tilt.min(), tilt.max(), 9)
+    all_corners = np.concatenate([turned(corners, float(angle)) for angle in angles])
+    return all_corners.min(axis=0), all_corners.max(axis=0)
+
+
+def _margins(description: Description, arrow: float) -> tuple[float, float, float, float]:
+    """Pixels on the left, on the right, below and above, for what holds and what acts."""
+    room = {"left": 10.0, "right": 10.0, "bottom": 6.0, "top": 8.0}
+    for hold in description.holds:
+        size = {"spring": WALL + 16.0, "image": IMAGE, "support": 16.0}.get(hold.kind, 18.0)
+        if hold.gap is not None and np.any(hold.gap > 0.0):
+            size += DEEPEST
+        room[hold.side] = max(room[hold.side], size)
+    for act in description.acts:
+        side = act.where.partition(" ")[0]
+        if side in ("left", "right"):
+            room[side] = max(room[side], 20.0 + LETTER * longest_text(act))
+        elif side in ("top", "bottom"):
+            held = beside(description, side)
+            room[side] = max(room[side], held + 11.0 if is_aside(act) else arrow + 10.0)
+    return room["left"], room["right"], room["bottom"], room["top"]
+
+
+def beside(description: Description, side: str) -> float:
+    """Pixels between a side and an arrow along it."""
+    return 20.0 if any(hold.side == side for hold in description.holds) else 9.0
+
+
+def longest_text(act: Act) -> int:
+    """Letters that its symbol and value take, about."""
+    return len(act.symbol) + len(act.unit) + 9

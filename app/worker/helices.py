@@ -1,0 +1,154 @@
+"""A strand that is bent as it is seen from the side: the wires in front of its outer layer.
+
+One looks across the plane of bending onto the cylinder that the outer wires share. Each has its
+strip of it, and half of them are hidden behind it at any place; the outermost fibre is below.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.frame import Bytes, DeformedGeometry, Geometry
+from app.worker.geometry import Stress, floats
+from solver.arrays import Array
+from solver.discrete.rope.forces import WireForces
+from solver.discrete.rope.rope import Rope
+from solver.latin import Iterate
+from solver.settings import Settings
+
+A_TURN, FEWEST, MOST = 20, 40, 100
+"""Steps along the strand for each turn of an outer wire, and their number in any case."""
+SHOWN_SHARE = 0.12 * np.pi
+"""Angle from the edges of what is in front within which a wire has no line of contact."""
+
+
+class DrawnRope:
+    """Strips of the wires in front, and a line of contact along each.
+
+    Under a uniform curvature one wire stands for a layer, and passes half a turn from the outermost
+    fibre to the innermost; the other half is its mirror image.
+    """
+
+    def __init__(self, rope: Rope, columns: NDArray[np.intp]) -> None:
+        self._rope, self._columns = rope, columns
+        description = rope.described()
+        assert description.height is not None
+        outer = max(wire.layer for wire in rope.wires)
+        wires = [wire for wire in rope.wires if wire.layer == outer]
+        self._first = len(rope.wires) - len(wires)
+        self._helix, self._radius = wires[0].helix, 0.5 * description.height
+        self._count = sum(wire.stands_for for wire in wires)
+        turns = description.length * np.tan(abs(self._helix.lay)) / (2 * np.pi * self._helix.radius)
+        steps = int(np.clip(A_TURN * turns, FEWEST, MOST))
+        self._z = np.linspace(0.0, description.length, steps + 1)
+        numbers, rows, corners = self._strips()
+        nodes, quads = self._mesh(rows, corners)
+        self._quad_wires, _, self._quad_points, _ = self._nearest(
+            numbers, 0.5 * (self._z[rows] + self._z[rows + 1])
+        )
+        points, chains, self._points, self._sides = self._lines()
+        self.geometry = Geometry(description, floats(nodes), quads, numbers, floats(points), chains)
+        self._nodes_moved, self._points_moved = (
+            self._moved(np.asarray(places)) for places in (nodes, points)
+        )
+        self._forces = WireForces(rope)
+
+    def deformed(self, iterate: Iterate) -> DeformedGeometry:
+        """How the strand is bent, which is given, and where its wires slip."""
+        status = iterate.status[np.ix_(self._points, self._columns)] * self._sides[:, None]
+        moved = floats(self._nodes_moved), floats(self._points_moved)
+        return DeformedGeometry(*moved, status.astype(np.int8))
+
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+        """Mean stress over the section of every wire."""
+        stress = self._forces(iterate.displacement, self._columns)
+        stress = stress / self._forces.areas[:, None, None]
+        element = np.minimum(self._quad_points, stress.shape[1] - 1)
+        return Stress("wire stress", "Pa", floats(stress[self._quad_wires, element]))
+
+    def _angle(self, wire: Array, place: Array) -> Array:
+        """Polar angle of outer wires by their number, and at places along the strand."""
+        turned = place * np.tan(self._helix.lay) / self._helix.radius
+        return np.asarray(2.0 * np.pi * wire / self._count + turned)
+
+    def _height(self, angle: Array) -> Array:
+        return np.asarray(self._radius * (1.0 - np.cos(angle)))
+
+    def _strips(self) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
+        """Wire, step, and angles of the corners of what is in front, (n,), (n,) and (n, 4)."""
+        half = np.pi / self._count
+        middle = self._angle(np.arange(self._count)[:, None], self._z[None, :])
+        first = np.remainder(middle[:, :-1] + half, 2.0 * np.pi) - half
+        turn = np.diff(middle, axis=1)
+        low, high = first - half, first + half
+        corners = np.stack([low, low + turn, high + turn, high], axis=-1)
+        corners = np.clip(corners, 0.0, np.pi)
+        wires, steps = np.nonzero(np.ptp(corners, axis=-1) > 1e-9)
+        return wires, steps, corners[wires, steps]
+
+    def _mesh(self, steps: NDArray[np.intp], corners: Array) -> tuple[Array, NDArray[np.int32]]:
+        """Nodes and quadrilaterals of the strips, which share their corners."""
+        rows = (steps[:, None] + np.array([0, 1, 1, 0])).ravel()
+        keys = np.stack([rows, np.round(1e6 * corners.ravel()).astype(np.intp)], axis=1)
+        _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        nodes = np.stack([self._z[rows[first]], self._height(corners.ravel()[first])], axis=1)
+        return nodes, place.reshape(-1, 4).astype(np.int32)
+
+    def _nearest(
+        self, numbers: Array, place: Array
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp], Bytes]:
+        """Wire, contact point, element and sign of slip at places on outer wires."""
+        elements = self._rope.elements
+        wires, sides = self._first + numbers, np.ones(len(place), dtype=np.int8)
+        share = place / self._z[-1]
+        if not self._rope.is_clamped:
+            turned = np.sign(self._helix.lay) * self._angle(numbers, place)
+            wires = np.full(len(place), self._first)
+            share = np.arccos(np.cos(turned)) / np.pi
+            sides = np.where(np.sin(turned) < 0.0, -1, 1).astype(np.int8)
+        node = np.clip(np.round(share * elements).astype(np.intp), 1, max(elements - 1, 1))
+        return wires, wires * (elements - 1) + node - 1, node, sides
+
+    def _lines(self) -> tuple[Array, NDArray[np.intp], NDArray[np.intp], Bytes]:
+        """Contact points along the wires in front, broken by NaN, and what each belongs to."""
+        numbers = np.repeat(np.arange(self._count), len(self._z))
+        z = np.tile(self._z, self._count)
+        angle = np.remainder(self._angle(numbers, z), 2.0 * np.pi)
+        is_seen = (angle >= SHOWN_SHARE) & (angle <= np.pi - SHOWN_SHARE)
+        heights = np.where(is_seen, self._height(angle), np.nan)
+        kept = is_seen | np.append(False, is_seen[:-1])
+        wires, points, _, sides = self._nearest(numbers[kept], z[kept])
+        return np.stack([z, heights], axis=1)[kept], wires, points, sides
+
+    def _moved(self, places: Array) -> Array:
+        """Displacement of places, (n, 2, n_instants): sections stay plane and at right angles."""
+        up, slope = self._bent()
+        share = np.interp(places[:, 0], self._z, np.arange(len(self._z), dtype=float))
+        low = np.minimum(share.astype(np.intp), len(self._z) - 2)
+        part = (share - low)[:, None]
+        up, slope = ((1.0 - part) * one[low] + part * one[low + 1] for one in (up, slope))
+        across = np.nan_to_num(places[:, 1:]) - self._radius
+        return np.stack([-slope * across, up], axis=1)
+
+    def _bent(self) -> tuple[Array, Array]:
+        """Height and slope of the axis, (n_steps, n_instants), from the clamp or the middle."""
+        rope, z = self._rope, self._z
+        if rope.is_clamped:
+            wire = rope.wires[self._first]
+            columns = wire.curvature[:, self._columns].T
+            curvature = np.stack([np.interp(z, wire.along, values) for values in columns], axis=1)
+        else:
+            curvature = np.tile(rope.curvature[self._columns], (len(z), 1))
+        slope = _integrated(curvature, z[1])
+        up = _integrated(slope, z[1])
+        if not rope.is_clamped:
+            middle = len(z) // 2
+            up = up - up[middle] - slope[middle] * (z - z[middle])[:, None]
+            slope = slope - slope[middle]
+        return up, slope
+
+
+def _integrated(values: Array, step: float) -> Array:
+    summed = np.cumsum(0.5 * step * (values[1:] + values[:-1]), axis=0)
+    return np.concatenate([np.zeros((1, values.shape[1])), summed])

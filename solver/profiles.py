@@ -1,0 +1,143 @@
+"""Tables over a place along a body, as a mesh sees them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solver.arrays import Array, Indices
+from solver.definitions import Pairs
+from solver.loads import interpolate
+from solver.phrases import Amount, Phrase
+
+UNSEEN = 0.01
+"""Share of its range by which a table may differ between nodes from the line through them."""
+STEEP = 1e-8
+"""Relative change over a piece below which the mean of the inverse is that of the middle."""
+MOST_ELEMENTS = 5000
+"""Of a body, as `elements` allows."""
+
+
+def _pieces(tables: list[Pairs], edges: Array) -> tuple[Array, list[Array], Indices]:
+    """Cut shares at the points of tables.
+
+    Returns
+    -------
+    Ends of the pieces, the tables there, and the number of the first piece of every share.
+    """
+    points = np.concatenate([np.array(table)[:, 0] for table in tables])
+    ends: Array = np.union1d(edges, points[(points > edges[0]) & (points < edges[-1])])
+    values = [interpolate(table, ends) for table in tables]
+    return ends, values, np.searchsorted(ends, edges[:-1])
+
+
+def shares_of(nodes: Array, order: int = 1) -> Array:
+    """Return the ends of the shares of nodes in a row, shape (n_nodes + 1,), m.
+
+    They meet half-way between nodes; of quadratic elements a node in the middle has two thirds.
+
+    Parameters
+    ----------
+    nodes
+        Shape (n_nodes,), m.
+    order
+        Of the elements, 1 or 2.
+    """
+    shares = np.resize([0.5] if order == 1 else [1.0 / 3.0, 2.0 / 3.0], len(nodes) - 1)
+    return np.concatenate([nodes[:1], nodes[:-1] + shares * np.diff(nodes), nodes[-1:]])
+
+
+def means(tables: list[Pairs], edges: Array) -> Array:
+    """Return the mean of the product of one or two tables over every share.
+
+    Parameters
+    ----------
+    tables
+        Linear between their points, and held outside.
+    edges
+        Ends of the shares, shape (n_shares + 1,), m.
+    """
+    ends, values, first = _pieces(tables, edges)
+    left = math.prod(one[:-1] for one in values)
+    right = math.prod(one[1:] for one in values)
+    middle = math.prod(0.5 * (one[:-1] + one[1:]) for one in values)
+    # Simpson's rule is exact for products of three linear functions.
+    whole = np.diff(ends) * (left + 4.0 * middle + right) / 6.0
+    return np.asarray(np.add.reduceat(whole, first) / np.diff(edges))
+
+
+def harmonic_means(table: Pairs, edges: Array) -> Array:
+    """Return the inverse of the mean of the inverse of a table over every share."""
+    ends, (values,), first = _pieces([table], edges)
+    change = np.diff(values) / values[:-1]
+    is_steep = np.abs(change) > STEEP
+    inverse = np.log1p(change, where=is_steep, out=1.0 - 0.5 * change)
+    inverse = np.where(is_steep, inverse / np.where(is_steep, change, 1.0), inverse)
+    whole = np.diff(ends) * inverse / values[:-1]
+    return np.asarray(np.diff(edges) / np.add.reduceat(whole, first))
+
+
+def gap_at(table: Pairs, nodes: Array) -> Array:
+    """Return a gap at nodes; a point between two that is lower than both is put at the nearer.
+
+    A slope or a curve that the nodes tell stays as it is: only what would touch first and lies
+    between nodes is moved.
+    """
+    gap = interpolate(table, nodes)
+    x, values = np.array(table).T
+    inside = (x > nodes[0]) & (x < nodes[-1])
+    x, values = x[inside], values[inside]
+    after = np.searchsorted(nodes, x, side="right").clip(1, len(nodes) - 1)
+    is_left = x - nodes[after - 1] <= nodes[after] - x
+    nearer = np.where(is_left, after - 1, after)
+    lowest = gap.copy()
+    is_lower = values < np.minimum(gap[after - 1], gap[after])
+    np.minimum.at(lowest, nearer[is_lower], values[is_lower])
+    return lowest
+
+
+def unseen(name: str, table: Pairs, length: float, elements: int, order: int) -> str | None:
+    """Say what a mesh does not see of a gap that is a table, and how many elements would.
+
+    Parameters
+    ----------
+    name
+        Of the setting.
+    table
+        Points, m.
+    length
+        Of the body, m.
+    elements, order
+        Elements along it, and pieces between nodes of each.
+
+    Returns
+    -------
+    None where the line through the nodes is within `UNSEEN` of the range of the table.
+    """
+    off = _off_nodes(table, length, elements * order)
+    most = UNSEEN * float(np.ptp(np.array(table)[:, 1]))
+    if off.max() <= most:
+        return None
+    finer = range(elements + 1, MOST_ELEMENTS + 1)
+    sees = (str(n) for n in finer if _off_nodes(table, length, n * order).max() <= most)
+    return Phrase(
+        "{}: {} of {} points lie between nodes, up to {} off the line through them; what is lower "
+        "than both nodes counts at the nearer one, for all of its share; {} elements would see it",
+        name,
+        int(np.count_nonzero(off > most)),
+        len(table),
+        Amount(float(f"{off.max():.3g}"), "m"),
+        next(sees, Phrase("more than {}", MOST_ELEMENTS)),
+    )
+
+
+def _off_nodes(table: Pairs, length: float, pieces: int) -> Array:
+    """Return how far points are off the line through evenly spaced nodes, shape (n_points,)."""
+    x, values = np.array(table).T
+    place = x * (pieces / length)
+    left = np.floor(place).clip(0, pieces - 1)
+    share = (place - left).clip(0.0, 1.0)
+    before, after = (interpolate(table, node * (length / pieces)) for node in (left, left + 1.0))
+    off = np.abs((1.0 - share) * before + share * after - values)
+    return np.where((x >= 0.0) & (x <= length), off, 0.0)

@@ -1,0 +1,231 @@
+"""Contacts whose friction hardens or softens with slip: one instant after the other.
+
+The bound (r + mu f_n) m(s) of a slip s is linear in slip and pressing force up to their product:
+Newton's method takes it by its tangent, which adds its growth per slip to the stiffness where
+contacts slip (solver/README.md, 14). Where friction softens an instant may have several solutions.
+The one that goes on from the instant before is found by following it while the load of the instant
+grows, in steps so small that between their ends no other branches off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.linalg import LinAlgError
+from scipy.linalg import cholesky
+
+from solver.arrays import Array, Indices, at_instant
+from solver.laws import OPEN
+from solver.laws.rules import Rules
+from solver.reference.condensation import Condensation
+from solver.reference.newton import CONVERGED, NEWTON_LIMIT, Marched, Newton
+from solver.reference.states import HELD, Increment, Sides, States
+from solver.reference.unloading import unload
+
+SETTLED = 1e-12
+"""Share of the largest force by which friction may differ from its law."""
+SHORTEST = 2.0**-12
+"""Share of the load of an instant within which the solution is lost, where it jumps."""
+SLIDES = 100
+"""Slips at most, each with the friction that the one before has left, up to the next solution."""
+
+
+class Reached(NamedTuple):
+    """A solution under a part of the load of an instant."""
+
+    states: States
+    step: Increment
+    slip: Array
+
+
+class NewtonWithChangingFriction(Newton):
+    """Finds jumps and forces of one instant after the other."""
+
+    def __init__(
+        self, condensed: Condensation, rules: Rules, rest: Array | None, guesses: States | None
+    ) -> None:
+        super().__init__(condensed, rules, rest, guesses)
+        self._gone = np.zeros_like(rules.gap)
+        self._of_motions = condensed.gauge.T @ condensed.stiffness @ condensed.gauge
+        self._growth = (rules.ratio - 1.0) / rules.slip_length
+        self._ties = None if len(condensed.base) == len(rules.gap) else condensed.ties.toarray()
+
+    def __call__(self, instant: int) -> Marched:
+        """Give what an instant adds, as `Newton`."""
+        added = super().__call__(instant)
+        self._gone += np.abs(added.slip)
+        return added
+
+    def _solved(self, sides: Sides, instant: int) -> tuple[States, Increment] | None:
+        """Follow the solution from the instant before; where it is lost, look for any."""
+        begin = self._before(instant)
+        still = np.zeros_like(sides.held)
+        at = Reached(
+            self._states,
+            Increment(still, self._force[:, None], still[: len(sides.load)], still[:0]),
+            np.zeros(len(still)),
+        )
+        guesses = [one[:, instant] for one in (self._guesses, self._at_rest) if one is not None]
+        share, length = 0.0, 1.0
+        while share < 1.0:
+            target = min(share + length, 1.0)
+            following = self._follow(at, _between(begin, sides, target), guesses)
+            if following is not None:
+                at, share, length = following, target, 2.0 * length
+            elif length > SHORTEST:
+                length *= 0.25
+            else:
+                if self.jumps_at is None and np.any(self._growth < 0.0):
+                    self.jumps_at = instant
+                beyond = self._elsewhere(at, sides, guesses)
+                return None if beyond is None else (beyond.states, beyond.step)
+        return at.states, at.step
+
+    def _before(self, instant: int) -> Sides:
+        """Right sides under which nothing is added to the instant before."""
+        rules, force = self._rules, self._force
+        held = rules.compliance * force - np.where(rules.normal, self._opening, 0.0)
+        bound = at_instant(rules.bound, max(instant - 1, 0))
+        return Sides(-self.response.on_base(force)[:, None], bound, held[:, None])
+
+    def _follow(self, at: Reached, sides: Sides, guesses: list[States]) -> Reached | None:
+        """Go on to a larger share of the load, None where this may lead to another branch."""
+        for states in (at.states, *guesses):
+            reached = self._reach(states, at, sides)
+            if reached is not None and self._goes_on(at, reached, sides):
+                return reached
+        return None
+
+    def _elsewhere(self, at: Reached, sides: Sides, guesses: list[States]) -> Reached | None:
+        """Look for a stable solution beyond one that is lost, or give None.
+
+        With the friction that slip so far has left the next slip is larger, and so on up to the
+        nearest solution; Newton's method is tried once the same contacts slip again. What the last
+        friction alone comes to is the last resort.
+        """
+        for _ in range(SLIDES):
+            left = self._rules.factor((self._gone + np.abs(at.slip))[:, None])
+            slid = self._slid(left, sides, [at.states, *guesses])
+            if slid is None:
+                return None
+            beyond = self._stable(slid, sides) if np.array_equal(slid.states, at.states) else None
+            if beyond is not None:
+                return beyond
+            at = slid
+        slid = self._slid(self._rules.ratio[:, None], sides, [at.states, *guesses])
+        return None if slid is None else self._stable(slid, sides)
+
+    def _stable(self, near: Reached, sides: Sides) -> Reached | None:
+        """Find the solution near what is none yet, or give None where it is not stable."""
+        reached = self._reach(near.states, near, sides)
+        is_stable = reached is not None and self._goes_on(reached, reached, sides)
+        return reached if is_stable else None
+
+    def _slid(self, factor: Array, sides: Sides, guesses: list[States]) -> Reached | None:
+        """Solve with a given factor on friction, (n, 1), whatever slips, or give None."""
+        rules = replace(self._rules, friction=self._rules.friction * factor[:, 0])
+        self.response.set_friction(rules.friction, np.zeros_like(rules.friction))
+        given = replace(sides, bound=sides.bound * factor)
+        for states in guesses:
+            solved = self._iterate(states, given)
+            if solved is not None:
+                return Reached(*solved, self._slip_of(solved[1], sides))
+        found = unload(self.response, rules, given)
+        solved = None if found is None else self._iterate(found, given)
+        return None if solved is None else Reached(*solved, self._slip_of(solved[1], sides))
+
+    def _slip_of(self, step: Increment, sides: Sides) -> Array:
+        """Slip of the tangential jumps in a step, shape (n,)."""
+        return np.where(self._rules.normal, 0.0, (step.jump - sides.held)[:, 0])
+
+    def _reach(self, states: States, begin: Reached, sides: Sides) -> Reached | None:
+        """Seek states and slip, from those of a solution nearby, or give None."""
+        slip, force = begin.slip, begin.step.force[:, 0]
+        pieces: list[bytes] = []
+        for _ in range(NEWTON_LIMIT):
+            slip = np.where(np.abs(states) == 1, np.maximum(states * slip, 0.0), 0.0)
+            piece = states.tobytes() + (self._gone + slip < self._rules.slip_length).tobytes()
+            if piece in pieces and piece != pieces[-1]:  # of a cycle
+                return None
+            pieces.append(piece)
+            tangent = self._linearised(slip, force, sides)
+            step = self.response(states, tangent)
+            corrected = self._corrected(states, step, tangent)
+            moved, force = self._slip_of(step, sides), step.force[:, 0]
+            if np.array_equal(corrected, states) and self._obeys(states, moved, force, sides):
+                return Reached(states, step, moved)
+            states, slip = corrected, moved
+        return None
+
+    def _linearised(self, slip: Array, force: Array, sides: Sides) -> Sides:
+        """Set the tangent of the friction bound at slips (n,) >= 0, and give what is left of it."""
+        growth, most = self._growth_at(slip), self._most(force, sides)
+        factor = self._rules.factor((self._gone + slip)[:, None])
+        self.response.set_friction(self._rules.friction * factor[:, 0], growth * most)
+        return replace(sides, bound=sides.bound * factor - (growth * most * slip)[:, None])
+
+    def _growth_at(self, slip: Array) -> Array:
+        """Growth of the factor on the bound per slip, shape (n,)."""
+        return np.where(self._gone + slip < self._rules.slip_length, self._growth, 0.0)
+
+    def _most(self, force: Array, sides: Sides) -> Array:
+        """Largest friction force of surfaces that have not slipped yet, shape (n,)."""
+        carried = self._rules.friction * force[self._rules.partner]
+        return np.asarray(sides.bound[:, 0] + np.maximum(carried, 0.0))
+
+    def _obeys(self, states: States, slip: Array, force: Array, sides: Sides) -> bool:
+        """Tell whether friction is what slip has left, not only by its tangent."""
+        if self.response.unbalanced > CONVERGED * self._largest:
+            return False
+        slips = np.abs(states) == 1
+        factor = self._rules.factor((self._gone + np.abs(slip))[:, None])[:, 0]
+        wrong = np.abs(force + states * factor * self._most(force, sides))[slips]
+        return bool(wrong.max(initial=0.0) <= SETTLED * max(self._largest, np.abs(force).max()))
+
+    def _goes_on(self, at: Reached, reached: Reached, sides: Sides) -> bool:
+        """Tell whether a solution is the one that another goes over into.
+
+        So it is if the structure is stable however far the contacts that slip in either have
+        softened on the way: then no other solution slips there alone.
+        """
+        begin, end = np.abs(at.slip), np.abs(reached.slip)
+        slips = (np.abs(at.states) == 1) | (np.abs(reached.states) == 1)
+        most = np.maximum(*(self._most(one.step.force[:, 0], sides) for one in (at, reached)))
+        growth = np.where(slips, np.minimum(*map(self._growth_at, (begin, end))) * most, 0.0)
+        if not np.any(growth < 0.0):
+            return True
+        is_open = (at.states == OPEN) & (reached.states == OPEN)
+        sprung = self._rules.compliance > 0.0
+        presses = sprung & (at.states == HELD) & (reached.states == HELD)
+        growth[presses] += 1.0 / self._rules.compliance[presses]
+        free = np.flatnonzero((slips | is_open | sprung)[self._condensed.base])
+        try:
+            cholesky(self._softened(growth, free), overwrite_a=True, check_finite=False)
+        except LinAlgError:
+            return False
+        return True
+
+    def _softened(self, growth: Array, free: Indices) -> Array:
+        """Stiffness of some jumps of the base, (n_free, n_free), with that of each jump itself."""
+        condensed, gauge = self._condensed, self._condensed.gauge
+        stiffness = condensed.stiffness[np.ix_(free, free)]
+        # Rigid motions cost nothing: what S has for them is there to make it definite.
+        stiffness -= gauge[free] @ self._of_motions @ gauge[free].T
+        if self._ties is None:
+            stiffness[np.diag_indices_from(stiffness)] += growth[condensed.base[free]]
+            return stiffness
+        tied = self._ties[:, free]
+        return np.asarray(stiffness + tied.T @ (growth[:, None] * tied))
+
+
+def _between(begin: Sides, end: Sides, share: float) -> Sides:
+    """Right sides at a share of the way from some to others."""
+    if share == 1.0:
+        return end
+    return Sides(
+        begin.load + share * (end.load - begin.load),
+        begin.bound + share * (end.bound - begin.bound),
+        begin.held + share * (end.held - begin.held),
+    )
