@@ -211,7 +211,7 @@ class Reports:
 
 
 def shown(files: dict[str, bytes]) -> str:
-    """The page among the files of a report, in a frame; links to runs lead to this server (HTML)."""
+    """The page among a report's files, in a frame; its links to runs lead to this server (HTML)."""
     for name, data in files.items():
         if name.endswith(".html"):
             path = pn.state.location.pathname if pn.state.location is not None else ""
