@@ -1,0 +1,354 @@
+"""Charts that are made once, as HoloViews draws them: What if, reports, pages of the commands."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from html import escape
+from typing import Any, TypeGuard
+
+import holoviews as hv
+import numpy as np
+from bokeh.embed import components
+from bokeh.palettes import Viridis256
+from bokeh.plotting import figure
+from bokeh.plotting.contour import contour_data
+from bokeh.resources import Resources
+
+from app.units import Unit, unit_for
+from app.views.colors import FORCE, REFERENCE
+from solver.arrays import Array, Flags
+from solver.study.chart import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, Runs
+from solver.study.page import PlotSection
+
+hv.extension("bokeh")
+# A chart that is drawn while the server works at a page must not take part in its document.
+hv.renderer("bokeh").notebook_context = True
+
+COLORS = (REFERENCE, *HUES)
+"""Of curves by their hue."""
+LEVELS = 8
+"""Lines of equal value on a map, about."""
+LABEL = 34
+"""Characters of a line beside an axis."""
+TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
+BY_HUE = {"color": "hue", "cmap": list(COLORS), "clim": (-0.5, len(COLORS) - 0.5)}
+HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
+DASHES = {"points": "solid", "faint": "solid"}
+MARKS = {"dashed": "dashed", "dotted": "dotted"}
+STYLE = """<style>
+.panels { display: grid; gap: 0 1rem; grid-template-columns:
+  repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
+.key { margin-right: 1rem; white-space: nowrap; }
+</style>"""
+Point = tuple[float, float]
+
+
+def draw(chart: Chart, height: int = 340) -> figure:
+    """Figure of a chart, as wide as there is room for; `keys` are its legend."""
+    made = overlay(in_units(chart)).opts(height=height)
+    drawn: figure = hv.renderer("bokeh").get_plot(made).state
+    return drawn
+
+
+def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
+    """Charts of a page that needs nothing beside it, the entry point of `solver.study.page`.
+
+    Returns
+    -------
+    What all of them need, and each section (HTML).
+    """
+    figures = [draw(chart) for plot in plots for chart in plot.charts]
+    script, places = components(figures, wrap_script=True)
+    # Not `Resources.render`, which brings what Panel would have a page load.
+    library = Resources(mode="inline", components=["bokeh"]).js_raw
+    waiting = iter(places)
+    sections = [
+        f'<div role="figure" aria-label="{escape(plot.heading)}">{keys(plot.charts)}'
+        f'<div class="panels">{"".join(next(waiting) for _ in plot.charts)}</div></div>'
+        for plot in plots
+    ]
+    once = "\n".join(f"<script>{text}</script>" for text in library)
+    return f"{STYLE}\n{once}\n{script}", sections
+
+
+def keys(charts: Sequence[Chart]) -> str:
+    """The legend that charts side by side share (HTML)."""
+    panels = [chart for chart in charts if isinstance(chart, Panel)]
+    curves = {curve.label: curve for panel in panels for curve in panel.curves if curve.label}
+    return "<div>" + " ".join(map(_key, curves.values())) + "</div>" if curves else ""
+
+
+def _key(curve: PanelCurve) -> str:
+    style = f"border-top: 3px {MARKS.get(curve.line, 'solid')} {COLORS[curve.hue]}"
+    mark = f'<i style="display: inline-block; width: 1.2rem; vertical-align: middle; {style}"></i>'
+    return f'<span class="key">{mark} {escape(curve.label)}</span>'
+
+
+def in_units(chart: Chart) -> Chart:
+    """A chart in the units that one reads; the engine gives it in SI."""
+    if isinstance(chart, Map):
+        x, y = _unit(chart.x, chart.x_values), _unit(chart.y, chart.y_values)
+        z, runs = _unit(chart.scale, chart.z), chart.runs
+        return replace(
+            chart,
+            x=_axis(chart.x, x),
+            y=_axis(chart.y, y),
+            scale=_axis(chart.scale, z),
+            x_values=chart.x_values / x.factor,
+            y_values=chart.y_values / y.factor,
+            z=chart.z / z.factor,
+            level=None if chart.level is None else chart.level / z.factor,
+            runs=_runs(runs, x, y, z),
+        )
+    all_x, all_y = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
+    if chart.runs is not None:
+        all_x, all_y = np.append(all_x, chart.runs.x), np.append(all_y, chart.runs.y)
+    x, y = _unit(chart.x, all_x), _unit(chart.y, all_y)
+    curves = tuple(replace(c, x=c.x / x.factor, y=c.y / y.factor) for c in chart.curves)
+    runs = None if chart.runs is None else _runs(chart.runs, x, y, y)
+    return replace(chart, x=_axis(chart.x, x), y=_axis(chart.y, y), curves=curves, runs=runs)
+
+
+def _unit(axis: PanelAxis, values: Array) -> Unit:
+    known = np.abs(values[np.isfinite(values)])
+    return unit_for(float(known.max(initial=0.0)), axis.unit)
+
+
+def _axis(axis: PanelAxis, unit: Unit) -> PanelAxis:
+    limits = axis.limits and (axis.limits[0] / unit.factor, axis.limits[1] / unit.factor)
+    return replace(axis, unit=unit.name, limits=limits)
+
+
+def _runs(runs: Runs, x: Unit, y: Unit, z: Unit) -> Runs:
+    return replace(runs, x=runs.x / x.factor, y=runs.y / y.factor, values=runs.values / z.factor)
+
+
+def form(chart: Chart) -> tuple[Any, ...]:
+    """What of a chart cannot change in a figure: it is drawn anew where this differs."""
+    axes = [chart.x, chart.y, *([chart.scale] if isinstance(chart, Map) else [])]
+    size = (len(chart.curves),) if isinstance(chart, Panel) else (chart.is_sampled,)
+    return (type(chart), *size, *((axis.label, axis.logarithmic) for axis in axes))
+
+
+def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
+    """A chart, and a place on its axes that is marked, as HoloViews' elements."""
+    made = _of_map(chart) if isinstance(chart, Map) else _of_panel(chart, here)
+    known = np.isfinite(here).all()
+    ring = hv.Points([here] if known else [], ["x", "y"])
+    look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5}
+    x, y = limits(chart)
+    return hv.Overlay([*made, ring.opts(**look)]).opts(
+        title=_title(chart),
+        logx=chart.x.logarithmic,
+        logy=chart.y.logarithmic,
+        xlim=x,
+        ylim=y,
+        xlabel=textwrap.fill(chart.x.label, 2 * LABEL),
+        ylabel=textwrap.fill(chart.y.label, LABEL),
+        xticks=_ticks(chart),
+        yticks=_steps(chart.y_values) if _has_values(chart) else None,
+        padding=(0.03, 0.1),
+        responsive=True,
+        framewise=True,
+        show_legend=False,
+        show_grid=isinstance(chart, Panel),
+        default_tools=TOOLS,
+        # What scrolls the page must not move what it passes over, until one asks for it.
+        active_tools=[],
+        # A toolbar that sticks to the axes lies over a title that is as wide as they are.
+        backend_opts={"plot.toolbar.logo": None, "plot.toolbar_sticky": False},
+    )
+
+
+def limits(chart: Chart) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """Ends of both axes; None for whatever fits."""
+    if isinstance(chart, Panel):
+        return chart.x.limits or (None, None), chart.y.limits or (None, None)
+    x = edges(chart.x_values, is_logarithmic=chart.x.logarithmic)
+    y = edges(chart.y_values, is_logarithmic=chart.y.logarithmic)
+    return (float(x[0]), float(x[-1])), (float(y[0]), float(y[-1]))
+
+
+def edges(values: Array, *, is_logarithmic: bool) -> Array:
+    """Where cells about n ascending values end, shape (n + 1,)."""
+    v = np.log(values) if is_logarithmic else values
+    steps = np.diff(v) if len(v) > 1 else np.ones(1)
+    inner = (v[:-1] + v[1:]) / 2.0
+    ends: Array = np.concatenate([[v[0] - steps[0] / 2.0], inner, [v[-1] + steps[-1] / 2.0]])
+    return np.exp(ends) if is_logarithmic else ends
+
+
+def _title(chart: Chart) -> str:
+    unit = chart.scale.unit if isinstance(chart, Map) else ""
+    return f"{chart.title} ({unit})" if unit else chart.title
+
+
+def _has_values(chart: Chart) -> TypeGuard[Map]:
+    """Whether a map has each of its values written on it."""
+    return isinstance(chart, Map) and chart.level is not None
+
+
+def _steps(values: Array) -> list[tuple[float, str]]:
+    return [(float(value), f"{value:g}") for value in values]
+
+
+def _ticks(chart: Chart) -> list[Any] | None:
+    """Names of an axis, its few whole numbers, or the values of a map that has each written."""
+    if chart.x.names:
+        return list(enumerate(chart.x.names))
+    if isinstance(chart, Map):
+        return _steps(chart.x_values) if _has_values(chart) else None
+    whole = {int(x) for curve in chart.curves for x in curve.x} if chart.x.whole else set()
+    return sorted(whole) if 0 < len(whole) <= 7 else None
+
+
+def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
+    for curve in panel.curves:
+        yield from _of_curve(panel, curve)
+    if panel.runs is None:
+        return
+    runs, known = panel.runs, np.isfinite(panel.runs.y)
+    low, high = panel.y.limits or (0.0, 1.0)
+    # What has no value stands at the upper edge.
+    top = high * (low / high) ** 0.03 if panel.y.logarithmic else high - 0.03 * (high - low)
+    dots = {**BY_HUE, **HOVER, "size": 7, "hit_dilation": 2.0, "line_width": 1.6}
+    line = hv.Curve(([here[0]] * 2, [low, high]), "x", "y")
+    yield line.opts(color=FORCE, line_dash="dotted", line_width=1.5)
+    yield _points(runs, known & ~runs.holds).opts(**dots, fill_alpha=0.0)
+    yield _points(runs, known & runs.holds).opts(**dots)
+    yield _points(replace(runs, y=np.full_like(runs.y, top)), ~known).opts(**dots, marker="x")
+
+
+def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
+    y = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
+    is_thin = curve.line in DASHES
+    looks: dict[str, Any] = {
+        "color": COLORS[curve.hue],
+        "line_dash": DASHES.get(curve.line, curve.line),
+        "line_width": 1.0 if is_thin else 2.2,
+        "alpha": 0.35 if curve.line == "faint" else 1.0,
+    }
+    if panel.runs is None:
+        told = [("", curve.label), (panel.x.label, "@x"), (panel.y.label, "@y")]
+        looks |= {"tools": ["hover"], "hover_tooltips": told}
+    yield hv.Curve((curve.x, y), "x", "y").opts(**looks)
+    if curve.line == "points":
+        yield hv.Points((curve.x, y), ["x", "y"]).opts(color=COLORS[curve.hue], size=6)
+
+
+def _told(runs: Runs, which: Flags) -> dict[str, Any]:
+    said = [runs.said[int(place)] for place in np.flatnonzero(which)]
+    # Whole numbers HoloViews takes for a colour.
+    return {"x": runs.x[which], "y": runs.y[which], "hue": runs.hues[which] * 1.0, "said": said}
+
+
+def _points(runs: Runs, which: Flags) -> hv.Points:
+    return hv.Points(_told(runs, which), ["x", "y"], ["hue", "said"])
+
+
+def _of_map(chart: Map) -> Iterator[hv.Element]:
+    low, high = span(chart)
+    by_value = {
+        **{"color": "value", "cmap": Viridis256, "clim": (low, high), "line_alpha": 0.0},
+        **{"logz": chart.scale.logarithmic, "colorbar": True},
+    }
+    runs, holds = chart.runs, chart.runs.holds
+    if chart.is_sampled:
+        rows, columns = np.nonzero(np.isfinite(chart.z))
+        x, y = chart.x_values[columns], chart.y_values[rows]
+        yield _cells(chart, {"x": x, "y": y, "value": chart.z[rows, columns]}).opts(**by_value)
+    else:
+        cells = {**_told(runs, holds), "value": runs.values[holds]}
+        yield _cells(chart, cells).opts(**by_value, **HOVER)
+        hatch = {"glyph.hatch_pattern": {"value": "right_diagonal_line"}}
+        hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
+        hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
+        yield _cells(chart, _told(runs, ~holds)).opts(**hollow, **HOVER)
+    paths, labels = contours(chart)
+    yield hv.Contours([{"x": x, "y": y} for x, y in paths], ["x", "y"]).opts(
+        color="#000", alpha=0.75, line_width=1.2
+    )
+    yield hv.Labels(labels, ["x", "y"], "text").opts(
+        text_color="#000",
+        text_font_size="11px",
+        background_fill_color="#fff",
+        background_fill_alpha=0.7,
+    )
+    if chart.is_sampled:
+        dots = {"color": "#fff", "line_color": "#444", "size": 4, **HOVER}
+        yield _points(runs, holds).opts(**dots)
+
+
+def span(chart: Map) -> tuple[float, float]:
+    """Ends of the scale of colours."""
+    known = chart.z[np.isfinite(chart.z)]
+    if not known.size:
+        return (1.0, 10.0)
+    low, high = float(known.min()), float(known.max())
+    by = 0.1 * abs(low) or 1.0
+    return (low, high) if low < high else (low - by, high + by)
+
+
+def _cells(chart: Map, told: dict[str, Any]) -> hv.Rectangles:
+    sides: dict[str, Any] = {}
+    for axis, scale, values, first, last in (
+        ("x", chart.x, chart.x_values, "left", "right"),
+        ("y", chart.y, chart.y_values, "bottom", "top"),
+    ):
+        ends = edges(values, is_logarithmic=scale.logarithmic)
+        number = np.searchsorted(values, told[axis])
+        sides |= {first: ends[:-1][number], last: ends[1:][number]}
+    rest = [name for name in told if name not in ("x", "y")]
+    return hv.Rectangles({**sides, **told}, ["left", "bottom", "right", "top"], [*rest, "x", "y"])
+
+
+def levels(low: float, high: float, *, is_logarithmic: bool) -> Array:
+    """Values that are easily read, between two others."""
+    if is_logarithmic:
+        powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
+        several = np.outer(powers, [1.0, 2.0, 5.0] if len(powers) <= 4 else [1.0]).ravel()
+    else:
+        rough = (high - low) / LEVELS
+        power = 10.0 ** np.floor(np.log10(rough))
+        step = power * next(n for n in (1.0, 2.0, 5.0, 10.0) if n * power >= rough)
+        several = step * np.arange(np.ceil(low / step), high / step)
+    return np.asarray(several[(several > low) & (several < high)])
+
+
+def contours(chart: Map) -> tuple[list[tuple[Array, Array]], dict[str, Any]]:
+    """Lines of equal value, straight between runs on the page, and the values on them."""
+    low, high = span(chart)
+    at = levels(low, high, is_logarithmic=chart.scale.logarithmic)
+    at = at if chart.level is None else np.array([chart.level])
+    paths: list[tuple[Array, Array]] = []
+    labels: list[tuple[float, float, str]] = []
+    if min(chart.z.shape) > 1 and at.size:
+        axes = (chart.x, chart.y)
+        to = [np.log if axis.logarithmic else np.asarray for axis in axes]
+        back = [np.exp if axis.logarithmic else np.asarray for axis in axes]
+        of = np.log if chart.scale.logarithmic else np.asarray
+        x, y = to[0](chart.x_values), to[1](chart.y_values)
+        lines: Any = contour_data(x, y, of(chart.z), of(at), want_fill=False).line_data
+        for level, across, up in zip(at, lines.xs, lines.ys, strict=True):
+            parts = _parts(back[0](across), back[1](up))
+            paths += parts
+            longest = max(parts, key=lambda part: len(part[0]), default=None)
+            if longest is not None and len(longest[0]) >= 4:
+                middle = len(longest[0]) // 2
+                labels.append((longest[0][middle], longest[1][middle], f"{level:.4g}"))
+    if chart.level is not None:
+        rows, columns = np.nonzero(np.isfinite(chart.z))
+        texts = [f"{value:.2g}" for value in chart.z[rows, columns]]
+        return paths, {"x": chart.x_values[columns], "y": chart.y_values[rows], "text": texts}
+    x, y, text = zip(*labels, strict=True) if labels else ((), (), ())
+    return paths, {"x": list(x), "y": list(y), "text": list(text)}
+
+
+def _parts(x: Array, y: Array) -> list[tuple[Array, Array]]:
+    """Parts of a line that is interrupted by NaN."""
+    known = np.isfinite(x)
+    ends = np.flatnonzero(~known)
+    parts = zip(*(np.split(v[known], ends - np.arange(len(ends))) for v in (x, y)), strict=True)
+    return [part for part in parts if len(part[0])]

@@ -1,0 +1,147 @@
+"""A run as one page that needs nothing beside it: its plots at all instants, and its numbers."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from html import escape
+from typing import Any
+
+import numpy as np
+from bokeh.embed import file_html
+from bokeh.layouts import column, grid
+from bokeh.model import Model
+from bokeh.models import ColumnDataSource, CustomJS, Div, PointDrawTool, Slider
+from bokeh.resources import INLINE
+
+from app.frame import Frame, Selection
+from app.units import unit_for
+from app.views.view import View
+from solver.checked import dump
+
+MOST_INSTANTS = 60
+HEIGHTS = {"Scene": 260, "Load path": 70}
+HEIGHT = 300
+"""Pixels of a figure."""
+SHOW = """
+const i = cb_obj.value
+models.forEach((model, n) => { model[names[n]] = values[n][i] })
+"""
+Values = dict[tuple[Model, str], Any]
+
+
+def offline_page(
+    frame: Frame,
+    views: Sequence[View],
+    selection: Selection,
+    ghost: Frame | None,
+    tables: Mapping[str, str],
+) -> str:
+    """The page (HTML), whose slider moves through the instants.
+
+    Parameters
+    ----------
+    frame, ghost
+        What is shown, and what it is compared with.
+    views
+        Those in sight; they are not touched.
+    selection
+        What is looked at.
+    tables
+        CSV by the name of its file.
+    """
+    copies = [type(view)(view.state) for view in views]
+    figures = [view.figure for view in copies]
+    caption = Div(text="", sizing_mode="stretch_width")
+    run, end = frame.run, float(frame.run.instants[-1])
+    unit = unit_for(end, "s")
+    columns = np.unique(
+        np.linspace(0, len(run.instants) - 1, MOST_INSTANTS).round().astype(int)
+    ).tolist()
+    at = int(np.argmin(np.abs(np.array(columns) - run.column(selection.phase))))
+    instants: list[Values] = []
+    # The one that is looked at comes last, so that the page begins with it.
+    for number in [*range(len(columns)), at]:
+        time = float(run.instants[columns[number]])
+        caption.text = f"{escape(run.sentence)} At {unit(time)} of {unit(end)}."
+        for view in copies:
+            view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
+        instants.append(_values([*figures, caption]))
+    instants.pop()
+    slider = Slider(
+        start=0,
+        end=len(columns) - 1,
+        value=at,
+        step=1,
+        title="Instant",
+        sizing_mode="stretch_width",
+    )
+    moving = [key for key in instants[0] if _differs(key, instants)]
+    arguments = {
+        "models": [model for model, _ in moving],
+        "names": [name for _, name in moving],
+        "values": [[values[key] for values in instants] for key in moving],
+    }
+    slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
+    for view, made in zip(copies, figures, strict=True):
+        made.sizing_mode, made.height = "stretch_width", HEIGHTS.get(view.name, HEIGHT)
+        # What is dragged there moves nothing here.
+        made.tools = [tool for tool in made.tools if not isinstance(tool, PointDrawTool)]
+    wide = [made for view, made in zip(copies, figures, strict=True) if view.name in HEIGHTS]
+    rest = [made for made in figures if made not in wide]
+    page = column(
+        slider,
+        caption,
+        *wide,
+        grid(rest, ncols=2, sizing_mode="stretch_width"),
+        Div(text=_below(frame, tables), sizing_mode="stretch_width"),
+        sizing_mode="stretch_width",
+    )
+    title = f"Slipfront: {run.settings.scene}"
+    return file_html(page, INLINE, title, suppress_callback_warning=True)
+
+
+def _values(roots: Sequence[Model]) -> Values:
+    """Data of all sources, and all else of the figures that is a number or a text."""
+    values: Values = {}
+    for model in {model for root in roots for model in root.references()}:
+        if isinstance(model, ColumnDataSource):
+            values[model, "data"] = dict(model.data)
+            continue
+        for name, value in model.properties_with_values(include_defaults=True).items():
+            if isinstance(value, bool | int | float | str) and name != "name":
+                values[model, name] = value
+    return values
+
+
+def _differs(key: tuple[Model, str], instants: Sequence[Values]) -> bool:
+    """Whether a value is not the same at all instants."""
+    first = instants[0][key]
+    others = [values[key] for values in instants[1:] if key in values]
+    if not isinstance(first, dict):
+        return any(value != first for value in others)
+    return any(
+        value.keys() != first.keys() or not all(_is_equal(value[n], first[n]) for n in first)
+        for value in others
+    )
+
+
+def _is_equal(one: Any, other: Any) -> bool:
+    if len(one) != len(other):
+        return False
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+def _below(frame: Frame, tables: Mapping[str, str]) -> str:
+    """Numbers and settings (HTML)."""
+    links = ", ".join(
+        f'<a download="{escape(name)}" href="data:text/csv;base64,'
+        f'{b64encode(text.encode()).decode()}">{escape(name)}</a>'
+        for name, text in tables.items()
+    )
+    settings = escape(dump(frame.run.settings))
+    below = f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
+    return f"<p>Numbers: {links}.</p>{below}"
