@@ -14,6 +14,7 @@ PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
 TICK = 50
 """Milliseconds between two instants that are shown, at least."""
+PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
 
@@ -42,6 +43,8 @@ class Transport:
         self._run.on_click(lambda event: self.toggle())
         step.on_click(lambda event: state.step())
         reset.on_click(lambda event: state.reset())
+        self._pin = pmui.IconButton(icon="push_pin", description=PIN, **small)
+        self._pin.on_click(lambda event: state.pin())
         self._way = pmui.RadioButtonGroup(
             options=WATCH,
             value="accuracy",
@@ -74,9 +77,12 @@ class Transport:
             icon="play_circle", description="Play through time (t)", margin=(8, 2)
         )
         self.play_button.on_click(lambda event: self.play())
-        self.view = pn.Row(self._run, step, reset, self._way, pace, self._iteration, margin=0)
+        self.view = pn.Row(
+            self._run, step, reset, self._pin, self._way, pace, self._iteration, margin=0
+        )
         state.param.watch(
-            lambda *events: self._show(), ["settings", "frame", "newest", "running", "is_costly"]
+            lambda *events: self._show(),
+            ["settings", "frame", "newest", "running", "is_costly", "pinned"],
         )
         self._show()
 
@@ -163,6 +169,7 @@ class Transport:
             elif state.is_over:
                 icon = "replay"
             self._run.icon = icon
+            self._pin.color = "default" if state.pinned is None else "primary"
             if state.settings.finish in WATCH.values():
                 self._way.value = state.settings.finish
             if newest is not None and frame is not None:
