@@ -314,7 +314,7 @@ class Member(param.Parameterized):
             state.history, state.number = room.leader.history, room.leader.number
             state.began = state.number
             values |= {name: getattr(room.leader, name) for name in SHARED}
-        changed = {n: v for n, v in values.items() if v is not getattr(state, n)}
+        changed = {name: value for name, value in values.items() if value != getattr(state, name)}
         state.param.update(**changed)
         self.message = self._sentence(room)
         if room.is_alone and not room.is_over:

@@ -231,3 +231,15 @@ def test_a_code_that_there_is_not_is_told_and_the_page_runs() -> None:
     seat = Seat("bar", "XXXX5")
     assert "There is no class XXXX5" in seat.member.message
     assert seat.worker.is_there
+
+
+def test_a_picture_that_moves_does_not_bring_the_poll_again(leader: Seat) -> None:
+    follower = Seat("bar", code_of(leader))
+    leader.state.lesson = LESSON
+    tick(leader, follower)
+    seen: list[Any] = []
+    follower.state.param.watch(seen.append, ["poll", "lesson", "settings"])
+    leader.state.select(phase=0.3)
+    tick(leader, follower)
+    assert follower.state.selection.phase == 0.3
+    assert not seen
