@@ -22,6 +22,8 @@ def _serve(chosen: argparse.Namespace) -> int:
     # Here and not above: other commands do without the second that it takes.
     from panel.command import main
 
-    sys.argv = ["panel", "serve", str(APP), *chosen.passed_on]
+    # A page that is older than Bokeh's five minutes may come back after its network was gone.
+    patient = ["--session-token-expiration", "86400"]
+    sys.argv = ["panel", "serve", str(APP), *patient, *chosen.passed_on]
     main()
     return 0
