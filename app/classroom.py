@@ -13,6 +13,7 @@ from typing import Any
 import param
 
 from app.history import History
+from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
 from app.poll import Poll
 from app.state import PageState
@@ -118,10 +119,11 @@ class Classroom:
     def poll_for(self, member: Member) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
         leader = self.leader
-        if leader is None or leader.lesson == "" or self.is_over:
+        if leader is None or leader.lesson not in LESSONS or self.is_over:
             return None
         votes = list(self._votes.values())
-        counts = tuple(votes.count(choice) for choice in range(max(votes, default=0) + 1))
+        choices = range(len(LESSONS[leader.lesson].choices))
+        counts = tuple(votes.count(choice) for choice in choices)
         return Poll(
             leads=self.is_led_by(member),
             predicted=len(votes),

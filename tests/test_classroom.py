@@ -161,7 +161,7 @@ def test_a_class_is_asked_and_sees_the_counts_and_the_answer_with_its_leader(
     assert first.state.lesson == LESSON
     first.state.prediction = 3
     first.state.prediction = 1
-    second.state.prediction = 3
+    second.state.prediction = 0
     tick(*seats)
     poll = leader.state.poll
     assert poll is not None
@@ -169,7 +169,7 @@ def test_a_class_is_asked_and_sees_the_counts_and_the_answer_with_its_leader(
     leader.member.open_counts()
     tick(*seats)
     assert first.state.poll is not None
-    assert first.state.poll.counts == (0, 1, 0, 1)
+    assert first.state.poll.counts == (1, 1, 0, 0)
     assert first.state.is_asked
     leader.state.prediction = 3
     tick(*seats)

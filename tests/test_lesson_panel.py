@@ -162,4 +162,6 @@ def test_a_handout_asks_in_front_and_answers_overleaf(frame: Frame) -> None:
     assert lesson.why in back
     assert "localhost" not in text.split("<body>")[1]
     assert "Pull harder" not in text
+    assert " src=" not in text.split("<style>")[0].rsplit("</script>", 1)[1]
+    assert "static/extensions" not in text
     assert readings_of(lesson)
