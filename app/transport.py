@@ -14,6 +14,7 @@ PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
 TICK = 50
 """Milliseconds between two instants that are shown, at least."""
+ROUND = {"minWidth": "30px", "padding": "4px", "& .MuiButton-startIcon": {"margin": 0}}
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
@@ -37,7 +38,11 @@ class Transport:
         self._playing: tuple[Any, float, float, float] | None = None
         self._is_updating = False
         small: dict[str, Any] = {"size": "small", "margin": (2, 2)}
-        self._run = pmui.IconButton(icon="pause", description="Run or pause (space)", **small)
+        # Not an IconButton, which keeps its first icon.
+        changing: dict[str, Any] = {"label": "", "variant": "text", "color": "default", "sx": ROUND}
+        self._run = pmui.Button(
+            icon="pause", description="Run or pause (space)", **changing, **small
+        )
         step = pmui.IconButton(icon="skip_next", description="One iteration (s)", **small)
         reset = pmui.IconButton(icon="replay", description="From the start (r)", **small)
         self._run.on_click(lambda event: self.toggle())
@@ -73,8 +78,8 @@ class Transport:
             margin=(0, 10),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
-        self.play_button = pmui.IconButton(
-            icon="play_circle", description="Play through time (t)", margin=(8, 2)
+        self.play_button = pmui.Button(
+            icon="play_circle", description="Play through time (t)", margin=(10, 2), **changing
         )
         self.play_button.on_click(lambda event: self.play())
         self.view = pn.Row(
