@@ -37,19 +37,36 @@ class Transport:
         self._state, self._document = state, document
         self._playing: tuple[Any, float, float, float] | None = None
         self._is_updating = False
+        self.view = pn.Row(*self._buttons(), *self._choices(), margin=0)
+        self.play_button.on_click(lambda event: self.play())
+        state.param.watch(
+            lambda *events: self._show(),
+            ["settings", "frame", "newest", "running", "is_costly", "pinned"],
+        )
+        self._show()
+
+    def _buttons(self) -> list[Any]:
+        """Buttons that start, stop and pin a run; and one beside the time line."""
         small: dict[str, Any] = {"size": "small", "margin": (2, 2)}
         # Not an IconButton, which keeps its first icon.
         changing: dict[str, Any] = {"label": "", "variant": "text", "color": "default", "sx": ROUND}
         self._run = pmui.Button(
             icon="pause", description="Run or pause (space)", **changing, **small
         )
+        self.play_button = pmui.Button(
+            icon="play_circle", description="Play through time (t)", margin=(10, 2), **changing
+        )
         step = pmui.IconButton(icon="skip_next", description="One iteration (s)", **small)
         reset = pmui.IconButton(icon="replay", description="From the start (r)", **small)
-        self._run.on_click(lambda event: self.toggle())
-        step.on_click(lambda event: state.step())
-        reset.on_click(lambda event: state.reset())
         self._pin = pmui.IconButton(icon="push_pin", description=PIN, **small)
-        self._pin.on_click(lambda event: state.pin())
+        self._run.on_click(lambda event: self.toggle())
+        step.on_click(lambda event: self._state.step())
+        reset.on_click(lambda event: self._state.reset())
+        self._pin.on_click(lambda event: self._state.pin())
+        return [self._run, step, reset, self._pin]
+
+    def _choices(self) -> list[Any]:
+        """What is watched, how fast, and which iteration."""
         self._way = pmui.RadioButtonGroup(
             options=WATCH,
             value="accuracy",
@@ -59,13 +76,9 @@ class Transport:
             sx={"& button": {"textTransform": "none", "padding": "3px 9px"}},
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
+        more: dict[str, Any] = {"size": "small", "width": 118, "margin": (6, 4)}
         pace = pmui.Select.from_param(
-            state.param.pace,
-            label="Pace",
-            options=list(PACES),
-            size="small",
-            width=118,
-            margin=(6, 4),
+            self._state.param.pace, label="Pace", options=list(PACES), **more
         )
         self._iteration = pmui.IntSlider(
             label="Iteration",
@@ -78,18 +91,7 @@ class Transport:
             margin=(0, 10),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
-        self.play_button = pmui.Button(
-            icon="play_circle", description="Play through time (t)", margin=(10, 2), **changing
-        )
-        self.play_button.on_click(lambda event: self.play())
-        self.view = pn.Row(
-            self._run, step, reset, self._pin, self._way, pace, self._iteration, margin=0
-        )
-        state.param.watch(
-            lambda *events: self._show(),
-            ["settings", "frame", "newest", "running", "is_costly", "pinned"],
-        )
-        self._show()
+        return [self._way, pace, self._iteration]
 
     def keys(self) -> dict[str, Any]:
         """What keys do, by their names."""
