@@ -82,11 +82,11 @@ class Card:
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen
+            self._turn()
             mine = {view.name for view in self.views}
             others = [name for name in self._state.plots.split(",") if name and name not in mine]
             own = [] if self._chosen is self._fitting[0] else [self._chosen.name]
             self._state.plots = ",".join([*others, *own])
-            self._turn()
 
     def _turn(self) -> None:
         """Make the figure of the view in sight, where it was not seen yet, and show the frame."""

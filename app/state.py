@@ -170,7 +170,7 @@ class PageState(param.Parameterized):
         """Do one iteration and wait; of a run that has ended, show the next."""
         shown, newest = self.frame, self.newest
         if shown is not None and newest is not None and shown is not newest:
-            self.seek(shown.iteration + 1)
+            self.seek(self.history.after(shown.iteration))
             return
         self.param.update(running=False, iteration=None)
         self.send(Step())

@@ -150,9 +150,12 @@ class Transport:
             column = min(max(column, 0), len(times) - 1)
             self._state.select(phase=float(times[column] / times[-1]))
 
-    def _move_iteration(self, iterations: int) -> None:
-        if self._state.frame is not None:
-            self._state.seek(self._state.frame.iteration + iterations)
+    def _move_iteration(self, way: int) -> None:
+        """Show the kept iterate before the one that is shown, or after it."""
+        state = self._state
+        if state.frame is not None:
+            shown = state.frame.iteration
+            state.seek(state.history.after(shown) if way > 0 else shown - 1)
 
     def _seek(self, iteration: int) -> None:
         if not self._is_updating:

@@ -10,8 +10,10 @@ from typing import Any
 from browser import Chrome, Server
 from playwright.sync_api import ConsoleMessage, Error, Locator, Page, expect
 
-ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=5 a second"
-"""In an address: a run that goes on, no faster than it takes to see that it does."""
+ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=20 a second"
+"""In an address: a run that goes on."""
+ANSWER = "start=nested&finish=at-once"
+"""In an address: a run whose answer is there at once."""
 POLL_MS = 50.0
 FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
@@ -56,13 +58,19 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
         page.remove_listener("pageerror", stumble)
         chrome.leave(page)
     assert not complaints, complaints
-    lines = server.log[before:].splitlines()
-    assert not [line for line in lines if FAULT.search(line) and not ALLOWED.search(line)]
+    said = server.log[before:]
+    lines = said.splitlines()
+    assert not [s for s in lines if FAULT.search(s) and not ALLOWED.search(s)], said
 
 
 def status(page: Page) -> Locator:
     """The status line."""
-    return page.locator(".status").first
+    return page.locator(".status div").first
+
+
+def figures(page: Page) -> Locator:
+    """The key figures at the selected instant."""
+    return page.locator(".figures div").first
 
 
 def iteration(page: Page) -> int:
@@ -99,3 +107,24 @@ def slider(page: Page, name: str) -> Locator:
 def field(page: Page, name: str) -> Locator:
     """The field of a setting, by the beginning of its title."""
     return page.get_by_role("textbox", name=re.compile(rf"^{re.escape(name)}"))
+
+
+def button(page: Page, name: str) -> Locator:
+    """The button in sight that a name begins with."""
+    pattern = re.compile(rf"^{re.escape(name)}")
+    return page.get_by_role("button", name=pattern).locator("visible=true").first
+
+
+def figure(page: Page, number: int) -> Locator:
+    """A figure of the page: 0 is the scene, 1 the time line, others are those of the cards."""
+    return page.locator(".bk-Figure").nth(number)
+
+
+def drag(page: Page, place: Locator, start: float, end: float, height: float = 0.5) -> None:
+    """Press on a place, at a share of its width, and move to another; the button stays down."""
+    box = place.bounding_box()
+    assert box is not None
+    y = box["y"] + height * box["height"]
+    page.mouse.move(box["x"] + start * box["width"], y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + end * box["width"], y, steps=6)
