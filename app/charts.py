@@ -23,8 +23,6 @@ from solver.study.chart import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, R
 from solver.study.page import PlotSection
 
 hv.extension("bokeh")
-# A chart that is drawn while the server works at a page must not take part in its document.
-hv.renderer("bokeh").notebook_context = True
 
 COLORS = (REFERENCE, *HUES)
 """Of curves by their hue."""
@@ -47,7 +45,7 @@ Point = tuple[float, float]
 
 def draw(chart: Chart, height: int = 340) -> figure:
     """Figure of a chart, as wide as there is room for; `keys` are its legend."""
-    made = overlay(in_units(chart)).opts(height=height)
+    made = overlay(in_units(chart), height=height)
     drawn: figure = hv.renderer("bokeh").get_plot(made).state
     return drawn
 
@@ -132,7 +130,7 @@ def form(chart: Chart) -> tuple[Any, ...]:
     return (type(chart), *size, *((axis.label, axis.logarithmic) for axis in axes))
 
 
-def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
+def overlay(chart: Chart, here: Point = (np.nan, np.nan), height: int = 360) -> hv.Overlay:
     """A chart, and a place on its axes that is marked, as HoloViews' elements."""
     made = _of_map(chart) if isinstance(chart, Map) else _of_panel(chart, here)
     known = np.isfinite(here).all()
@@ -151,6 +149,7 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
         yticks=_steps(chart.y_values) if _has_values(chart) else None,
         padding=(0.03, 0.1),
         responsive=True,
+        height=height,
         framewise=True,
         show_legend=False,
         show_grid=isinstance(chart, Panel),
@@ -252,7 +251,7 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
     low, high = span(chart)
     by_value = {
         **{"color": "value", "cmap": Viridis256, "clim": (low, high), "line_alpha": 0.0},
-        **{"logz": chart.scale.logarithmic, "colorbar": True},
+        **{"logz": chart.scale.logarithmic, "colorbar": True, "clabel": " "},
     }
     runs, holds = chart.runs, chart.runs.holds
     if chart.is_sampled:
@@ -331,13 +330,14 @@ def contours(chart: Map) -> tuple[list[tuple[Array, Array]], dict[str, Any]]:
         of = np.log if chart.scale.logarithmic else np.asarray
         x, y = to[0](chart.x_values), to[1](chart.y_values)
         lines: Any = contour_data(x, y, of(chart.z), of(at), want_fill=False).line_data
-        for level, across, up in zip(at, lines.xs, lines.ys, strict=True):
+        for number, (level, across, up) in enumerate(zip(at, lines.xs, lines.ys, strict=True)):
             parts = _parts(back[0](across), back[1](up))
             paths += parts
             longest = max(parts, key=lambda part: len(part[0]), default=None)
             if longest is not None and len(longest[0]) >= 4:
-                middle = len(longest[0]) // 2
-                labels.append((longest[0][middle], longest[1][middle], f"{level:.4g}"))
+                # Not all in the same place, where lines are close.
+                place = len(longest[0]) * (1 + number % 3) // 4
+                labels.append((longest[0][place], longest[1][place], f"{level:.4g}"))
     if chart.level is not None:
         rows, columns = np.nonzero(np.isfinite(chart.z))
         texts = [f"{value:.2g}" for value in chart.z[rows, columns]]

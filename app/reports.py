@@ -12,7 +12,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app.jobs import OUT, SETTINGS, Job
-from app.spans import FIELD
+from app.spans import FIELD, PLAIN
 from app.state import PageState
 from app.worker.references import has_reference
 from solver.checked import dump
@@ -82,9 +82,8 @@ class Reports:
             self.start()
 
     def _make(self) -> None:
-        sx = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding": "4px 14px"}}
         self.kind = pmui.RadioButtonGroup(
-            label="", options=list(WORDS), value=FIGURES, size="small", margin=(6, 6), sx=sx
+            label="", options=list(WORDS), value=FIGURES, size="small", margin=(6, 6), sx=PLAIN
         )
         self.repeats = pmui.Select(
             label="Timed passes",

@@ -17,7 +17,8 @@ from solver.settings import Settings
 from solver.study.sweep.plan import axis_of
 
 EVEN, DECADES, LISTED = "even steps", "even ratios", "a list"
-FIELD: dict[str, Any] = {"size": "small", "margin": (6, 6)}
+FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
+PLAIN = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding": "4px 14px"}}
 
 
 class Span:
@@ -43,12 +44,12 @@ class Span:
         self._settings: Settings | None = None
         self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
         spacings = [EVEN, DECADES, LISTED]
-        self.spacing = pmui.Select(label="Values in", options=spacings, width=120, **FIELD)
+        self.spacing = pmui.Select(label="Values in", options=spacings, width=140, **FIELD)
         self.low = pmui.TextInput(label="from", width=110, **FIELD)
         self.high = pmui.TextInput(label="to", width=110, **FIELD)
-        self.count = pmui.IntInput(label="Values", value=2, start=2, width=90, **FIELD)
+        self.count = pmui.IntInput(label="Values", value=2, start=2, width=110, **FIELD)
         self.listed = pmui.TextInput(label="Values", width=330, **FIELD)
-        self.chosen = pmui.MultiChoice(label="Values", width=330, **FIELD)
+        self.chosen = pmui.CheckButtonGroup(label="", size="small", margin=(4, 6), sx=PLAIN)
         self.view = pn.FlexBox(
             self.name, self.spacing, self.low, self.high, self.count, self.listed, self.chosen
         )

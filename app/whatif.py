@@ -11,6 +11,7 @@ import numpy as np
 import panel as pn
 import panel_material_ui as pmui
 import param
+from bokeh.events import Tap
 
 from app.charts import form, in_units, keys, overlay
 from app.jobs import SETTINGS, Job
@@ -82,11 +83,9 @@ class WhatIf(param.Parameterized):
         self._form: tuple[Any, ...] = ()
         self._pipe = hv.streams.Pipe(data=None)
         self._make_fields()
-        self._chart = pn.pane.HoloViews(
-            None, sizing_mode="stretch_width", height=430, margin=(0, 6)
-        )
+        self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
         self.view = pn.Column(
-            pn.FlexBox(*self._ready),
+            pn.FlexBox(*self._ready, self._help),
             self._first.view,
             self._second.view,
             pn.FlexBox(self._of, self._at, self._start, self._cancel),
@@ -116,13 +115,13 @@ class WhatIf(param.Parameterized):
         self._cancel = _button("Cancel", "stop", self._on_cancel)
         self._mesh = _button(MESH, "grid_on", self._on_mesh)
         self._ready = [
-            _button(title, "", lambda title=title: self._on_ready(title), description=help)
-            for title, (help, _) in READY.items()
+            _button(title, "", lambda title=title: self._on_ready(title)) for title in READY
         ]
         self._table = pmui.FileDownload(
             label="Table (.csv)", callback=self.table, filename="what-if.csv", **FIELD
         )
         self._table.variant = "outlined"
+        self._help = pmui.Typography("", variant="body2", margin=(2, 8))
         self._message = pmui.Typography("", variant="body2", margin=(2, 8))
         self._meshed = pmui.Typography("", variant="body2", margin=(10, 8))
         self._keys = pn.pane.HTML("", margin=(4, 8))
@@ -173,7 +172,7 @@ class WhatIf(param.Parameterized):
         parameter = QUANTITIES[name].parameter if name in QUANTITIES else None
         self._at.param.update(value=at, visible=parameter is not None)
         if parameter is not None:
-            self._at.label = parameter.words.replace("{:g}", "…").strip()
+            self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
         for button, (_, make) in zip(self._ready, READY.values(), strict=True):
             button.visible = make(settings) is not None
         self._tell_mesh()
@@ -191,12 +190,12 @@ class WhatIf(param.Parameterized):
         at = self._at.value if self._at.visible else ""
         self.question = Question(vary, quantity_with(self._of.value, at))
         self._message.object = self.question.refusal(self._state.settings)
-        self._start.disabled = bool(self._message.object)
+        self._start.disabled, self._help.object = bool(self._message.object), ""
 
     def _on_ready(self, title: str) -> None:
         question = READY[title][1](self._state.settings)
         if question is not None:
-            self.question = question
+            self.question, self._help.object = question, READY[title][0]
             self.start()
 
     def _on_cancel(self) -> None:
@@ -241,17 +240,21 @@ class WhatIf(param.Parameterized):
             return
         self._form, self._keys.object = form(chart), keys([chart])
         self._pipe = hv.streams.Pipe(data=(chart, here))
-        made = hv.DynamicMap(lambda data: overlay(*data), streams=[self._pipe])
-        tap = hv.streams.Tap(source=made, transient=True)
-        tap.add_subscriber(self._on_tap)
-        self._chart.object = made
+        look = {"hooks": [self._listen]}
+        self._chart.object = hv.DynamicMap(
+            lambda data: overlay(*data).opts(**look), streams=[self._pipe]
+        )
 
-    def _on_tap(self, x: float | None = None, y: float | None = None) -> None:
-        """Open the run of the point that is tapped."""
+    def _listen(self, plot: Any, _element: Any) -> None:
+        """Listen to taps, as HoloViews' own stream does not on overlays."""
+        if not plot.handles.get("is_tapped"):
+            plot.handles["is_tapped"] = True
+            plot.state.on_event(Tap, lambda event: self.open_at(event.x, event.y))
+
+    def open_at(self, x: float, y: float) -> None:
+        """Open the run of the point at a place on the chart, if there is one."""
         chart = self.chart()
-        if x is None or y is None or chart is None or chart.runs is None or self._sweep is None:
-            return
-        place = nearest(chart, x, y)
+        place = nearest(chart, x, y) if chart is not None and chart.runs is not None else None
         if place is None:
             return
         plan = self._sweep.plan
@@ -283,7 +286,7 @@ class WhatIf(param.Parameterized):
         job = self._job
         if job is None:
             return
-        self._meshed.object = job.progress or "  \n".join(job.lines)
+        self._meshed.object = job.progress or "  \n".join(map(str.strip, job.lines))
         if job.is_over:
             self._mesh.label = MESH
             if self._looking is not None:
