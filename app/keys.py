@@ -23,7 +23,7 @@ HELP = {
 LISTEN = """
 document.addEventListener("keydown", (event) => {
   const target = event.composedPath()[0]
-  const takes = target.closest?.(taken)
+  const takes = target.closest?.(taken) || (event.key == " " && target.closest?.("button"))
   const name = (event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key
   if (takes || event.ctrlKey || event.metaKey || event.altKey || !names.includes(name)) { return }
   event.preventDefault()
@@ -33,7 +33,7 @@ document.addEventListener("keydown", (event) => {
 """
 
 
-TAKEN = "input, textarea, select, button, [role=slider], [role=tab], [role=dialog]"
+TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
 """Elements that take keys for themselves."""
 
 

@@ -39,7 +39,7 @@ IN_HEADER = {
         "padding": "2px 10px",
         "whiteSpace": "nowrap",
     },
-    "& button.Mui-selected, & button.Mui-selected:hover": {
+    "& button.Mui-selected, & button.Mui-selected:is(:hover, :focus)": {
         "color": "#0b3d66",
         "backgroundColor": "#fff",
     },

@@ -6,8 +6,20 @@ import re
 
 import pytest
 from pages import (
-    ANSWER, ENDLESS, Visit, button, drag, field, figure, figures, holds, is_solved, iteration,
-    painted, slider, status,
+    ANSWER,
+    ENDLESS,
+    Visit,
+    button,
+    drag,
+    field,
+    figure,
+    figures,
+    holds,
+    is_solved,
+    iteration,
+    painted,
+    slider,
+    status,
 )  # fmt: skip
 from playwright.sync_api import expect
 
