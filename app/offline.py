@@ -12,7 +12,17 @@ import numpy as np
 from bokeh.embed import file_html
 from bokeh.layouts import column, grid
 from bokeh.model import Model
-from bokeh.models import ColumnDataSource, CustomJS, Div, PointDrawTool, Slider
+from bokeh.models import (
+    ColumnDataSource,
+    CustomJS,
+    Div,
+    PointDrawTool,
+    Range1d,
+    Renderer,
+    Slider,
+    Span,
+)
+from bokeh.models.annotations import TextAnnotation
 from bokeh.resources import INLINE
 
 from app.frame import Frame, Selection
@@ -24,6 +34,15 @@ MOST_INSTANTS = 60
 HEIGHTS = {"Scene": 260, "Load path": 70}
 HEIGHT = 300
 """Pixels of a figure."""
+MOVING: dict[type[Model], list[str]] = {
+    ColumnDataSource: ["data"],
+    Range1d: ["start", "end"],
+    Span: ["location"],
+    TextAnnotation: ["text"],
+    Div: ["text"],
+    Renderer: ["visible"],
+}
+"""What an instant may change in a figure."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -61,13 +80,14 @@ def offline_page(
     ).tolist()
     at = int(np.argmin(np.abs(np.array(columns) - run.column(selection.phase))))
     instants: list[Values] = []
+    models = list({model for root in (*figures, caption) for model in root.references()})
     # The one that is looked at comes last, so that the page begins with it.
     for number in [*range(len(columns)), at]:
         time = float(run.instants[columns[number]])
         caption.text = f"{escape(run.sentence)} At {unit(time)} of {unit(end)}."
         for view in copies:
             view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
-        instants.append(_values([*figures, caption]))
+        instants.append(_values(models))
     instants.pop()
     slider = Slider(
         start=0,
@@ -102,23 +122,21 @@ def offline_page(
     return file_html(page, INLINE, title, suppress_callback_warning=True)
 
 
-def _values(roots: Sequence[Model]) -> Values:
-    """Data of all sources, and all else of the figures that is a number or a text."""
-    values: Values = {}
-    for model in {model for root in roots for model in root.references()}:
-        if isinstance(model, ColumnDataSource):
-            values[model, "data"] = dict(model.data)
-            continue
-        for name, value in model.properties_with_values(include_defaults=True).items():
-            if isinstance(value, bool | int | float | str) and name != "name":
-                values[model, name] = value
-    return values
+def _values(models: Sequence[Model]) -> Values:
+    """All that an instant changes in them."""
+    return {
+        (model, name): dict(model.data) if name == "data" else getattr(model, name)
+        for model in models
+        for kind, names in MOVING.items()
+        if isinstance(model, kind)
+        for name in names
+    }
 
 
 def _differs(key: tuple[Model, str], instants: Sequence[Values]) -> bool:
     """Whether a value is not the same at all instants."""
     first = instants[0][key]
-    others = [values[key] for values in instants[1:] if key in values]
+    others = [values[key] for values in instants[1:]]
     if not isinstance(first, dict):
         return any(value != first for value in others)
     return any(
