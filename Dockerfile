@@ -19,4 +19,4 @@ USER slipfront
 EXPOSE 5006
 HEALTHCHECK --interval=30s --timeout=5s --start-period=20s \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]
-CMD ["panel", "serve", "app", "--address", "0.0.0.0", "--port", "5006", "--liveness", "--unused-session-lifetime", "120000"]
+CMD ["panel", "serve", "app", "--address", "0.0.0.0", "--port", "5006", "--liveness", "--unused-session-lifetime", "120000", "--session-token-expiration", "86400"]

@@ -52,21 +52,21 @@ class Card:
         self._is_fitting = False
         self._state, self._changed = state, changed
         self._panes: dict[View, pn.pane.Bokeh] = {}
-        self._tabs = pmui.TabMenu(items=[], margin=0, sx=TABS, sizing_mode="stretch_width")
-        self._tabs.param.watch(lambda event: self._choose(), "active")
-        self.view = pn.Column(self._tabs, sizing_mode="stretch_both", min_height=170, margin=0)
+        self.tabs = pmui.TabMenu(items=[], margin=0, sx=TABS, sizing_mode="stretch_width")
+        self.tabs.param.watch(lambda event: self._choose(), "active")
+        self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
 
     @property
     def seen(self) -> View | None:
         """The view in sight."""
-        return self._fitting[self._tabs.active or 0] if self._fitting else None
+        return self._fitting[self.tabs.active or 0] if self._fitting else None
 
     def fit(self, state: PageState) -> None:
         """Offer the views that say anything about the present settings.
 
         The one that was chosen last is in sight, wherever it is offered.
         """
-        named = [view for view in self.views if view.name in state.plots]
+        named = [view for view in self.views if view.name in state.plots.split(",")]
         self._chosen = named[0] if named else self._chosen
         fitting = [view for view in self.views if view.applies(state.settings)]
         if fitting == self._fitting and (not named or self.seen in named):
@@ -75,18 +75,18 @@ class Card:
         self._fitting = fitting
         self.view.visible = bool(fitting)
         active = fitting.index(self._chosen) if self._chosen in fitting else 0
-        self._tabs.param.update(items=[view.name for view in fitting], active=active)
+        self.tabs.param.update(items=[view.name for view in fitting], active=active)
         self._is_fitting = False
         self._turn()
 
     def _choose(self) -> None:
         if not self._is_fitting:
             self._chosen = self.seen
-            mine = {view.name for view in self.views}
-            others = [name for name in self._state.plots if name not in mine]
-            first = self._chosen is self._fitting[0]
-            self._state.plots = others if first else [*others, self._chosen.name]
             self._turn()
+            mine = {view.name for view in self.views}
+            others = [name for name in self._state.plots.split(",") if name and name not in mine]
+            own = [] if self._chosen is self._fitting[0] else [self._chosen.name]
+            self._state.plots = ",".join([*others, *own])
 
     def _turn(self) -> None:
         """Make the figure of the view in sight, where it was not seen yet, and show the frame."""
@@ -97,6 +97,6 @@ class Card:
                 self._panes[view] = pane
             if state.frame is not None:
                 view.update(state.frame, state.selection, state.ghost)
-            if list(self.view) != [self._tabs, self._panes[view]]:
-                self.view[:] = [self._tabs, self._panes[view]]
+            if list(self.view) != [self.tabs, self._panes[view]]:
+                self.view[:] = [self.tabs, self._panes[view]]
         self._changed()

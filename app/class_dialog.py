@@ -32,23 +32,31 @@ class ClassDialog:
 
     def __init__(self, member: Member) -> None:
         self._member = member
-        self._message = pn.pane.HTML(margin=(4, 8), css_classes=["class"])
+        self._message = pn.pane.HTML(margin=(4, 8))
         self._act = _button("", self._do, variant="text")
         self._code = _button("Code", lambda: self.open(), variant="text")
-        self.view = pn.Row(self._message, self._act, self._code, visible=False, margin=0)
+        self.view = pn.Row(
+            self._message,
+            self._act,
+            self._code,
+            visible=False,
+            margin=0,
+            align="center",
+            css_classes=["class"],
+        )
         self.dialog = pmui.Dialog(title="A class", width_option="sm", show_close_button=True)
-        self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
-        self._refusal = pn.pane.Markdown(margin=0)
         member.param.watch(lambda event: self._say(), "message")
         self._say()
 
     def open(self) -> None:
         """Open the dialog."""
-        self._refusal.object = ""
         self.dialog[:] = self._led() if self._member.leads else self._offered()
         self.dialog.open = True
 
     def _offered(self) -> list[Any]:
+        # Models that were taken off the page are not put on it again.
+        self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
+        self._refusal = pn.pane.Markdown(margin=0)
         begin = _button("Begin a class", self._begin)
         join = _button("Join", self._join, variant="outlined")
         return [

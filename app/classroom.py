@@ -13,8 +13,9 @@ from typing import Any
 import param
 
 from app.history import History
-from app.lessons.poll import Poll
+from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
+from app.poll import Poll
 from app.state import PageState
 from app.supervisor import Supervisor
 
@@ -118,10 +119,11 @@ class Classroom:
     def poll_for(self, member: Member) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
         leader = self.leader
-        if leader is None or leader.lesson == "" or self.is_over:
+        if leader is None or leader.lesson not in LESSONS or self.is_over:
             return None
         votes = list(self._votes.values())
-        counts = tuple(votes.count(choice) for choice in range(max(votes, default=0) + 1))
+        choices = range(len(LESSONS[leader.lesson].choices))
+        counts = tuple(votes.count(choice) for choice in choices)
         return Poll(
             leads=self.is_led_by(member),
             predicted=len(votes),
@@ -314,7 +316,7 @@ class Member(param.Parameterized):
             state.history, state.number = room.leader.history, room.leader.number
             state.began = state.number
             values |= {name: getattr(room.leader, name) for name in SHARED}
-        changed = {n: v for n, v in values.items() if v is not getattr(state, n)}
+        changed = {name: value for name, value in values.items() if value != getattr(state, name)}
         state.param.update(**changed)
         self.message = self._sentence(room)
         if room.is_alone and not room.is_over:

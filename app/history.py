@@ -45,6 +45,12 @@ class History:
         search = [kept.iteration for kept in self._frames if not kept.is_answer]
         return self._frames[max(bisect_right(search, iteration) - 1, 0)]
 
+    def after(self, iteration: int) -> int:
+        """Number of the next iterate of the search that is kept; one more behind the last."""
+        numbers = [kept.iteration for kept in self._frames if not kept.is_answer]
+        place = bisect_right(numbers, iteration)
+        return numbers[place] if place < len(numbers) else iteration + 1
+
 
 def _key(frame: Frame) -> tuple[int, bool]:
     return frame.iteration, frame.is_answer

@@ -9,10 +9,11 @@ from html import escape
 from typing import Any
 
 import numpy as np
-from bokeh.embed import file_html
+from bokeh.embed import components
 from bokeh.layouts import column, grid
 from bokeh.model import Model
 from bokeh.models import (
+    Column,
     ColumnDataSource,
     CustomJS,
     Div,
@@ -23,11 +24,12 @@ from bokeh.models import (
     Span,
 )
 from bokeh.models.annotations import TextAnnotation
-from bokeh.resources import INLINE
 
+from app.charts import library
 from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.view import View
+from app.worker.geometry import thinned
 from solver.checked import dump
 
 MOST_INSTANTS = 60
@@ -43,6 +45,16 @@ MOVING: dict[type[Model], list[str]] = {
     Renderer: ["visible"],
 }
 """What an instant may change in a figure."""
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Slipfront: {name}</title>
+{library}
+{script}
+<body>{body}</body>
+</html>
+"""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -75,9 +87,7 @@ def offline_page(
     caption = Div(text="", sizing_mode="stretch_width")
     run, end = frame.run, float(frame.run.instants[-1])
     unit = unit_for(end, "s")
-    columns = np.unique(
-        np.linspace(0, len(run.instants) - 1, MOST_INSTANTS).round().astype(int)
-    ).tolist()
+    columns = thinned(len(run.instants), MOST_INSTANTS).tolist()
     at = int(np.argmin(np.abs(np.array(columns) - run.column(selection.phase))))
     instants: list[Values] = []
     models = list({model for root in (*figures, caption) for model in root.references()})
@@ -89,14 +99,8 @@ def offline_page(
             view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
         instants.append(_values(models))
     instants.pop()
-    slider = Slider(
-        start=0,
-        end=len(columns) - 1,
-        value=at,
-        step=1,
-        title="Instant",
-        sizing_mode="stretch_width",
-    )
+    last = len(columns) - 1
+    slider = Slider(start=0, end=last, value=at, title="Instant", sizing_mode="stretch_width")
     moving = [key for key in instants[0] if _differs(key, instants)]
     arguments = {
         "models": [model for model, _ in moving],
@@ -104,22 +108,23 @@ def offline_page(
         "values": [[values[key] for values in instants] for key in moving],
     }
     slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
-    for view, made in zip(copies, figures, strict=True):
+    below = Div(text=_below(frame, tables), sizing_mode="stretch_width")
+    page = _arranged(copies, slider, caption, below)
+    script, body = components(page)
+    return PAGE.format(name=run.settings.scene, library=library("bokeh-widgets"), script=script, body=body)
+
+
+def _arranged(views: Sequence[View], slider: Slider, caption: Div, below: Div) -> Column:
+    """The scene and its load path over the whole width, and plots two in a row."""
+    for view in views:
+        made = view.figure
         made.sizing_mode, made.height = "stretch_width", HEIGHTS.get(view.name, HEIGHT)
         # What is dragged there moves nothing here.
         made.tools = [tool for tool in made.tools if not isinstance(tool, PointDrawTool)]
-    wide = [made for view, made in zip(copies, figures, strict=True) if view.name in HEIGHTS]
-    rest = [made for made in figures if made not in wide]
-    page = column(
-        slider,
-        caption,
-        *wide,
-        grid(rest, ncols=2, sizing_mode="stretch_width"),
-        Div(text=_below(frame, tables), sizing_mode="stretch_width"),
-        sizing_mode="stretch_width",
-    )
-    title = f"Slipfront: {run.settings.scene}"
-    return file_html(page, INLINE, title, suppress_callback_warning=True)
+    wide = [view.figure for view in views if view.name in HEIGHTS]
+    rest = [view.figure for view in views if view.name not in HEIGHTS]
+    plots = grid(rest, ncols=2, sizing_mode="stretch_width")
+    return column(slider, caption, *wide, plots, below, sizing_mode="stretch_width")
 
 
 def _values(models: Sequence[Model]) -> Values:

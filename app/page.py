@@ -9,16 +9,21 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app import glossary
 from app.class_dialog import ClassDialog
 from app.classroom import Member
 from app.controls import Controls
+from app.export import TakeAway
 from app.keys import listen
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
 from app.live import STYLE, Live, column
 from app.pages import FULL, PAGES
+from app.reports import Reports
 from app.state import TABS, PageState
 from app.supervisor import Supervisor
+from app.whatif import WhatIf
+from solver.settings import Settings
 
 HEADER = 48
 """Pixels that the header takes."""
@@ -68,28 +73,37 @@ class Page:
             state, self.live.transport, self._arrange, lambda: self.member.open_counts()
         )
         self.lesson.view.stylesheets = [STYLE]
-        self.lesson.view.stylesheets = [STYLE]
         self.classroom = classroom = ClassDialog(self.member)
+        classroom.view.stylesheets = [STYLE]
         self._beside = column("beside", self.live.view)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         classroom.view.param.watch(lambda event: self._place(), "visible")
+        take_away, self._words = TakeAway(state, self.live.display), glossary.dialog()
         actions = {
             "Lessons": ("school", self.lesson.offer),
             "A class": ("groups", classroom.open),
             "Presenter view (p)": ("slideshow", self.present),
+            "Take away": ("download", take_away.open),
+            "Keys and words (?)": ("help_outline", self._help),
         }
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header(actions), self.lesson.dialog, classroom.dialog],
-            main=[self._main],
+            header=[self._header(actions)],
+            main=[
+                self._main,
+                self.lesson.dialog,
+                classroom.dialog,
+                take_away.view,
+                self._words,
+            ],
             busy_indicator=None,
             sx=COMPACT,
         )
         self.lesson.view.param.watch(lambda event: self._on_lesson(), "visible")
-        listen(document, {**self.live.transport.keys(), "p": self.present})
+        listen(document, {**self.live.transport.keys(), "p": self.present, "?": self._help})
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
         state.param.watch(lambda *events: self.lesson.update(), ["frame", "selection"])
@@ -135,9 +149,18 @@ class Page:
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
         if tab not in self._tabs:
-            self._tabs[tab] = pn.pane.Markdown(tab)
+            made = WhatIf(self.state, self._open_run) if tab == TABS[1] else Reports(self.state)
+            self._tabs[tab] = made.view
         self._place()
         self.live.look()
+
+    def _open_run(self, settings: Settings) -> None:
+        """Show a run on the live tab."""
+        self.state.tab = TABS[0]
+        self.state.adopt(settings)
+
+    def _help(self) -> None:
+        self._words.open = True
 
     def _on_lesson(self) -> None:
         """Give a lesson the room of the controls: it has those that it speaks of."""
@@ -146,11 +169,13 @@ class Page:
 
     def _place(self) -> None:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
+        # What comes in front is appended, and put there by the style sheet: a column whose children
+        # change their order loses some of them.
         lesson, classroom = self.lesson.view, self.classroom.view
         self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
         views = (
-            (self._beside, [lesson] * lesson.visible + [self.live.view]),
-            (self._main, [classroom] * classroom.visible + [self._tabs[self.state.tab]]),
+            (self._beside, [self.live.view] + [lesson] * lesson.visible),
+            (self._main, [self._tabs[self.state.tab]] + [classroom] * classroom.visible),
         )
         for place, objects in views:
             if list(place) != objects:

@@ -10,7 +10,6 @@ import param
 
 from app.units import Unit, number, unit_of, units_of_points
 from solver.definitions import CurveParameter, Parameter, about, allowed
-from solver.phrases import Amount, Phrase
 from solver.refusal import RefusedError
 from solver.settings import Settings
 
@@ -20,6 +19,7 @@ HALVINGS = 12
 """Of a slider's way, by which the last value that holds is sought."""
 LONGEST = 40
 """Characters of a text that is refused."""
+NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 
 
 def message_of(refusal: RefusedError, settings: Settings, name: str = "", value: Any = None) -> str:
@@ -35,13 +35,14 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
         The setting that was to change, and to what; another may be the one that is refused.
     """
     definitions = settings.definitions()
-    remedy = _in_titles(settings, refusal.remedy, Unit(""))
+    remedy = _in_titles(settings, refusal.remedy)
     definition = definitions.get(refusal.name)
     if definition is None:
-        limits = _in_titles(settings, refusal.allowed, Unit(""))
+        limits = _in_titles(settings, refusal.allowed)
         return f"{refusal.name} cannot be {_written(refusal.value)}: {remedy}. Allowed: {limits}."
     title, unit = about(definition).title, _unit_of(settings, refusal.name)
-    limits = _in_titles(settings, _allowed(definition, refusal), unit)
+    limits = _in_unit(_allowed(definition, refusal), _si_of(settings, refusal.name), unit)
+    limits = _in_titles(settings, limits)
     refused = _written(refusal.value, unit)
     if name in ("", refusal.name):
         return f"{title} cannot be {refused}: {remedy}. Allowed: {limits}."
@@ -60,6 +61,12 @@ def _unit_of(settings: Settings, name: str) -> Unit:
     return unit_of(definition)
 
 
+def _si_of(settings: Settings, name: str) -> str:
+    definition = settings.definitions()[name]
+    is_curve = isinstance(definition, CurveParameter)
+    return settings.curve_units(name)[1] if is_curve else about(definition).unit
+
+
 def _allowed(definition: Parameter, refusal: RefusedError) -> str:
     """What a setting takes, as its widget offers it."""
     if refusal.allowed == allowed(definition) and isinstance(definition, CurveParameter):
@@ -68,23 +75,23 @@ def _allowed(definition: Parameter, refusal: RefusedError) -> str:
     return refusal.allowed
 
 
-def _in_titles(settings: Settings, text: str, unit: Unit) -> str:
-    """A text with titles for names of settings, and its amounts in a unit."""
-    if isinstance(text, Amount):
-        return unit(text.value, EXACT) if text.unit else number(text.value, EXACT)
+def _in_unit(text: str, si: str, unit: Unit) -> str:
+    """A text with its amounts of an SI unit in another unit."""
+    amounts = rf"{NUMBER} {re.escape(si)}(?![\w/^·])"
+    return re.sub(amounts, lambda match: unit(float(match[1]), EXACT), text) if si else text
+
+
+def _in_titles(settings: Settings, text: str) -> str:
+    """A text with titles for names of settings, and with numbers as the page prints them."""
     definitions = settings.definitions()
-    if isinstance(text, Phrase):
-        parts = (
-            about(definitions[part]).title
-            if part in definitions
-            else _in_titles(settings, part if isinstance(part, str) else str(part), unit)
-            for part in text.parts
-        )
-        return _in_titles(settings, text.template, unit).format(*parts)
-    for name, definition in definitions.items():
-        if "_" in name:
-            text = re.sub(rf"\b{name}\b", about(definition).title, text)
-    return text
+
+    def titled(match: re.Match[str]) -> str:
+        lead, name = match[1] or "", match[2]
+        return lead + about(definitions[name]).title if lead or "_" in name else match[0]
+
+    text = re.sub(NUMBER, lambda match: number(float(match[1]), EXACT), text)
+    # Many names are common words: these mean the setting where it is to be lowered or raised.
+    return re.sub(rf"\b(lower |raise |or |\d to )?({'|'.join(definitions)})\b", titled, text)
 
 
 def _written(value: object, unit: Unit | None = None) -> str:

@@ -11,7 +11,6 @@ import param
 
 from app.frame import Frame, Selection
 from app.history import History
-from app.lessons.poll import Poll
 from app.messages import (
     WHOLE,
     Began,
@@ -27,6 +26,7 @@ from app.messages import (
     Start,
     Step,
 )
+from app.poll import Poll
 from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -170,7 +170,7 @@ class PageState(param.Parameterized):
         """Do one iteration and wait; of a run that has ended, show the next."""
         shown, newest = self.frame, self.newest
         if shown is not None and newest is not None and shown is not newest:
-            self.seek(shown.iteration + 1)
+            self.seek(self.history.after(shown.iteration))
             return
         self.param.update(running=False, iteration=None)
         self.send(Step())

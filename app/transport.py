@@ -14,6 +14,8 @@ PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
 TICK = 50
 """Milliseconds between two instants that are shown, at least."""
+ROUND = {"minWidth": "30px", "padding": "4px", "& .MuiButton-startIcon": {"margin": 0}}
+PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
 
@@ -35,13 +37,36 @@ class Transport:
         self._state, self._document = state, document
         self._playing: tuple[Any, float, float, float] | None = None
         self._is_updating = False
+        self.view = pn.Row(*self._buttons(), *self._choices(), margin=0)
+        self.play_button.on_click(lambda event: self.play())
+        state.param.watch(
+            lambda *events: self._show(),
+            ["settings", "frame", "newest", "running", "is_costly", "pinned"],
+        )
+        self._show()
+
+    def _buttons(self) -> list[Any]:
+        """Buttons that start, stop and pin a run; and one beside the time line."""
         small: dict[str, Any] = {"size": "small", "margin": (2, 2)}
-        self._run = pmui.IconButton(icon="pause", description="Run or pause (space)", **small)
+        # Not an IconButton, which keeps its first icon.
+        changing: dict[str, Any] = {"label": "", "variant": "text", "color": "default", "sx": ROUND}
+        self._run = pmui.Button(
+            icon="pause", description="Run or pause (space)", **changing, **small
+        )
+        self.play_button = pmui.Button(
+            icon="play_circle", description="Play through time (t)", margin=(10, 2), **changing
+        )
         step = pmui.IconButton(icon="skip_next", description="One iteration (s)", **small)
         reset = pmui.IconButton(icon="replay", description="From the start (r)", **small)
+        self._pin = pmui.IconButton(icon="push_pin", description=PIN, **small)
         self._run.on_click(lambda event: self.toggle())
-        step.on_click(lambda event: state.step())
-        reset.on_click(lambda event: state.reset())
+        step.on_click(lambda event: self._state.step())
+        reset.on_click(lambda event: self._state.reset())
+        self._pin.on_click(lambda event: self._state.pin())
+        return [self._run, step, reset, self._pin]
+
+    def _choices(self) -> list[Any]:
+        """What is watched, how fast, and which iteration."""
         self._way = pmui.RadioButtonGroup(
             options=WATCH,
             value="accuracy",
@@ -51,13 +76,9 @@ class Transport:
             sx={"& button": {"textTransform": "none", "padding": "3px 9px"}},
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
+        more: dict[str, Any] = {"size": "small", "width": 118, "margin": (6, 4)}
         pace = pmui.Select.from_param(
-            state.param.pace,
-            label="Pace",
-            options=list(PACES),
-            size="small",
-            width=118,
-            margin=(6, 4),
+            self._state.param.pace, label="Pace", options=list(PACES), **more
         )
         self._iteration = pmui.IntSlider(
             label="Iteration",
@@ -70,15 +91,7 @@ class Transport:
             margin=(0, 10),
         )
         self._iteration.param.watch(lambda event: self._seek(event.new), "value")
-        self.play_button = pmui.IconButton(
-            icon="play_circle", description="Play through time (t)", margin=(8, 2)
-        )
-        self.play_button.on_click(lambda event: self.play())
-        self.view = pn.Row(self._run, step, reset, self._way, pace, self._iteration, margin=0)
-        state.param.watch(
-            lambda *events: self._show(), ["settings", "frame", "newest", "running", "is_costly"]
-        )
-        self._show()
+        return [self._way, pace, self._iteration]
 
     def keys(self) -> dict[str, Any]:
         """What keys do, by their names."""
@@ -137,9 +150,12 @@ class Transport:
             column = min(max(column, 0), len(times) - 1)
             self._state.select(phase=float(times[column] / times[-1]))
 
-    def _move_iteration(self, iterations: int) -> None:
-        if self._state.frame is not None:
-            self._state.seek(self._state.frame.iteration + iterations)
+    def _move_iteration(self, way: int) -> None:
+        """Show the kept iterate before the one that is shown, or after it."""
+        state = self._state
+        if state.frame is not None:
+            shown = state.frame.iteration
+            state.seek(state.history.after(shown) if way > 0 else shown - 1)
 
     def _seek(self, iteration: int) -> None:
         if not self._is_updating:
@@ -163,6 +179,7 @@ class Transport:
             elif state.is_over:
                 icon = "replay"
             self._run.icon = icon
+            self._pin.color = "default" if state.pinned is None else "primary"
             if state.settings.finish in WATCH.values():
                 self._way.value = state.settings.finish
             if newest is not None and frame is not None:

@@ -16,8 +16,7 @@ from typing import Any
 
 import param
 
-from solver.phrases import Amount, Phrase, joined
-from solver.refusal import RefusedError
+from solver.refusal import RefusedError, plain
 
 Pairs = tuple[tuple[float, float], ...]
 Parameter = param.Parameter[Any]
@@ -196,17 +195,18 @@ def allowed(definition: Parameter) -> str:
     if isinstance(definition, param.Boolean):
         return "true or false"
     if isinstance(definition, param.Selector):
-        return joined(", ", definition.objects)
-    low, high = (Amount(end, about(definition).unit) for end in definition.bounds)
+        return ", ".join(definition.objects)
+    low, high = definition.bounds
+    least, most = (f"{plain(end)} {about(definition).unit}".strip() for end in (low, high))
     if isinstance(definition, param.Integer):
-        return Phrase("a whole number from {} to {}", low, high)
-    if high.value < FAR:
-        return Phrase("a number from {} to {}", low, high)
-    if low.value < 0.0:
-        return Phrase("any number (at most {} in size)", high)
-    if low.value > 0.0:
-        return Phrase("any number above 0 (from {} to {})", low, high)
-    return Phrase("any number from 0 on (to {})", high)
+        return f"a whole number from {least} to {most}"
+    if high < FAR:
+        return f"a number from {least} to {most}"
+    if low < 0.0:
+        return f"any number (at most {most} in size)"
+    if low > 0.0:
+        return f"any number above 0 (from {least} to {most})"
+    return f"any number from 0 on (to {most})"
 
 
 def unknown(name: str, value: object, known: Iterable[str]) -> SettingError:
@@ -266,19 +266,17 @@ def _checked_curve(
     pairs = []
     for row, pair in enumerate(value, start=1):
         if not isinstance(pair, list | tuple) or len(pair) != 2:
-            raise refuse(Phrase("row {} must be a pair of numbers", row))
+            raise refuse(f"row {row} must be a pair of numbers")
         if any(isinstance(entry, bool) or not isinstance(entry, int | float) for entry in pair):
-            raise refuse(Phrase("row {} has an entry that is not a number", row))
+            raise refuse(f"row {row} has an entry that is not a number")
         if not all(math.isfinite(entry) for entry in pair if isinstance(entry, float)):
-            raise refuse(Phrase("row {} has an entry that is not finite", row))
+            raise refuse(f"row {row} has an entry that is not finite")
         if any(abs(entry) > 1e15 for entry in pair):
-            raise refuse(Phrase("row {} has an entry beyond {} in size", row, Amount(1e15)))
+            raise refuse(f"row {row} has an entry beyond {plain(1e15)} in size")
         pairs.append((float(pair[0]), float(pair[1])))
     for row, (before, after) in enumerate(pairwise(pairs), start=2):
         if after[0] <= before[0]:
-            raise refuse(
-                Phrase("row {}: {} must increase from row to row", row, definition.abscissa)
-            )
+            raise refuse(f"row {row}: {definition.abscissa} must increase from row to row")
     return tuple(pairs)
 
 

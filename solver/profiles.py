@@ -9,7 +9,7 @@ import numpy as np
 from solver.arrays import Array, Indices
 from solver.definitions import Pairs
 from solver.loads import interpolate
-from solver.phrases import Amount, Phrase
+from solver.refusal import plain
 
 UNSEEN = 0.01
 """Share of its range by which a table may differ between nodes from the line through them."""
@@ -121,14 +121,11 @@ def unseen(name: str, table: Pairs, length: float, elements: int, order: int) ->
         return None
     finer = range(elements + 1, MOST_ELEMENTS + 1)
     sees = (str(n) for n in finer if _off_nodes(table, length, n * order).max() <= most)
-    return Phrase(
-        "{}: {} of {} points lie between nodes, up to {} off the line through them; what is lower "
-        "than both nodes counts at the nearer one, for all of its share; {} elements would see it",
-        name,
-        int(np.count_nonzero(off > most)),
-        len(table),
-        Amount(float(f"{off.max():.3g}"), "m"),
-        next(sees, Phrase("more than {}", MOST_ELEMENTS)),
+    return (
+        f"{name}: {np.count_nonzero(off > most)} of {len(table)} points lie between nodes, up to "
+        f"{plain(float(f'{off.max():.3g}'))} m off the line through them; what is lower than both "
+        "nodes counts at the nearer one, for all of its share; "
+        f"{next(sees, f'more than {MOST_ELEMENTS}')} elements would see it"
     )
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-
-from solver.phrases import plain
+from typing import Any
+import re
 
 
 class RefusedError(ValueError):
@@ -17,6 +17,16 @@ class RefusedError(ValueError):
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
         self.name, self.value = name, value
         self.allowed, self.remedy = allowed, remedy
+
+    def __reduce__(self) -> tuple[type[RefusedError], tuple[Any, ...]]:
+        """What another process makes it of again."""
+        return type(self), (self.name, self.value, self.allowed, self.remedy)
+
+
+def plain(value: float) -> str:
+    """A number as one types it: 1e15, and not 1e+15."""
+    text = str(value) if isinstance(value, int) else f"{value:g}"
+    return re.sub(r"e\+?(-?)0*", r"e\1", text)
 
 
 def check_range(part: object, name: str, low: float, high: float, *, above: bool = False) -> None:

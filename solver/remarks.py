@@ -10,7 +10,6 @@ from solver.discrete.stack.data import StackData
 from solver.discrete.stack.equilibrium import is_upright
 from solver.latin import Iterate
 from solver.laws import OPEN
-from solver.phrases import Phrase
 from solver.scenes import left_out, structure_of
 from solver.settings import Settings
 
@@ -36,21 +35,15 @@ def remarks_on(settings: Settings, iterate: Iterate) -> list[str]:
     if standing.any():
         first = float(iterate.problem.instants[np.argmax(standing)])
         remarks.append(
-            Phrase(
-                "From {} s on the body tips: it stands on one end of its base. Take a longer or "
-                "lower body, less friction, or a side that keeps it from turning.",
-                f"{first:.4g}",
-            )
+            f"From {first:.4g} s on the body tips: it stands on one end of its base. Take a longer "
+            "or lower body, less friction, or a side that keeps it from turning."
         )
     growth = contact_growth(iterate)
     if growth > MOST_GROWTH:
         remarks.append(
-            Phrase(
-                "The contact grows by up to {} points from an instant to the next, so that "
-                "friction jumps from point to point: raise instants until it grows by {} at most.",
-                growth,
-                MOST_GROWTH,
-            )
+            f"The contact grows by up to {growth} points from an instant to the next, so that "
+            "friction jumps from point to point: raise instants until it grows by "
+            f"{MOST_GROWTH} at most."
         )
     return remarks
 

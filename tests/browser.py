@@ -16,17 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, Playwright, ViewportSize, sync_playwright
+from playwright.sync_api import Page, Playwright, expect
 from processes import PATIENCE
 
 ROOT = Path(__file__).resolve().parents[1]
-
-
-def _heed_interrupts() -> None:
-    """Undo what a shell does to all that it runs in the background: it has interrupts ignored."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 FLAGS = [
     "--no-sandbox",
     "--disable-gpu",
@@ -36,36 +29,25 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+NO_BROWSER = "the page tests need Chromium: apt-get install chromium"
 
 
 def free_port() -> int:
+    """A port that nobody listens on."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         number: int = free.getsockname()[1]
     return number
 
 
-NO_BROWSER = "the page tests need Chromium: apt-get install chromium"
-
-
 def chromium() -> str:
-    """Find the system's Chromium; skip the test without one, where nobody promised one (CI)."""
+    """The system's Chromium; without it the test is skipped, where nobody promised one (CI)."""
     for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
             return path
     if os.environ.get("CI"):
         pytest.fail(NO_BROWSER, pytrace=False)
     pytest.skip(NO_BROWSER)
-
-
-@contextmanager
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
-        try:
-            yield opened
-        finally:
-            opened.close()
 
 
 class Chrome:
@@ -79,22 +61,21 @@ class Chrome:
         self._browser = playwright.chromium.launch(executable_path=chromium(), args=FLAGS)
         self._free: dict[tuple[tuple[str, Any], ...], list[Page]] = {}
         self._used: dict[Page, list[Page]] = {}
+        expect.set_options(timeout=1e3 * PATIENCE)
 
     def new_page(self, width: int = 1280, height: int = 720, **device: Any) -> Page:
-        """Open an empty page of a size, on a device of a kind; nothing moves by itself on it."""
-        device = {"reduced_motion": "reduce", **device}
+        """An empty page of a size, on a device of a kind."""
         free = self._free.setdefault(tuple(sorted(device.items())), [])
         page = free.pop() if free else self._browser.new_page(**device)
         self._used[page] = free
         page.set_default_timeout(1e3 * PATIENCE)
-        page.set_viewport_size(ViewportSize(width=width, height=height))
+        page.set_viewport_size({"width": width, "height": height})
         return page
 
     def leave(self, page: Page) -> None:
         """Close a page: what it has stored is forgotten, and its window is free for another."""
         page.evaluate("localStorage.clear(), sessionStorage.clear()")
         page.context.clear_cookies()
-        page.emulate_media(color_scheme="light")
         page.mouse.move(0.0, 0.0)
         page.goto("about:blank")
         self._used.pop(page).append(page)
@@ -115,26 +96,26 @@ class Server:
         serves: Sequence[str] = (),
         place: Path = ROOT,
     ) -> None:
-        port = port or free_port()
-        self.port = port
-        self.address = f"http://localhost:{port}/app"
-        self.health = f"http://localhost:{port}/liveness"
+        self.port = port or free_port()
+        self.root = f"http://localhost:{self.port}"
+        self.address = f"{self.root}/app"
+        self.health = f"{self.root}/liveness"
         self._log = log
         # The script, as a user calls it: `python -m panel` finds modules that it does not.
         panel = str(Path(sys.executable).with_name("panel"))
         serves = serves or (panel, "serve", "app")
-        command = [*serves, "--port", str(port), "--liveness", *options]
         with log.open("w") as output:
             self._process = subprocess.Popen(
-                command,
+                [*serves, "--port", str(self.port), "--liveness", *options],
                 cwd=place,
                 stdout=output,
                 stderr=output,
                 start_new_session=True,
-                preexec_fn=_heed_interrupts,
+                preexec_fn=_take_interrupts,
             )
 
     def wait(self, seconds: float = PATIENCE) -> None:
+        """Wait until it answers."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             code = self._process.poll()
@@ -149,15 +130,17 @@ class Server:
 
     @property
     def pid(self) -> int:
+        """Number of its process."""
         return self._process.pid
 
     @property
     def log(self) -> str:
+        """What it has printed."""
         return self._log.read_text()
 
     def processes(self) -> list[int]:
-        """Give the processes of the server's session, itself included."""
-        found = []
+        """The processes of its session, itself included, the oldest first."""
+        pids = []
         for entry in Path("/proc").iterdir():
             if entry.name.isdigit():
                 try:
@@ -165,10 +148,27 @@ class Server:
                 except OSError:
                     continue
                 if fields[0] != "Z" and int(fields[3]) == self._process.pid:
-                    found.append(int(entry.name))
-        return found
+                    pids.append((int(fields[19]), int(entry.name)))
+        return [pid for _, pid in sorted(pids)]
 
     def stop(self, number: int = signal.SIGTERM) -> None:
+        """End it."""
         if self._process.poll() is None:
             os.kill(self._process.pid, number)
             self._process.wait(PATIENCE)
+
+
+@contextmanager
+def serving(log: Path, port: int = 0, *options: str, **more: Any) -> Iterator[Server]:
+    """A server that answers, and ends in any case."""
+    server = Server(log, port, *options, **more)
+    try:
+        server.wait()
+        yield server
+    finally:
+        server.stop()
+
+
+def _take_interrupts() -> None:
+    """Undo what a shell does to all that it runs in the background: it has interrupts ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -24,13 +24,13 @@ import time
 from itertools import pairwise
 from pathlib import Path
 
+from app.components.form import POINTS
 from browser import Server
 from pages import OURS
 from tornado.httpclient import AsyncHTTPClient
 from tornado.websocket import WebSocketClosedError
 from web_pages import WebPage, until
 
-from app.components.form import POINTS
 from solver.scenes import CATALOGUE
 
 EXPIRY = 60.0

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from bars import SMALL_BAR as SMALL
 
+from app.link import read
 from solver.checked import dump
 from solver.cli import main
 from solver.definitions import SettingError, about, allowed
@@ -155,18 +156,17 @@ def test_the_names_of_the_contract_are_settings_of_the_bar_with_their_defaults()
 
 
 def test_a_file_saved_by_one_front_is_run_by_the_other(tmp_path, capsys):
-    from app.shell.address import query_of, settings_from_query
-
-    chosen, _ = settings_from_query(
+    place, _ = read(
         "?elements=12&instants=11&substructures=3&load=[[0,0],[1,700]]&friction_profile=rising"
     )
+    chosen = place.settings
     saved = tmp_path / "slipfront.toml"
     saved.write_text(dump(chosen), encoding="utf-8")
     assert main(["run", str(saved), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert BarSettings.checked(found["settings"]).values() == chosen.values()
     again = settings_from_toml(saved.read_text(encoding="utf-8"))
-    assert query_of(again) == query_of(chosen)
+    assert again.values() == chosen.values()
 
 
 @pytest.mark.parametrize("kind", ["table", "settings", "lesson"])

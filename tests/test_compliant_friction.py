@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shown_pages import SMALL
+from small_scenes import SMALL
 
 from solver.latin import Ending, iterations, solve
 from solver.laws import Compliant, Component, Contact, Sliders, Unilateral

@@ -104,6 +104,19 @@ def test_what_is_refused_is_told_at_the_field_in_its_unit_and_the_value_that_hol
     assert not state.refusal
 
 
+def test_a_refusal_has_the_units_and_names_of_the_page_and_keeps_its_other_words() -> None:
+    state = of_scene("bar")
+    state.change(pressure_load=[[0.0, 1.0], [1.0, -1.0]])
+    assert "pressures of at least 0 kN/m" in state.refusal
+    state.change(peak=2e15)
+    assert state.refusal.endswith("Allowed: any number (at most 1·10¹⁵ N in size).")
+    state.change(body_load="nothing")
+    assert "delayed, cycles." in state.refusal
+    state = of_scene("block")
+    state.change(substructures_up=state.settings.elements_up + 1)
+    assert "lower Substructures up or raise Elements up" in state.refusal
+
+
 def test_an_empty_field_is_the_default() -> None:
     state = of_scene("bar")
     control = Control("peak", state)

@@ -8,7 +8,7 @@ from urllib.parse import parse_qsl
 import numpy as np
 import pytest
 
-from app.shell.address import settings_from_query
+from app.link import read
 from solver.discrete.rods.rods import Rods
 from solver.reference.choice import reference_of
 from solver.reference.closed_forms.half_plane import HalfPlane
@@ -50,7 +50,7 @@ PRESSED = 0.1
 def settings_of(title: str) -> Any:
     (case,) = [case for case in cases() if case.title == title]
     assert dict(parse_qsl(case.address.removeprefix("?")))["scene"] in CATALOGUE
-    return settings_from_query(case.address)[0]
+    return read(case.address)[0].settings
 
 
 @pytest.mark.parametrize(("title", "known"), KNOWN.items())

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from valid_settings import DEFINITIONS, refusal
 
+from app.link import read as read_address
 from solver.curves import GivenCurve, curve_of
 from solver.definitions import SettingError
 from solver.files import settings_from_command, settings_from_toml
@@ -131,15 +132,13 @@ def test_a_settings_file_that_cannot_be_read_is_refused(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("path", ["/etc/passwd", "load.csv", "../load.csv"])
 def test_an_address_never_reads_a_file(tmp_path, monkeypatch, path):
-    from app.shell.address import settings_from_query
-
     monkeypatch.chdir(tmp_path)
     (tmp_path / "load.csv").write_text("0,0\n1,100\n", encoding="utf-8")
     opened = []
     monkeypatch.setattr(Path, "read_text", lambda self, *rest, **more: opened.append(self))
     for text in (path, f'"{path}"'):
-        chosen, complaint = settings_from_query(f"?load={text}")
-        assert chosen.load == "sine"
+        place, complaint = read_address(f"?load={text}")
+        assert place.settings.load == "sine"
         assert "choose a preset" in complaint
     assert not opened
 

@@ -21,15 +21,11 @@ from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
-import yaml
-from browser import Server
+from browser import serving
 from packaging.requirements import Requirement
 from pages import status, visits
 from playwright.sync_api import expect
-from processes import PATIENCE, wait_for
-from test_server_leaves_nothing_behind import end_with_pages
-
-from app.session.pages import VARIABLE
+from processes import PATIENCE, is_alive, wait_for
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = """
@@ -117,25 +113,6 @@ def test_the_image_is_slim_not_root_and_has_one_blas_thread():
     variables = " ".join(instructions("ENV"))
     assert "OPENBLAS_NUM_THREADS=1" in variables
     assert "BOKEH_ALLOW_WS_ORIGIN" not in variables
-
-
-def test_a_proxy_sends_every_browser_to_one_of_several_servers():
-    (text,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "app" / "README.md").read_text(), re.DOTALL)
-    services = yaml.safe_load(text)["services"]
-    (rules,) = [config["content"] for config in yaml.safe_load(text)["configs"].values()]
-    (port,) = instructions("EXPOSE")
-    servers = {name: one for name, one in services.items() if "build" in one}
-    assert len(servers) > 1
-    assert set(re.findall(r"(\w+):" + port, rules)) == set(servers)
-    assert "lb_policy cookie" in rules
-    for server in servers.values():
-        assert (ROOT / server["build"] / "Dockerfile").exists()
-        assert set(server["environment"]) == {"BOKEH_ALLOW_WS_ORIGIN", VARIABLE}
-    (proxy,) = [one for name, one in services.items() if name not in servers]
-    assert proxy["ports"] == ["80:80"]
-    assert rules.startswith(":80 ")
-    assert "health_uri /liveness" in rules
-    assert "--liveness" in instructions("CMD")[0]
 
 
 def handshake(port, origin):
@@ -227,18 +204,15 @@ def test_a_program_outside_the_tree_solves_a_problem_of_its_own(image, tmp_path)
 def served(image, tmp_path):
     _, variables = image
     command = [shutil.which("slipfront", path=variables["PATH"]), "serve"]
-    made = Server(tmp_path / "log", serves=command, place=tmp_path)
-    try:
-        made.wait()
+    with serving(tmp_path / "log", serves=command, place=tmp_path) as made:
         yield made
-    finally:
-        made.stop()
 
 
 def test_its_page_runs_in_a_browser_and_an_interrupt_leaves_no_process(served, chrome):
     with visits(served, chrome) as visit:
         page = visit("?lesson=best-k")
         expect(page.get_by_role("button", name="Show me")).to_be_visible()
-        assert page.evaluate("[...document.styleSheets].length") > 0
-        expect(status(page)).to_contain_text("onverged")
-    end_with_pages(served, signal.SIGINT)
+        expect(status(page)).to_contain_text("iteration")
+    workers = served.processes()
+    served.stop(signal.SIGINT)
+    wait_for(lambda: not any(is_alive(pid) for pid in workers))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from ropes import SMALL_ROPE
 
-from app.worker.rivals import KeptReferences
+from app.worker.references import ENTRIES, ReferenceCache
 from solver.discrete import Problem
 from solver.reference.choice import reference_of
 from solver.reference.fingerprint import fingerprint
@@ -117,7 +117,7 @@ def test_what_the_solution_depends_on_changes_the_fingerprint(scene: str, name: 
 def test_reference_found_after_the_cuts_have_changed_is_that_of_the_problem(
     scene: str, cuts: int
 ) -> None:
-    references = KeptReferences()
+    references = ReferenceCache()
     references.of(*made(scene), never)
     settings, problem = made(scene, substructures=cuts)
     kept, fresh = references.of(settings, problem, never), reference_of(problem)
@@ -141,15 +141,15 @@ def test_a_reference_is_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
         found.append(reference_of(*arguments))
         return found[-1]
 
-    monkeypatch.setattr(sys.modules[KeptReferences.__module__], "reference_of", count)
-    references = KeptReferences()
+    monkeypatch.setattr(sys.modules[ReferenceCache.__module__], "reference_of", count)
+    references = ReferenceCache()
     for changes in ({}, {"k_scale": 2.0}, {"friction": 0.2}, {"acceleration": "none"}):
         references.of(*made("block", **changes), never)
     assert len(found) == 2
 
 
 def test_what_is_kept_keeps_no_problem_alive() -> None:
-    references = KeptReferences()
+    references = ReferenceCache()
     settings, problem = made("block")
     references.of(settings, problem, never)
     watched = weakref.ref(problem)
@@ -159,13 +159,8 @@ def test_what_is_kept_keeps_no_problem_alive() -> None:
     assert references.of(*made("block", k_scale=2.0), never) is not None
 
 
-def test_the_budget_counts_all_fields_that_are_kept() -> None:
-    settings, problem = made("bar")
-    found = reference_of(problem)
-    arrays = (found.displacement, found.contact_force, found.status, found.converged)
-    whole = sum(array.nbytes for array in (*arrays, found.ambiguous))
-    for budget, kept in ((whole, 1), (whole - 1, 0), (2 * whole, 2)):
-        references = KeptReferences(budget=budget)
-        references.of(settings, problem, never)
-        references.of(*made("bar", friction=0.2), never)
-        assert len(references) == kept
+def test_the_references_used_last_are_kept() -> None:
+    references = ReferenceCache()
+    for count in range(ENTRIES + 1):
+        references.of(*made("bar", peak=900.0 + count), never)
+    assert len(references._kept) == ENTRIES

@@ -8,12 +8,12 @@ from typing import Any
 
 import pytest
 
-from app.lessons.lesson import LESSONS
 from solver.cli import main
 from solver.definitions import SettingError
 from solver.lessons.lesson import Claim, Control, Value, pieces
 from solver.lessons.reading import lesson_from_file
 
+FOLDER = Path(__file__).resolve().parents[1] / "app" / "lessons"
 PARTS: dict[str, str] = {
     "title": '"A title"',
     "order": "1",
@@ -70,7 +70,7 @@ def test_a_lesson_is_what_its_file_says(tmp_path: Path) -> None:
 
 
 def test_a_curve_goes_through_the_checkpoints_that_change_its_setting_alone() -> None:
-    found = LESSONS["best-k"]
+    found = lesson_from_file(FOLDER / "best-k.toml")
     assert found.curve == [(0.01, math.inf), (0.1, 302), (1, 28), (10, 294), (100, math.inf)]
     assert found.drawn_quantity.startswith("Iterations to an error of the contact force")
 

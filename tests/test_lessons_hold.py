@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.views.catalogue import VIEWS, fitting
+from app.views.catalogue import CARDS
 from solver.lessons.checking import CheckedClaim, Said, check
 from solver.lessons.command import line
 from solver.lessons.lesson import Control, Lesson, Value, pieces
@@ -45,8 +45,8 @@ def test_the_interface_that_plots_are_of_is_there(lesson: Lesson) -> None:
 
 @each
 def test_the_views_of_a_lesson_are_there_and_fit_its_run(lesson: Lesson) -> None:
-    assert set(lesson.views) <= {view.name for view in VIEWS}
-    assert set(lesson.views) <= {view.name for view in fitting(lesson.settings)}
+    shown = {kind.name for card in CARDS for kind in card if kind.applies(lesson.settings)}
+    assert set(lesson.views) <= shown
 
 
 @each

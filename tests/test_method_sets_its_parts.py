@@ -7,8 +7,8 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from app.picture.usual import WATCH, usual_settings
-from app.shell.address import query_of, settings_from_query
+from app.link import Place, query_of, read
+from app.state import SEARCH, default_settings
 from solver.checked import dump
 from solver.cli import main
 from solver.files import settings_from_command, settings_from_toml
@@ -103,10 +103,10 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
     assert parts(BarSettings.checked(values)) == expected
     words = [f"{name}={value}" for name, value in values.items()]
     assert parts(settings_from_command("bar", words)[0]) == expected
-    address, complaint = settings_from_query("?" + "&".join(words))
-    # a page shows the search
-    shown = expected | ({"finish": WATCH} if method == "fast" else {})
-    assert (parts(address), complaint) == (shown, "")
+    place, complaint = read("?" + "&".join(words))
+    # A page shows the search.
+    shown = expected | ({"finish": SEARCH["finish"]} if method == "fast" else {})
+    assert (parts(place.settings), complaint) == (shown, "")
     saved = tmp_path / "few.toml"
     saved.write_text(f'scene = "bar"\nmethod = "{method}"\n', encoding="utf-8")
     assert parts(settings_from_command(str(saved), words)[0]) == expected
@@ -114,11 +114,13 @@ def test_what_is_set_beside_a_method_is_kept_by_every_front(method, method_first
 
 
 def test_what_is_set_beside_a_method_is_kept_where_something_else_is_refused():
-    settings, complaint = settings_from_query("?start=zero&method=paper&acceleration=anderson&a=1")
+    place, complaint = read("?start=zero&method=paper&acceleration=anderson&a=1")
+    settings = place.settings
     assert (settings.start, settings.acceleration, settings.method) == ("zero", "anderson", "paper")
     assert "a" in complaint
     together = "?acceleration=anderson&elements=5&method=paper&substructures=9"
-    settings, complaint = settings_from_query(together)
+    place, complaint = read(together)
+    settings = place.settings
     assert (settings.acceleration, settings.method, settings.start) == ("anderson", "paper", "zero")
     assert complaint
 
@@ -129,13 +131,14 @@ def test_what_is_set_beside_a_method_is_kept_where_something_else_is_refused():
 def test_files_and_addresses_give_the_same_settings_again(scene, method, by_hand):
     settings = CATALOGUE[scene].settings.checked({"method": method, **by_hand})
     assert settings_from_toml(dump(settings)).values() == settings.values()
-    again, complaint = settings_from_query(query_of(settings))
-    assert (again.values(), complaint) == (settings.values(), "")
+    again, complaint = read(query_of(Place(settings)))
+    assert (again.settings.values(), complaint) == (settings.values(), "")
 
 
 def test_an_address_names_the_method_and_only_what_differs_from_it():
-    assert query_of(usual_settings(BarSettings)) == "?scene=bar"
-    assert query_of(BarSettings.checked({"method": "paper"})) == "?scene=bar&method=%22paper%22"
+    assert query_of(Place(default_settings("bar"))) == "?scene=bar"
+    paper = Place(BarSettings.checked({"method": "paper"}))
+    assert query_of(paper) == "?scene=bar&method=%22paper%22"
     mixed = BarSettings.checked({"method": "paper", "acceleration": "anderson"})
     assert mixed.changed() == {"method": "paper", "acceleration": "anderson"}
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import solver.reference.closed_forms as closed_forms
-from app.shell.address import settings_from_query
+from app.link import read as read_address
 from solver.cli import main
 from solver.reference.choice import reference_of
 from solver.scenes import CATALOGUE, discretise
@@ -83,7 +83,8 @@ def test_the_page_has_every_row_and_loads_nothing(folder: Path) -> None:
 
 @pytest.mark.parametrize("case", [one for one in CASES if one.address], ids=lambda one: one.title)
 def test_an_address_opens_the_run_of_its_row(case: KnownCase) -> None:
-    settings, complaint = settings_from_query(case.address)
+    place, complaint = read_address(case.address)
+    settings = place.settings
     assert not complaint
     given = dict(parse_qsl(case.address.removeprefix("?")))
     assert settings.scene == given.pop("scene")

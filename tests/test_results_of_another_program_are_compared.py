@@ -233,8 +233,6 @@ def test_what_is_drawn_at_an_instant_is_the_nearest_of_theirs() -> None:
     brought = Brought("displacement", *rows.T, "a.csv", "bar", "")
     time, x, values = brought.nearest(0.4)
     assert (time, list(x), list(values)) == (0.5, [0.2, 0.3], [2.0, 3.0])
-    times, at_end = brought.at_end(0.5)
-    assert (list(times), list(at_end)) == ([0.0], [4.0])
 
 
 def test_the_command_tells_the_distance_in_one_line(tmp_path: Any, capsys: Any) -> None:

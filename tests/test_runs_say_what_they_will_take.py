@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from shown_pages import SMALL, Shown
 
 from solver.cli import main
 from solver.latin import run_cost as costs
@@ -124,9 +123,9 @@ def test_commands_that_run_a_scene_for_others_say_it_too(
         "fclib": ("incline", "--out", str(tmp_path / "one.hdf5")),
     }[command]
     main([command, scene, *options, "--set", "pgd_modes=3"])
-    idle, line, *_ = capsys.readouterr().err.splitlines()
-    assert "pgd_modes does nothing" in idle
-    assert line.startswith("slipfront: this will take about ")
+    lines = capsys.readouterr().err.splitlines()
+    assert any("pgd_modes does nothing" in line for line in lines)
+    assert any(line.startswith("slipfront: this will take about ") for line in lines)
 
 
 def test_the_command_says_what_no_reference_would_save(
@@ -137,38 +136,6 @@ def test_the_command_says_what_no_reference_would_save(
     values = ["--set", "elements=96", "--set", "instants=5", "--set", "max_iterations=1"]
     main(["run", "layers", *values])
     assert "for the reference, which --no-reference leaves out" in capsys.readouterr().err
-
-
-def test_the_page_says_it_until_the_first_picture_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    shown = Shown()
-    shown.run(1, "bar", SMALL["bar"])
-    assert shown.said == []
-    monkeypatch.setattr(costs, "LONG", 0.0)
-    shown.run(2, "bar", {**SMALL["bar"], "peak": 600.0})
-    assert len(shown.said) == 1
-    assert "this will take about" in shown.said[0]
-    assert "this will take about" not in shown.words
-    shown.run(3, "bar", {**SMALL["bar"], "peak": 700.0}, follows_hand=True)
-    assert len(shown.said) == 1
-
-
-@pytest.mark.parametrize("limit", ["VERY_LONG", "VERY_LARGE"])
-def test_a_page_does_not_begin_what_is_very_long_or_large_until_that_is_agreed_to(
-    monkeypatch: pytest.MonkeyPatch, limit: str
-) -> None:
-    shown = Shown()
-    shown.run(1, "bar", SMALL["bar"])
-    monkeypatch.setattr(costs, limit, 0.0)
-    others = {**SMALL["bar"], "peak": 600.0}
-    for ticket, follows_hand in ((2, True), (3, False)):
-        shown.run(ticket, "bar", others, follows_hand=follows_hand)
-        assert shown.pictures[-1].ticket == ticket
-        assert shown.pictures[-1].facts.asks
-        assert "Run anyway" in shown.words
-        assert shown.runs.rest() is None
-    shown.run(4, "bar", others, is_agreed=True)
-    assert not shown.pictures[-1].facts.asks
-    assert "converged" in shown.words
 
 
 def test_times_are_written_with_the_one_digit_that_they_have() -> None:

@@ -9,7 +9,7 @@ import pytest
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.rope import CrossSection, ForceInWires, StressRanges, Unrolled
+from app.views.rope import CrossSection, StressRanges, Unrolled
 from app.views.scene import Scene
 from app.views.scene.outlines import bands
 from app.views.scene.scene import HEIGHT, WIDTH
@@ -146,7 +146,7 @@ def test_bands_end_where_a_wire_goes_behind() -> None:
 
 def test_other_views_show_every_instant(frame: Frame) -> None:
     state = PageState(frame.run.settings)
-    for kind in (Stress, Timeline, CrossSection, Unrolled, StressRanges, ForceInWires):
+    for kind in (Stress, Timeline, CrossSection, Unrolled, StressRanges):
         if kind.applies(frame.run.settings):
             view = kind(state)
             _ = view.figure

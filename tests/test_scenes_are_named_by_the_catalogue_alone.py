@@ -21,17 +21,19 @@ EXPERIMENTS = (
     "solver/study/proof/",
 )
 """They measure scenes of their choice."""
+READING = "solver/units.py", "solver/columns.py", "solver/curves.py"
+"""They read units and quantities by whatever people call them."""
 STRUCTURES = "solver/discrete/"
 """Interfaces are made, and so named, there."""
-PICTURE = "/picture.py", "/held.py"
-"""It draws what holds bodies, by its kind."""
+HELD = "/scene/layout.py", "/scene/holds.py", "/remarks.py"
+"""They draw, or speak of, what holds bodies, by its kind."""
 
 
 def sources() -> Iterator[tuple[str, ast.AST]]:
     for folder in ("solver", "app"):
         for path in sorted((ROOT / folder).rglob("*.py")):
             name = str(path.relative_to(ROOT))
-            if not name.startswith((SCENES, *EXPERIMENTS)):
+            if not name.startswith((SCENES, *EXPERIMENTS, *READING)):
                 yield name, ast.parse(path.read_text(encoding="utf-8"))
 
 
@@ -60,17 +62,19 @@ def test_no_module_of_a_scene_is_imported() -> None:
 
 
 def test_no_interface_is_named() -> None:
-    """Sides are those of any body, and what all scenes have is no scene's own."""
+    """Sides and loads are those of any body, and what all scenes have is no scene's own."""
     settings = [entry.settings.checked({}) for entry in CATALOGUE.values()]
     interfaces = {name for one in settings for name in discretise(one).interfaces}
     assert {"spring", "contact 1-2"} <= interfaces
-    interfaces -= {*SIDES}.union(set.intersection(*(set(one.definitions()) for one in settings)))
+    interfaces -= {"load", *SIDES}.union(
+        set.intersection(*(set(one.definitions()) for one in settings))
+    )
     kinds = set(get_args(get_type_hints(Hold)["kind"]))
     found = {
         name: words
         for name, tree in sources()
         if not name.startswith(STRUCTURES)
-        and (words := named(tree, interfaces - kinds if name.endswith(PICTURE) else interfaces))
+        and (words := named(tree, interfaces - kinds if name.endswith(HELD) else interfaces))
     }
     assert found == {}
 

@@ -8,6 +8,8 @@ import pytest
 from hypothesis import given
 from valid_settings import ANY, valid_settings
 
+from app.link import Place, query_of, read
+from app.state import default_settings
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.files import settings_from_command, settings_from_toml
@@ -26,11 +28,9 @@ def test_a_saved_file_gives_the_same_settings(chosen):
 @ANY
 @given(valid_settings())
 def test_an_address_gives_the_same_settings(chosen):
-    from app.shell.address import query_of, settings_from_query
-
-    again, complaint = settings_from_query(query_of(chosen))
+    place, complaint = read(query_of(Place(chosen)))
     assert complaint == ""
-    assert again.values() == chosen.values()
+    assert place.settings.values() == chosen.values()
 
 
 @ANY
@@ -66,11 +66,8 @@ def test_a_file_of_an_earlier_version_is_read_as_far_as_it_still_holds(scene):
 
 
 def test_an_address_of_an_earlier_version_is_read_as_far_as_it_still_holds():
-    from app.picture.usual import changed
-    from app.shell.address import settings_from_query
-
     for old, complaint in (("full", ""), ("reduced", "stalled at a larger one; leave it out")):
-        chosen, words = settings_from_query(f"?peak=700&local_stage={old}&local_points=0.3")
-        assert changed(chosen) == {"peak": 700.0}
+        place, words = read(f"?peak=700&local_stage={old}&local_points=0.3")
+        assert place.settings.changed(default_settings("bar")) == {"peak": 700.0}
         assert complaint in words
         assert bool(words) == bool(complaint)

@@ -58,7 +58,7 @@ def apart(one, other):
         {"relaxation": 0.6, "k_scale": 2.0},
         {**FAST, "start": "nested"},
         {"search_direction": "auto", "start": "nested"},
-        {**PGD, "pgd_modes": 60, "pgd_tolerance": 1e-14, "tolerance": 1e-14},
+        {**PGD, "pgd_modes": 60, "pgd_tolerance": 1e-14, "tolerance": 1e-13},
         {"substructures": 1, "acceleration": "anderson"},
         {"substructures": 2, **FAST},
         {"substructures": 7, **FAST},

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.charts.layers import layers
 from solver.reference.condensation import NoReferenceError
 from solver.scenes import CATALOGUE
 from solver.study.speed import crossover as measuring
 from solver.study.speed.crossover import FACTORS, LARGE, Crossover, Duel, crossover, equal_at
-from solver.study.speed.crossover_report import crossover_map, crossover_notes, crossover_table
+from solver.study.speed.crossover_report import crossover_notes, crossover_table
 
 TINY: dict[str, dict[str, Any]] = {
     "bar": {"elements": 12, "instants": 11, "substructures": 3},
@@ -35,15 +34,13 @@ MADE = Crossover(
 @pytest.mark.parametrize("scene", list(TINY))
 def test_the_present_size_and_its_multiples_are_measured(scene: str) -> None:
     settings = CATALOGUE[scene].settings.checked(TINY[scene])
-    shares: list[float] = []
-    found = crossover(settings, lambda doing, share: shares.append(share))
+    found = crossover(settings)
     name = CATALOGUE[scene].grows[0]
     assert found.setting == name
     assert found.sizes == [round(factor * getattr(settings, name)) for factor in FACTORS]
     last = settings.instants - 1
     assert found.instants == [round(factor * last) + 1 for factor in FACTORS]
     assert (found.ratios > 0.0).all()
-    assert shares == sorted(shares)
 
 
 def test_all_that_makes_a_body_larger_grows_together(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -96,13 +93,3 @@ def test_the_table_has_the_ratios_and_where_they_are_one() -> None:
     assert first == ["41 instants", "4", "1", "0.25", "16"]
     assert second == ["81 instants", "2", "0.5", "-", "8"]
     assert "2 of 5 sizes" in crossover_notes(MADE)[0]
-
-
-def test_the_map_has_one_line_where_both_take_as_long_and_each_cell_its_number() -> None:
-    drawn = {layer.name: layer.columns for layer in layers(crossover_map(MADE))}
-    assert drawn["label"]["text"] == ["4", "1", "0.25", "2", "0.5"]
-    assert sorted(drawn["answer"]["value"]) == [0.25, 0.5, 1.0, 2.0, 4.0]
-    assert len(drawn["hollow"]["said"]) == 1
-    (across,) = drawn["contour"]["xs"]
-    assert across.min() == pytest.approx(8.0, rel=1e-6)
-    assert across.max() == pytest.approx(16.0, rel=1e-6)

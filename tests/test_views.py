@@ -254,7 +254,7 @@ def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> 
     card = Card(CARDS[0], state, lambda: None)
     card.fit(state)
     assert isinstance(card.seen, ContactForce)
-    card.view.active = 1
+    card.tabs.active = 1
     state.settings = default_settings("bar")
     card.fit(state)
     assert isinstance(card.seen, ContactForce)
@@ -268,6 +268,6 @@ def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     state = PageState(frame.run.settings, frame=frame, newest=frame)
     card = Card((ContactForce, HysteresisLoop), state, lambda: None)
     card.fit(state)
-    card.view.active = 1
+    card.tabs.active = 1
     assert isinstance(card.seen, HysteresisLoop)
     assert len(card.seen.sources["latin"].data["x"]) == len(frame.run.instants)

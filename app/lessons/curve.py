@@ -34,7 +34,7 @@ class DrawnCurve:
             y_axis_type="log",
             x_axis_label=about(lesson.settings.definitions()[lesson.draw]).title,
             y_axis_label=lesson.drawn_quantity.split(" to ")[0],
-            x_range=Range1d(places[0] / 1.3, places[-1] * 1.3),
+            x_range=Range1d(places[0] / 2.0, places[-1] * 2.0),
             y_range=Range1d(1.0, self._top),
             height=200,
             sizing_mode="stretch_width",

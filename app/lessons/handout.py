@@ -8,7 +8,7 @@ from io import BytesIO
 from typing import Any
 
 from bokeh.embed import file_html
-from bokeh.resources import INLINE
+from bokeh.resources import INLINE, Resources
 from jinja2 import Template
 from markdown_it import MarkdownIt
 
@@ -23,10 +23,11 @@ from solver.lessons.lesson import Lesson
 
 WIDTH, HEIGHT = 660, 230
 """Pixels of the picture; two plots stand side by side in its width."""
+LIBRARY = Resources(mode="inline", components=["bokeh"])
 PAGE = """{% macro plot(name) -%}
 <div id="{{ roots[name].elementid }}" data-root-id="{{ roots[name].id }}"></div>
 {%- endmacro %}<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
-{{ bokeh_css|safe }}{{ bokeh_js|safe }}<style>
+{% for code in library %}<script>{{ code|safe }}</script>{% endfor %}<style>
 @page { size: A4; margin: 16mm; }
 :root { color-scheme: light; }
 body { max-width: 178mm; margin: 0 auto; font: 11pt/1.45 system-ui, sans-serif; color: #000;
@@ -85,6 +86,8 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> Bytes
         template=Template(PAGE, autoescape=True),
         template_variables={
             "place": f"lesson {list(LESSONS).index(lesson.name) + 1} of {len(LESSONS)}",
+            # Without what Panel adds to it, some of it by a link to the server.
+            "library": LIBRARY.js_raw,
             "text": _html(lesson.text, state),
             "question": lesson.question,
             "choices": lesson.choices,

@@ -14,14 +14,15 @@ from app.frame import Selection
 from app.lessons.catalogue import LESSONS, kinds_of, lesson_after, readings_of, settings_of
 from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
-from app.lessons.poll import Poll
 from app.lessons.text import filled, parts_of
+from app.poll import Poll
 from app.state import PageState
 from app.transport import Transport
 from app.views.view import View
 from solver.lessons.lesson import SUBJECTS, Lesson
 from solver.lessons.lesson import Control as ControlPlace
 
+PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""
 SENTENCE = {"& .MuiButton-label": {"textAlign": "left"}, "&": {"textTransform": "none"}}
@@ -110,10 +111,14 @@ class LessonPanel:
         lessons = [lesson for lesson in LESSONS.values() if lesson.subject == subject]
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
         buttons = [
-            _button(lesson.title, lambda event, name=lesson.name: self.open(name), sx=LEFT,
-                    variant="text", description=lesson.question)
+            _button(
+                lesson.title,
+                lambda event, name=lesson.name: self.open(name),
+                sx=LEFT,
+                variant="text",
+            )
             for lesson in lessons
-        ]  # fmt: skip
+        ]
         return pn.Column(pn.pane.Markdown(title, margin=(0, 8)), *buttons, width=380, margin=0)
 
     def _follow_settings(self) -> None:
@@ -154,7 +159,8 @@ class LessonPanel:
             state.readings = readings_of(lesson)
         elif lesson.draw:
             self._curve = self._curve or DrawnCurve(lesson)
-            self._curve.reveal()
+            # A figure's own models change under the document's lock, which a click does not have.
+            pn.state.execute(self._curve.reveal, schedule=True)
         parts = self._question(lesson) if state.is_asked else self._answer(lesson)
         self.view.param.update(objects=[*self._head(lesson), *parts], visible=True)
         self.update()
@@ -174,7 +180,9 @@ class LessonPanel:
     def _head(self, lesson: Lesson) -> list[Any]:
         place = list(LESSONS).index(lesson.name) + 1
         title = f"<small>Lesson {place} of {len(LESSONS)}</small>\n\n### {lesson.title}"
-        return [pn.pane.Markdown(title, margin=0, sizing_mode="stretch_width")]
+        return [
+            pn.pane.Markdown(title, margin=0, sizing_mode="stretch_width", stylesheets=PARAGRAPH)
+        ]
 
     def _question(self, lesson: Lesson) -> list[Any]:
         """What stands before the choice."""
@@ -197,7 +205,6 @@ class LessonPanel:
             callback=lambda: handout(self._state, lesson, self._curve),
             filename=f"{lesson.name}.html",
             label="Handout",
-            variant="text",
             size="small",
         )
         buttons = [paper, _button("Explore freely", lambda event: self._end(), variant="text")]
@@ -225,7 +232,10 @@ class LessonPanel:
 
     def _markdown(self, text: str) -> pn.pane.Markdown:
         pane = pn.pane.Markdown(
-            filled(text, self._state.frame), margin=(0, 0, 4, 0), sizing_mode="stretch_width"
+            filled(text, self._state.frame),
+            margin=0,
+            sizing_mode="stretch_width",
+            stylesheets=PARAGRAPH,
         )
         if "{value:" in text:
             self._texts.append((pane, text))

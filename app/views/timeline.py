@@ -115,7 +115,7 @@ def paths_of(run: Run) -> list[tuple[str, Array, bool]]:
     described = run.geometry.description
     paths = []
     if described.tilt is not None:
-        paths.append(_path("slope", np.degrees(described.tilt), described.instants, run, "°", 1.0))
+        paths.append(_path("tilt", np.degrees(described.tilt), described.instants, run, "°", 1.0))
     shown: list[Any] = []
     for act in described.acts:
         if any(is_opposite(act, other) for other in shown):

@@ -11,7 +11,7 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import Stress, floats, thinned
+from app.worker.geometry import StressField, floats, thinned
 from app.worker.rope_extras import ROPE_EXTRAS
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
@@ -298,7 +298,7 @@ def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     }
 
 
-def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> Stress:
+def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
     """Stress of all quadrilaterals that are drawn, at all instants."""
     return sampler.drawn.stress(iterate, needs.stress, sampler.settings)
 

@@ -33,11 +33,11 @@ class Drawn(Protocol):
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How they have moved in an iterate."""
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Stress of every quadrilateral at all instants."""
 
 
-class Stress(NamedTuple):
+class StressField(NamedTuple):
     """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 
     title: str
@@ -137,11 +137,11 @@ class DrawnRods:
         nodes = floats(np.stack([along, np.zeros_like(along)], axis=1))
         return DeformedGeometry(nodes, *self._contacts.moved(iterate))
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Axial force, as rods have no height."""
         moved = iterate.displacement[:, self._columns].T
         force = np.stack([self._force(at_once)[self._elements] for at_once in moved], axis=1)
-        return Stress("axial force", "N", floats(force))
+        return StressField("axial force", "N", floats(force))
 
 
 STRESSES = {"σ xx": 0, "σ yy": 1, "τ xy": 2}
@@ -176,7 +176,7 @@ class DrawnMesh:
         nodes = floats(whole[self._nodes][:, :, self._columns])
         return DeformedGeometry(nodes, *self._contacts.moved(iterate))
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """A component of stress, or von Mises' equivalent, its mean in every quadrilateral."""
         moved = self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]
         values = settings.values()
@@ -189,7 +189,7 @@ class DrawnMesh:
                 shown = von_mises(stress, values["poisson"], values["plane"])
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
         title = component if component in STRESSES else "von Mises stress"
-        return Stress(title, "Pa", floats(np.stack(means, axis=1)))
+        return StressField(title, "Pa", floats(np.stack(means, axis=1)))
 
 
 def thinned_mesh(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.frame import Bytes, DeformedGeometry, Geometry
-from app.worker.geometry import Stress, floats
+from app.worker.geometry import StressField, floats
 from solver.arrays import Array
 from solver.discrete.rope.forces import WireForces
 from solver.discrete.rope.rope import Rope
@@ -60,12 +60,12 @@ class DrawnRope:
         moved = floats(self._nodes_moved), floats(self._points_moved)
         return DeformedGeometry(*moved, status.astype(np.int8))
 
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> Stress:
+    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Mean stress over the section of every wire."""
         stress = self._forces(iterate.displacement, self._columns)
         stress = stress / self._forces.areas[:, None, None]
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
-        return Stress("wire stress", "Pa", floats(stress[self._quad_wires, element]))
+        return StressField("wire stress", "Pa", floats(stress[self._quad_wires, element]))
 
     def _angle(self, wire: Array, place: Array) -> Array:
         """Polar angle of outer wires by their number, and at places along the strand."""

@@ -34,6 +34,8 @@ from solver.refusal import RefusedError
 
 NICENESS = 5
 """Below the server, so that pages stay alive; at 10 the first picture of a run waits 0.1 s."""
+UNSEEN = 30.0
+"""Seconds without a picture on the screen after which a run waits: nobody sees it."""
 HEARTBEAT = 2.0
 """Seconds between two signs of life."""
 
@@ -66,6 +68,7 @@ class Loop:
         self._runner: Runner | None = None
         self._number = 0
         self._needs, self._is_ready = Needs(), True
+        self._shown_at = time.monotonic()
         threading.Thread(target=self._beat, daemon=True).start()
 
     def serve(self) -> None:
@@ -74,23 +77,27 @@ class Loop:
             self._receive(0.0 if self._orders else self._rest())
             while self._orders:
                 self._guard(self._obey, self._orders.popleft())
-            if self._runner is not None:
+            if self._runner is not None and not self._is_unseen:
                 self._guard(self._work, self._runner)
 
     def _work(self, runner: Runner) -> None:
         if runner.rest() == 0.0:
             runner.advance()
         if self._is_ready and runner.is_presentable:
-            self._is_ready = False
+            self._is_ready, self._shown_at = False, time.monotonic()
             goes_on = runner.status is None and runner.pacing.goes_on
             self._send(Shown(runner.frame(self._needs), goes_on))
 
     def _rest(self) -> float | None:
         """Seconds to wait for an order."""
         runner = self._runner
-        if runner is None:
+        if runner is None or self._is_unseen:
             return None
         return 0.0 if self._is_ready and runner.is_presentable else runner.rest()
+
+    @property
+    def _is_unseen(self) -> bool:
+        return not self._is_ready and time.monotonic() > self._shown_at + UNSEEN
 
     def _obey(self, order: Order) -> None:
         runner = self._runner

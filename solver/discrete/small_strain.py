@@ -10,7 +10,6 @@ from solver.discrete.problem import Problem
 from solver.discrete.rope.data import RopeData
 from solver.discrete.rope.forces import WireForces
 from solver.discrete.structure import Structure
-from solver.phrases import Phrase
 
 SMALL = 0.05
 """Largest strain, or slope of a body, for which small strains hold."""
@@ -45,11 +44,9 @@ def beyond_small_strain(structure: Structure, problem: Problem, displacement: Ar
     strain = largest_strain(structure, problem, displacement)
     if strain <= SMALL:
         return None
-    return Phrase(
-        "this model does not hold: strains or slopes reach {}, and it is for small ones, up to {}; "
-        "lower the loads, or take a stiffer body",
-        f"{strain:.3g}",
-        SMALL,
+    return (
+        f"this model does not hold: strains or slopes reach {strain:.3g}, and it is for small "
+        f"ones, up to {SMALL}; lower the loads, or take a stiffer body"
     )
 
 

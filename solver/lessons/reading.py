@@ -110,17 +110,12 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
     if not 1 <= values["right"] <= len(choices) or len(choices) < 2:
         allowed = f"the number of one of at least two choices, of which there are {len(choices)}"
         raise SettingError("right", values["right"], allowed, "count from 1")
-    if not 0.0 <= values["instant"] <= 1.0:
-        allowed = "a share of the interval, from 0 to 1"
-        raise SettingError("instant", values["instant"], allowed, "say where its plots stand")
+    until = values.get("until", 1.0)
+    _check_moments(values["instant"], until)
     if values["subject"] not in SUBJECTS:
         raise SettingError(
             "subject", values["subject"], ", ".join(SUBJECTS), "say what it is about"
         )
-    until = values.get("until", 1.0)
-    if not 0.0 < until <= 1.0:
-        allowed = "a share of the interval, above 0 and up to 1"
-        raise SettingError("until", until, allowed, "say how far its picture moves")
     views = _names("views", values)
     beside = _names("beside", values) if "beside" in values else ()
     if not set(beside) <= set(views):
@@ -156,6 +151,16 @@ def _lesson(name: str, values: Mapping[str, Any]) -> Lesson:
         allowed = f"a setting that {FEWEST_POINTS} checkpoints with a number change alone"
         raise SettingError("draw", found.draw, allowed, "write more checkpoints, or leave it out")
     return found
+
+
+def _check_moments(instant: float, until: float) -> None:
+    """Refuse moments outside the interval."""
+    if not 0.0 <= instant <= 1.0:
+        allowed = "a share of the interval, from 0 to 1"
+        raise SettingError("instant", instant, allowed, "say where its plots stand")
+    if not 0.0 < until <= 1.0:
+        allowed = "a share of the interval, above 0 and up to 1"
+        raise SettingError("until", until, allowed, "say how far its picture moves")
 
 
 def _check_keys(

@@ -58,12 +58,6 @@ class Processes(Pool):
         """Number of processes."""
         return len(self._threads)
 
-    @property
-    def pids(self) -> list[int]:
-        """Numbers of the processes at work."""
-        found = [call.pid for call in list(self._at_work)]
-        return [pid for pid in found if pid is not None]
-
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Call:
         """Have something done in the next process that is free.
 

@@ -13,8 +13,8 @@ from solver.definitions import Pairs, SettingError, choice, count, curve, quanti
 from solver.discrete.problem import Problem
 from solver.discrete.rods.rods import Rods
 from solver.loads import PRESETS, interpolate
-from solver.phrases import Amount, Phrase, Sentence
 from solver.profiles import harmonic_means, means, shares_of
+from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_rods import exact_bar
@@ -192,16 +192,14 @@ class BarSettings(SceneSettings):
             raise SettingError(
                 "section_profile",
                 table,
-                Phrase("factors above 0, from {} to {}", Amount(low), Amount(high)),
+                f"factors above 0, from {plain(low)} to {plain(high)}",
                 "bring the factors into this range",
             )
         if max(factors) > LARGEST_CONTRAST * (1.0 + SLACK) * min(factors):
             raise SettingError(
                 "section_profile",
                 table,
-                Phrase(
-                    "a largest factor of at most {} times the smallest", Amount(LARGEST_CONTRAST)
-                ),
+                f"a largest factor of at most {plain(LARGEST_CONTRAST)} times the smallest",
                 "bring the factors nearer to each other",
             )
 
@@ -234,18 +232,18 @@ def bar(settings: BarSettings) -> Rods:
 def _words(settings: BarSettings) -> str:
     bound = bar(settings).bound
     table = "rough" if bound.all() else "partly rough" if bound.any() else "smooth"
-    ends = Phrase("its right end is {}", acting(settings.path("load"), "pulled", "pushed"))
+    ends = f"its right end is {acting(settings.path('load'), 'pulled', 'pushed')}"
     if settings.support_displacement:
         left = acting(settings.path("support_load"), "moved", "moved back")
-        ends = Phrase("{}, and its left end is {}", ends, left)
+        ends += f", and its left end is {left}"
     if settings.body_force:
         along = acting(settings.path("body_load"), "pulled", "pushed")
-        ends = Phrase("{}; all along it is {}", ends, along)
+        ends += f"; all along it is {along}"
     if settings.pressure_load != "steady":
-        ends = Phrase("{}; what presses it changes", ends)
+        ends += "; what presses it changes"
     held = "" if settings.support_displacement else ", held at its left end"
-    body = "a steel bar" if is_steel(settings.young) else "an elastic bar"
-    return Sentence("{} lies on a {} table{}; {}", body, table, held, ends)
+    body = "A steel bar" if is_steel(settings.young) else "An elastic bar"
+    return f"{body} lies on a {table} table{held}; {ends}."
 
 
 def _section(settings: BarSettings) -> tuple[float, Array | None]:

@@ -15,7 +15,6 @@ from solver.instants import NO_KNOTS, SAME, apart, instants_of, thinned, turning
 from solver.laws.catalogue import FRICTION_LAWS
 from solver.laws.friction_law import FrictionLaw
 from solver.loads import BEGINS, PRESETS, PRESSURES, Preset, interpolate, knots_of, load_path
-from solver.phrases import Phrase
 from solver.settings import Settings
 
 LARGEST_FIELD = 25_000_000
@@ -201,13 +200,9 @@ class SceneSettings(Settings):
             span = float(np.ptp(values))
             count = len(apart(when[inside], times, SAME * own.duration))
             if own.instants > 1 and count and lost > STRAIGHT * span:
-                yield Phrase(
-                    "{}: {} of {} points are left out; they differ from the path that is solved by "
-                    "at most {} % of their range",
-                    name,
-                    count,
-                    len(values),
-                    f"{100.0 * lost / span:.2g}",
+                yield (
+                    f"{name}: {count} of {len(values)} points are left out; they differ from the "
+                    f"path that is solved by at most {100.0 * lost / span:.2g} % of their range"
                 )
 
     def path(self, name: str) -> Array:
@@ -259,15 +254,15 @@ class SceneSettings(Settings):
                 raise SettingError(
                     part,
                     value,
-                    Phrase("{} to {} ({})", self.definitions()[part].bounds[0], whole, most),
-                    Phrase("lower {} or raise {}", part, whole),
+                    f"{self.definitions()[part].bounds[0]} to {whole} ({most})",
+                    f"lower {part} or raise {whole}",
                 )
         most = LARGEST_FIELD // self.n_nodes
         if self.n_instants > most:
             raise SettingError(
                 "instants",
                 self.n_instants,
-                Phrase("at most {} with {} nodes", most, self.n_nodes),
+                f"at most {most} with {self.n_nodes} nodes",
                 "give fewer instants, or a coarser mesh"
                 if self.n_instants == own.instants
                 else "give paths with fewer points or cycles, or a coarser mesh",

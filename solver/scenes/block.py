@@ -16,9 +16,9 @@ from solver.discrete.stack.data import Spring, Support
 from solver.discrete.stack.equilibrium import loss_of_equilibrium
 from solver.discrete.stack.stack import Stack
 from solver.loads import PRESETS
-from solver.phrases import Phrase, Sentence, plain
 from solver.profiles import gap_at, unseen
 from solver.reference.closed_forms.exact_curve import ExactCurve
+from solver.refusal import plain
 from solver.scenes.base import POINTS, as_points
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_bodies import exact_on_spring, exact_parabola
@@ -26,7 +26,6 @@ from solver.scenes.sides import AT_REST, LOADED_SIDES, PRESCRIBED, SideSettings
 from solver.scenes.words import acting, is_steel, listed
 
 GAPS = ("flat", "parabola")
-AT = {"left": "{} at its left", "right": "{} at its right", "top": "{} at its top"}
 
 
 class BlockSettings(SideSettings):
@@ -153,13 +152,8 @@ class BlockSettings(SideSettings):
                 "top",
                 self.top,
                 "sides and loads that leave the body in equilibrium",
-                Phrase(
-                    "nothing but contact holds it, and from {} s on {}: "
-                    "lower that load, press more, {}, or hold a side",
-                    plain(loss.instant),
-                    loss.reason,
-                    loss.remedy,
-                ),
+                f"nothing but contact holds it, and from {plain(loss.instant)} s on {loss.reason}: "
+                f"lower that load, press more, {loss.remedy}, or hold a side",
             )
 
 
@@ -195,16 +189,16 @@ def _words(settings: BlockSettings) -> str:
         along = settings.path(f"{side}_tangential_load")
         own = [acting(inward, "pressed", "pulled")] if inward.any() else []
         own += [acting(along, "moved", "moved back")] if along.any() else []
-        acts += [Phrase(AT[side], listed(own))] if own else []
+        acts += [f"{listed(own)} at its {side}"] if own else []
     if _body_force(settings) is not None:
         acts.append("loaded all through")
     if settings.has_spring:
         acts.append("pulled back by a spring")
     held = [side for side in LOADED_SIDES if getattr(settings, side) == "clamped"]
-    acts += [Phrase(AT[side], "held") for side in held]
+    acts += [f"held at its {side}" for side in held]
     does = listed(acts) if acts else "left alone"
-    block = "a steel block" if is_steel(settings.young) else "an elastic block"
-    return Sentence("{} lies on a {} {} support; it is {}", block, support, rough, does)
+    block = "A steel block" if is_steel(settings.young) else "An elastic block"
+    return f"{block} lies on a {support} {rough} support; it is {does}."
 
 
 def _body_force(settings: BlockSettings) -> Array | None:

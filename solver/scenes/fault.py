@@ -20,11 +20,11 @@ from solver.discrete.stack.fault import Fault, sheared
 from solver.instants import instants_of
 from solver.laws import Coulomb
 from solver.loads import INJECTIONS, interpolate
-from solver.phrases import Amount, Phrase, Sentence
 from solver.profiles import means, shares_of
 from solver.reference.closed_forms.diffusion import spread
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.reference.closed_forms.slip_front import fronts, stress_ahead
+from solver.refusal import plain
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.plane import PlaneSettings
 from solver.scenes.words import acting
@@ -217,7 +217,7 @@ class FaultSettings(PlaneSettings):
             raise SettingError(
                 name,
                 getattr(self, name),
-                Phrase("at most the normal stress, {}", Amount(float(pressing[worst]), "Pa")),
+                f"at most the normal stress, {plain(float(pressing[worst]))} Pa",
                 "it would open the fault: lower the pressure of the fluid, or press more",
             )
 
@@ -228,7 +228,7 @@ class FaultSettings(PlaneSettings):
             raise SettingError(
                 "injection_load",
                 f"a path of {bends} points",
-                Phrase("at most {} points with {} instants", most, self.n_instants),
+                f"at most {most} points with {self.n_instants} instants",
                 "give fewer points, or fewer elements along",
             )
 
@@ -248,9 +248,12 @@ def fault(settings: FaultSettings) -> Fault:
 def _words(settings: FaultSettings) -> str:
     path = settings.path("injection_load")
     if not path.any():
-        return Sentence("a fault is sheared; a quarter of it is seen")
-    what = "a fluid is {} at the left end of a sheared fault, and slip spreads; a quarter is seen"
-    return Sentence(what, acting(path, "let in", "sucked out", back="{} and stopped"))
+        return "A fault is sheared; a quarter of it is seen."
+    moves = acting(path, "let in", "sucked out", back="{} and stopped")
+    return (
+        f"A fluid is {moves} at the left end of a sheared fault, and slip spreads; "
+        "a quarter is seen."
+    )
 
 
 def _exact(settings: FaultSettings, problem: Problem) -> Iterator[ExactCurve]:

@@ -17,7 +17,7 @@ from solver.discrete.stack.data import Spring, Support
 from solver.discrete.stack.equilibrium import loss_of_equilibrium
 from solver.discrete.stack.stack import Stack
 from solver.loads import PULLS
-from solver.phrases import Phrase, Sentence, plain
+from solver.refusal import plain
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_bodies import exact_slope
 from solver.scenes.plane import PlaneSettings
@@ -117,12 +117,8 @@ class InclineSettings(PlaneSettings):
             name,
             getattr(self, name),
             "slopes on which the block stays in equilibrium",
-            Phrase(
-                "from {} s on, at {}°, {}: lower the slope, or take a longer base or a lower block",
-                plain(loss.instant),
-                f"{angle:.4g}",
-                loss.reason,
-            ),
+            f"from {plain(loss.instant)} s on, at {angle:.4g}°, {loss.reason}: "
+            "lower the slope, or take a longer base or a lower block",
         )
 
 
@@ -142,8 +138,7 @@ def _words(settings: InclineSettings) -> str:
     slope = settings.path("slope_load")
     moves = acting(slope, "rises", "falls", "rises and falls", "rises and falls")
     rough = "rough" if settings.friction else "smooth"
-    what = "a block lies on a {} slope that {}; a spring catches it when it slides down"
-    return Sentence(what, rough, moves)
+    return f"A block lies on a {rough} slope that {moves}; a spring catches it when it slides down."
 
 
 INCLINE = Entry(

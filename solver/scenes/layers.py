@@ -12,7 +12,6 @@ from solver.definitions import choice, count, curve, quantity, redefined
 from solver.discrete.stack.data import Given, Side
 from solver.discrete.stack.stack import Stack
 from solver.loads import PRESETS
-from solver.phrases import Phrase, Sentence
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_bodies import exact_layers
 from solver.scenes.plane import PlaneSettings
@@ -187,14 +186,14 @@ def layers(settings: LayersSettings) -> Stack:
 
 
 def _words(settings: LayersSettings) -> str:
-    what = "{} steel layers" if is_steel(settings.young) else "{} elastic layers"
-    layers = counted(settings.layers, what)
+    kind = "steel" if is_steel(settings.young) else "elastic"
+    layers = f"{counted(settings.layers).capitalize()} {kind} layers"
     pressed = "are pressed together and rub" if settings.pressure else "lie on each other"
     bent, pull = settings.path("bend_load"), settings.path("pull_load")
     ends = acting(bent, "bent up", "bent down", "bent up and down")
     if pull.any():
-        ends = Phrase("{}, and {}", ends, acting(pull, "pulled", "pushed"))
-    return Sentence("{}, held at the left, {}; the right end is {}", layers, pressed, ends)
+        ends = f"{ends}, and {acting(pull, 'pulled', 'pushed')}"
+    return f"{layers}, held at the left, {pressed}; the right end is {ends}."
 
 
 LAYERS = Entry(

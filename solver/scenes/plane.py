@@ -10,7 +10,7 @@ import param
 import solver.scenes.shared as shared
 from solver.definitions import SettingError, choice, count, quantity, redefined
 from solver.discrete.stack.stack import Stack
-from solver.phrases import Amount, Phrase
+from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.settings import Settings
 
@@ -196,13 +196,8 @@ class PlaneSettings(SceneSettings):
             raise SettingError(
                 self.across,
                 height,
-                Phrase(
-                    "elements of which no side is more than {} times the other", Amount(FLATTEST)
-                ),
-                Phrase(
-                    "they are {} times as long as high: change sizes or numbers of elements",
-                    f"{ratio:.3g}",
-                ),
+                f"elements of which no side is more than {plain(FLATTEST)} times the other",
+                f"they are {ratio:.3g} times as long as high: change sizes or numbers of elements",
             )
 
     def check_together(self) -> None:
@@ -215,6 +210,6 @@ class PlaneSettings(SceneSettings):
             raise SettingError(
                 "substructures",
                 self.substructures,
-                Phrase("parts smaller than {} by {} elements", columns, rows),
+                f"parts smaller than {columns} by {rows} elements",
                 "give more substructures along or up, or fewer elements",
             )

@@ -12,7 +12,6 @@ from solver.discrete.loops import LoopFields
 from solver.discrete.problem import Problem
 from solver.discrete.rope.data import RopeWire
 from solver.discrete.rope.rope import Rope
-from solver.phrases import Phrase, Sentence
 from solver.reference.closed_forms.bent_strand import BentStrand
 from solver.reference.closed_forms.exact_curve import ExactCurve
 from solver.scenes.entry import Emblem, Entry
@@ -97,17 +96,11 @@ def _exact(
 
 
 def _words(settings: RopeSettings) -> str:
-    wires = counted(settings.section.wires, "a strand of {} wires")
     bent = acting(settings.path("load"), "bent up", "bent down", "bent up and down")
-    where = (
-        "{}, under tension, is {} near a clamp"
-        if settings.is_clamped
-        else ("{}, under tension, is {} alike all along")
-    )
-    told = Phrase(where, wires, bent)
-    if settings.tension_load != "steady":
-        told = Phrase("{}; its tension changes", told)
-    return Sentence("{}", told)
+    where = "near a clamp" if settings.is_clamped else "alike all along"
+    tension = "" if settings.tension_load == "steady" else "; its tension changes"
+    wires = counted(settings.section.wires)
+    return f"A strand of {wires} wires, under tension, is {bent} {where}{tension}."
 
 
 def _coarser(settings: RopeSettings) -> Iterator[Problem]:

@@ -14,7 +14,7 @@ from solver.discrete.problem import Problem
 from solver.discrete.rods.data import COARSEST, neighbours
 from solver.discrete.rods.rods import Rods
 from solver.loads import PULLS
-from solver.phrases import Amount, Phrase, Sentence
+from solver.refusal import plain
 from solver.scenes.base import SceneSettings
 from solver.scenes.entry import Emblem, Entry
 from solver.scenes.exact_rods import exact_strand
@@ -208,10 +208,8 @@ def _check_equilibrium(settings: StrandSettings, tension: Array) -> None:
         raise SettingError(
             name,
             getattr(settings, name),
-            Phrase(
-                "tensions below {}, all that friction can hold of the broken wire beyond its break",
-                Amount(capacity, "N"),
-            )
+            f"tensions below {plain(capacity)} N, all that friction can hold of the broken wire "
+            "beyond its break"
             if capacity > 0.0
             else "no tension where no friction can hold the broken wire beyond its break",
             "pull less, raise friction or pressure, move the break to the left, or take the grip "
@@ -220,14 +218,14 @@ def _check_equilibrium(settings: StrandSettings, tension: Array) -> None:
 
 
 def _words(settings: StrandSettings) -> str:
-    what = "{} steel wires" if is_steel(settings.young) else "{} elastic wires"
-    broken = Phrase(", number {} broken,", settings.broken) if settings.broken else ""
-    wires = Phrase("{}{} rub on each other", counted(settings.wires, what), broken)
+    kind = "steel" if is_steel(settings.young) else "elastic"
+    wires = f"{counted(settings.wires).capitalize()} {kind} wires"
+    broken = f", number {settings.broken} broken," if settings.broken else ""
     pulled = acting(settings.path("load"), "pulled", "pushed")
     grip = " by one grip" if settings.grip == "displacement" else ""
     if settings.pressure_load != "steady":
-        grip = Phrase("{}; what presses them together changes", grip)
-    return Sentence("{}; their right ends are {}{}", wires, pulled, grip)
+        grip += "; what presses them together changes"
+    return f"{wires}{broken} rub on each other; their right ends are {pulled}{grip}."
 
 
 def _coarser(settings: StrandSettings) -> Iterator[Problem]:

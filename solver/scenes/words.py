@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from solver.arrays import Array
-from solver.phrases import Phrase, joined
 
 NUMBERS = [
     "no",
@@ -31,9 +30,9 @@ AGAIN = 2
 TO_AND_FRO, LET_GO = "{} to and fro", "{} and let go"
 
 
-def counted(number: int, what: str) -> Phrase:
-    """Say how many there are: as a word, if they are few."""
-    return Phrase(what, NUMBERS[number] if number < len(NUMBERS) else str(number))
+def counted(number: int) -> str:
+    """A number as a word, if it is small."""
+    return NUMBERS[number] if number < len(NUMBERS) else str(number)
 
 
 def acting(
@@ -46,21 +45,21 @@ def acting(
     size = np.abs(path)
     peak = float(size.max(initial=0.0))
     if peak == 0.0:
-        return Phrase("not {}", forward)
+        return f"not {forward}"
     if min(path.max(), -path.min()) > 0.0:
-        return Phrase(both, forward)
+        return both.format(forward)
     word = forward if path.max() > 0.0 else backward
     over = np.concatenate([[False], size > 0.5 * peak, [False]])
     times = int(np.sum(over[1:] & ~over[:-1]))
     if times >= AGAIN:
-        return Phrase("{} again and again", word)
-    return Phrase(back, word) if size[-1] < 0.5 * peak else word
+        return f"{word} again and again"
+    return back.format(word) if size[-1] < 0.5 * peak else word
 
 
 def listed(parts: Sequence[str]) -> str:
     """Write parts with commas, and the last with an "and"."""
     *first, last = parts
-    return Phrase("{} and {}", joined(", ", first), last) if first else last
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def is_steel(young: float) -> bool:

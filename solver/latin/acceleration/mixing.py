@@ -92,14 +92,6 @@ class Mixing:
         """States whose images shape what comes next."""
         return min(self.seen, self._memory + 1)
 
-    @property
-    def relative_residual(self) -> float:
-        """Smallest residual over the newest image, in the norm of the weights."""
-        newest = self._images[self._place_of(self.count)]
-        self._take([newest[place] for place in self._places], self._start)
-        size = float(np.linalg.norm(self._start * self._root))
-        return self.smallest / size if size > 0.0 else 0.0
-
     def start(self, state: list[Array]) -> None:
         """Take in y, before the iteration that makes g(y) of it."""
         self._take(state, self._start)

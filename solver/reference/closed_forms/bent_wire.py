@@ -40,11 +40,6 @@ class BentWire:
         own = self.wire
         return float(self.bound / (own.stiffness * np.cos(own.lay) ** 2 * abs(np.sin(own.lay))))
 
-    @property
-    def full_slip(self) -> float:
-        """Curvature from which on all slips, 1/m."""
-        return 0.5 * np.pi * self.first_slip
-
     def slipping(self, curvature: float) -> float:
         """Give the angle phi of slip on each side of the neutral axis, rad, of a first bending."""
         share = curvature / self.first_slip

@@ -69,12 +69,6 @@ class Brought:
         rows = rows[np.argsort(self.positions[rows])]
         return instant, self.positions[rows], self.values[rows]
 
-    def at_end(self, end: float) -> tuple[Array, Array]:
-        """Give times, rising, and values at the end of a body, m; nothing where there are none."""
-        rows = np.flatnonzero(np.abs(self.positions - end) <= EDGE * end)
-        rows = rows[np.argsort(self.times[rows])]
-        return self.times[rows], self.values[rows]
-
 
 def read_brought(data: bytes | str, source: str, settings: Settings) -> Brought:
     """Read results of another program for a scene.

@@ -6,7 +6,7 @@ import math
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from solver.reference.condensation import NoReferenceError
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.progress import Tell, silent
 from solver.study.speed.error_against_time import forms_of
 from solver.study.speed.timed import by_increments, by_latin, incremental, latins
 
@@ -96,26 +95,22 @@ class Crossover:
         return found
 
 
-def crossover(settings: Settings, tell: Tell = silent, *, large: bool = False) -> Crossover:
+def crossover(settings: Settings, *, large: bool = False) -> Crossover:
     """Measure both solvers, in turns, on multiples of the present size and number of instants.
 
     Parameters
     ----------
     settings
         Of the middle of the map; the method is the fast one.
-    tell
-        Is told how far it is, while no clock runs.
     large
         Whether to go on to sizes that take minutes.
     """
     names = entry_of(settings).grows
-    every = [(size, later) for later in FACTORS for size in (LARGE if large else FACTORS)]
     duels: dict[tuple[int, int], Duel] = {}
-    for number, (size, later) in enumerate(every):
+    for later, size in product(FACTORS, LARGE if large else FACTORS):
         grown = {name: max(1, round(size * getattr(settings, name))) for name in names}
         instants = round(later * (settings.instants - 1)) + 1
         at = grown[names[0]], instants
-        tell(f"Map: {names[0]} = {at[0]}, instants = {instants}", number / len(every))
         if at not in duels:
             changes = {**grown, "instants": instants}
             duels[at] = _duel(settings, changes, at, LONGEST_OF_LARGE if large else LONGEST)

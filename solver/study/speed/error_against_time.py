@@ -25,7 +25,6 @@ from solver.running.machine import machine
 from solver.scenes import discretise, entry_of
 from solver.scenes.method import method_of
 from solver.settings import Settings
-from solver.study.progress import Tell, silent
 from solver.study.speed.timed import by_increments, nothing_collected
 
 LEVELS = {"10 %": 0.1, "1 %": 0.01, "0.1 %": 1e-3, "1e-6": 1e-6}
@@ -166,9 +165,7 @@ class _Entry:
     timed: Callable[[], list[float]]
 
 
-def error_against_time(
-    settings: Settings, repeats: int, tell: Tell = silent, peers: Sequence[Peer] = ()
-) -> Study:
+def error_against_time(settings: Settings, repeats: int, peers: Sequence[Peer] = ()) -> Study:
     """Run every method `repeats` times, in turns.
 
     Parameters
@@ -177,18 +174,15 @@ def error_against_time(
         Checked settings of a scene.
     repeats
         Timed passes, at least 1.
-    tell
-        Is told how far it is, while no clock runs.
     peers
         Other solvers that are to be measured too.
     """
     troubles: list[str] = []
-    entries = _entries(settings, lambda doing, share: tell(doing, share / (repeats + 1)))
+    entries = _entries(settings)
     for peer in peers:
         entries += _peer_entry(peer, settings, troubles)
     samples: list[list[list[float]]] = [[] for _ in entries]
-    for turn in range(1, repeats + 1):
-        tell(f"Timed pass {turn} of {repeats}", turn / (repeats + 1))
+    for _ in range(repeats):
         for entry, times in zip(entries, samples, strict=True):
             with nothing_collected():
                 times.append(entry.timed())
@@ -196,16 +190,12 @@ def error_against_time(
     return Study(settings, repeats, machine(), tuple(courses), tuple(troubles))
 
 
-def _entries(settings: Settings, tell: Tell) -> list[_Entry]:
+def _entries(settings: Settings) -> list[_Entry]:
     """Find the errors of all methods, without the clock."""
     problem = discretise(settings)
     reference = reference_of(problem)
     distance = distance_to(reference, problem)
-    forms = forms_of(settings)
-    entries = []
-    for number, (method, form) in enumerate(forms.items()):
-        tell(f"Errors of {method}", number / len(forms))
-        entries.append(_latin_entry(method, form, distance))
+    entries = [_latin_entry(method, form, distance) for method, form in forms_of(settings).items()]
     entries.append(
         _Entry(
             INCREMENTAL,

@@ -14,7 +14,6 @@ from solver.definitions import SettingError
 from solver.scenes import entry_of
 from solver.settings import Settings
 from solver.study.exponent import Exponent, exponent_of
-from solver.study.progress import Tell, silent
 from solver.study.quantities.finished import BROKEN, REFUSED
 from solver.study.quantities.quantities import reading
 from solver.study.speed.error_against_time import INCREMENTAL, forms_of
@@ -67,14 +66,13 @@ class Growth:
         return exponent_of([one.size for one in self.sizes], [one.seconds for one in self.sizes])
 
 
-def growth(settings: Settings, tell: Tell = silent) -> list[Growth]:
+def growth(settings: Settings) -> list[Growth]:
     """Measure all sizes, those of LATIN by a sweep; sizes that a scene cannot have are left out."""
     sizes_of = entry_of(settings).sizes
     forms = {name: form for name, form in forms_of(settings).items() if name in MEASURED}
     every = [(setting, method) for setting in sizes_of for method in (INCREMENTAL, *forms)]
     found = []
-    for number, (setting, method) in enumerate(every):
-        tell(f"Growth: {method} over {setting}", number / len(every))
+    for setting, method in every:
         if method in forms:
             measured = _swept(forms[method], setting, sizes_of[setting])
         else:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from app.wire.orders import WHOLE, Rate
-from app.worker import tempo
-from app.worker.tempo import LATE, Tempo
+from app.messages import WHOLE
+from app.worker import pacing
+from app.worker.pacing import LATE, Pacing
 
 
 class Watch:
@@ -22,21 +22,21 @@ class Watch:
 @pytest.fixture
 def watch(monkeypatch: pytest.MonkeyPatch) -> Watch:
     made = Watch()
-    monkeypatch.setattr(tempo, "time", made)
+    monkeypatch.setattr(pacing, "time", made)
     return made
 
 
-def played(watch: Watch, pace: Rate, count: int, takes: float = 0.0) -> list[float]:
-    """Give when each of so many iterations begins, if each takes so long."""
-    found, one = [], Tempo(pace, None)
+def played(watch: Watch, pace: float, count: int, takes: float = 0.0) -> list[float]:
+    """When each of so many iterations begins, if each takes so long."""
+    times, paced = [], Pacing(pace)
     for done in range(1, count + 1):
-        rest = one.rest(done)
+        rest = paced.rest()
         assert rest is not None
         watch.now += rest
-        found.append(watch.now)
-        one.count(done)
+        times.append(watch.now)
+        paced.count(done)
         watch.now += takes
-    return found
+    return times
 
 
 @pytest.mark.parametrize("count", [30, 100, 1000])
@@ -44,8 +44,9 @@ def test_a_whole_search_lasts_three_seconds_however_many_iterations_it_takes(
     watch: Watch, count: int
 ) -> None:
     times = played(watch, WHOLE, count)
-    assert times[0] == pytest.approx(0.25)
-    assert times[-1] == pytest.approx(3.0 * (1.0 - (1.0 - 0.25 / 3.0) ** count))
+    first = 1.0 - 0.25 / 3.0
+    assert times[0] == 0.0
+    assert times[-1] == pytest.approx(3.0 * (first - first**count))
 
 
 def test_a_slow_search_takes_what_its_iterations_take(watch: Watch) -> None:
@@ -54,9 +55,9 @@ def test_a_slow_search_takes_what_its_iterations_take(watch: Watch) -> None:
 
 
 def test_iterations_catch_up_on_a_picture_and_on_no_more(watch: Watch) -> None:
-    one = Tempo(20.0, None)
+    paced = Pacing(20.0)
     for late, rest in ((0.08, 0.0), (5.0, 0.0)):
         watch.now += late
-        assert one.rest(1) == rest
-        one.count(1)
-    assert one._due == pytest.approx(watch.now - LATE + 0.05)
+        assert paced.rest() == rest
+        paced.count(1)
+    assert paced._due == pytest.approx(watch.now - LATE + 0.05)

@@ -1,0 +1,245 @@
+"""Pages of a class show what its leader's page shows, which is computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from app import classroom
+from app.classroom import CLASSROOMS, Member
+from app.frame import Frame
+from app.history import History
+from app.messages import Needs, Order, Ready, Start
+from app.state import PageState, default_settings
+from app.worker.sampling import Sampler
+from solver.scenes import discretise
+from solver.study.quantities.finished import finished_run
+
+LESSON = "how-fast-how-big"
+Callback = Callable[[], Any]
+
+
+class Document:
+    """A document whose next tick comes when it is called for."""
+
+    def __init__(self) -> None:
+        self.due: list[Callback] = []
+
+    def add_next_tick_callback(self, callback: Callback) -> None:
+        self.due.append(callback)
+
+    def add_timeout_callback(self, callback: Callback, milliseconds: int) -> None:
+        pass
+
+
+class Worker:
+    """What stands for a page's supervisor: whether its process is there, and its orders."""
+
+    def __init__(self, state: PageState) -> None:
+        self.state, self.is_there = state, False
+        self.orders: list[Order] = []
+
+    def begin(self) -> None:
+        self.is_there, self.state.send = True, self.orders.append
+
+    def end(self) -> None:
+        self.is_there = False
+
+
+class Seat:
+    """A page of a class without a browser."""
+
+    def __init__(self, scene: str = "bar", address: str = "") -> None:
+        self.state, self.document = PageState(default_settings(scene)), Document()
+        self.worker: Any = Worker(self.state)
+        self.member = Member(self.state, self.worker, self.document)
+        if not self.member.enter(address):
+            self.worker.begin()
+            self.state.run()
+
+
+def tick(*seats: Seat) -> None:
+    """Let all documents do what is due, until nothing is."""
+    while any(seat.document.due for seat in seats):
+        for seat in seats:
+            due, seat.document.due = seat.document.due, []
+            for callback in due:
+                callback()
+
+
+def show(seat: Seat, frame: Frame) -> Frame:
+    """Have the leader's worker send a frame of its present run."""
+    shown = replace(frame, run=replace(frame.run, number=seat.state.number))
+    seat.state.history = History()
+    seat.state.history.add(shown)
+    seat.state.param.update(newest=shown, frame=shown)
+    return shown
+
+
+@pytest.fixture(scope="module")
+def frame() -> Frame:
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    run = finished_run(settings)
+    sampler = Sampler(discretise(settings), settings, 1)
+    return sampler.frame(run.iterate, run.solution.records, run.solution.status, Needs())
+
+
+@pytest.fixture
+def leader() -> Iterator[Seat]:
+    seat = Seat()
+    seat.member.begin()
+    tick(seat)
+    yield seat
+    seat.member.end()
+
+
+def code_of(leader: Seat) -> str:
+    assert leader.member.room is not None
+    return leader.member.room.code
+
+
+def test_a_follower_sees_what_the_leader_sees_and_has_no_worker(leader: Seat, frame: Frame) -> None:
+    follower = Seat("rope", code_of(leader))
+    shown = show(leader, frame)
+    leader.state.select(phase=0.3)
+    leader.state.settings = leader.state.settings.replace(peak=600.0)
+    tick(leader, follower)
+    assert follower.state.frame is shown
+    assert follower.state.settings is leader.state.settings
+    assert follower.state.selection.phase == 0.3
+    assert not follower.worker.is_there
+    assert leader.member.message == f"Class {code_of(leader)}: 1 follows."
+
+
+def test_who_comes_late_has_the_present_frame_at_once(leader: Seat, frame: Frame) -> None:
+    shown = show(leader, frame)
+    assert Seat("rope", code_of(leader).lower()).state.frame is shown
+
+
+def test_of_several_news_a_follower_takes_the_last(leader: Seat, frame: Frame) -> None:
+    follower = Seat("bar", code_of(leader))
+    tick(leader, follower)
+    seen: list[Any] = []
+    follower.state.param.watch(lambda event: seen.append(event.new), "frame")
+    frames = [show(leader, replace(frame, iteration=number)) for number in (1, 2, 3)]
+    assert len(follower.document.due) == 1
+    tick(leader, follower)
+    assert seen == [frames[-1]]
+
+
+def test_whoever_changes_anything_goes_on_alone_and_may_follow_again(
+    leader: Seat, frame: Frame
+) -> None:
+    follower = Seat("bar", code_of(leader))
+    show(leader, frame)
+    tick(leader, follower)
+    follower.state.send(Ready())
+    assert follower.member.follows
+    assert follower.state.change(peak=700.0)
+    assert follower.worker.is_there
+    order = follower.worker.orders[-1]
+    assert isinstance(order, Start)
+    assert order.settings.values()["peak"] == 700.0
+    assert follower.state.history is not leader.state.history
+    tick(leader, follower)
+    assert leader.state.settings.values()["peak"] != 700.0
+    follower.member.follow_again()
+    assert follower.state.frame is leader.state.frame
+    assert not follower.worker.is_there
+
+
+def test_a_class_is_asked_and_sees_the_counts_and_the_answer_with_its_leader(
+    leader: Seat,
+) -> None:
+    first, second = (Seat("bar", code_of(leader)) for _ in range(2))
+    seats = leader, first, second
+    leader.state.lesson = LESSON
+    tick(*seats)
+    assert first.state.lesson == LESSON
+    first.state.prediction = 3
+    first.state.prediction = 1
+    second.state.prediction = 0
+    tick(*seats)
+    poll = leader.state.poll
+    assert poll is not None
+    assert (poll.leads, poll.predicted, poll.present, poll.counts) == (True, 2, 2, ())
+    leader.member.open_counts()
+    tick(*seats)
+    assert first.state.poll is not None
+    assert first.state.poll.counts == (1, 1, 0, 0)
+    assert first.state.is_asked
+    leader.state.prediction = 3
+    tick(*seats)
+    assert not any(seat.state.is_asked for seat in seats)
+
+
+def test_another_lesson_counts_anew(leader: Seat) -> None:
+    follower = Seat("bar", code_of(leader))
+    for lesson, predicted in ((LESSON, 1), ("best-k", 0)):
+        leader.state.lesson = lesson
+        tick(leader, follower)
+        if predicted:
+            follower.state.prediction = 0
+        tick(leader, follower)
+        assert leader.state.poll is not None
+        assert leader.state.poll.predicted == predicted
+
+
+def test_the_leaders_page_loaded_again_leads_on(leader: Seat, frame: Frame) -> None:
+    follower = Seat("bar", code_of(leader))
+    leader.state.change(peak=600.0)
+    leader.state.lesson = LESSON
+    again = Seat("rope", leader.state.room)
+    leader.member.close()
+    assert again.member.leads
+    assert again.worker.is_there
+    assert again.state.settings.values()["peak"] == 600.0
+    assert again.state.lesson == LESSON
+    shown = show(again, frame)
+    tick(again, follower)
+    assert follower.state.frame is shown
+    again.member.end()
+
+
+def test_a_class_waits_five_minutes_for_its_leader(
+    leader: Seat, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    follower = Seat("bar", code_of(leader))
+    now = classroom.time.monotonic()
+    leader.member.close()
+    tick(follower)
+    assert "away" in follower.member.message
+    monkeypatch.setattr(classroom.time, "monotonic", lambda: now + 299.0)
+    assert CLASSROOMS.find(follower.state.room) is not None
+    monkeypatch.setattr(classroom.time, "monotonic", lambda: now + 301.0)
+    assert CLASSROOMS.find(follower.state.room) is None
+    follower.member.notify()
+    tick(follower)
+    assert "has ended" in follower.member.message
+
+
+def test_a_key_that_is_wrong_does_not_lead(leader: Seat) -> None:
+    other = Seat("bar", f"{code_of(leader)}.0000")
+    assert not other.member.leads
+    assert other.member.follows
+
+
+def test_a_code_that_there_is_not_is_told_and_the_page_runs() -> None:
+    seat = Seat("bar", "XXXX5")
+    assert "There is no class XXXX5" in seat.member.message
+    assert seat.worker.is_there
+
+
+def test_a_picture_that_moves_does_not_bring_the_poll_again(leader: Seat) -> None:
+    follower = Seat("bar", code_of(leader))
+    leader.state.lesson = LESSON
+    tick(leader, follower)
+    seen: list[Any] = []
+    follower.state.param.watch(seen.append, ["poll", "lesson", "settings"])
+    leader.state.select(phase=0.3)
+    tick(leader, follower)
+    assert follower.state.selection.phase == 0.3
+    assert not seen

@@ -1,0 +1,167 @@
+"""A person opens the page, watches a search, and moves through it."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from pages import (
+    ANSWER, ENDLESS, Visit, button, drag, field, figure, figures, holds, is_solved, iteration,
+    painted, slider, status,
+)  # fmt: skip
+from playwright.sync_api import expect
+
+from solver.scenes import CATALOGUE
+
+
+def test_whoever_opens_the_page_sees_the_search_count_up_to_a_certified_answer(
+    visit: Visit,
+) -> None:
+    page = visit()
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
+    expect(status(page)).to_contain_text("% wrong")
+    first = iteration(page)
+    painted(page, 3)
+    assert iteration(page) > first
+    is_solved(page)
+    expect(status(page)).to_contain_text(re.compile(r"search: \d+ iterations"))
+
+
+@pytest.mark.parametrize("scene", list(CATALOGUE))
+def test_every_scene_opens_and_says_what_it_is(visit: Visit, scene: str) -> None:
+    page = visit(f"?scene={scene}&{ANSWER}")
+    expect(page.locator(".sentence")).to_contain_text(re.compile(r"\w+ \w+ .*\."))
+    is_solved(page)
+
+
+def test_a_slider_that_is_dragged_shows_its_answers_and_let_go_the_search(visit: Visit) -> None:
+    page = visit()
+    is_solved(page)
+    before = figures(page).inner_text()
+    drag(page, slider(page, "Peak load"), 0.5, 2.5)
+    expect(status(page)).to_contain_text("answer:")
+    expect(figures(page)).not_to_have_text(before)
+    page.mouse.up()
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
+    is_solved(page)
+    expect(status(page)).to_contain_text("search:")
+    assert "peak=" in page.url
+
+
+def test_a_value_is_typed_in_its_unit_and_what_cannot_be_is_refused_beside_it(
+    visit: Visit,
+) -> None:
+    page = visit(f"?{ANSWER}")
+    is_solved(page)
+    typed = field(page, "Peak load")
+    typed.fill("1.2 kN")
+    typed.press("Enter")
+    expect(typed).to_have_value("1200")
+    expect(figures(page)).to_contain_text("Force −1.2 kN")
+    friction = field(page, "Friction coefficient")
+    friction.fill("-1")
+    friction.press("Enter")
+    expect(page.get_by_text("cannot be −1").first).to_be_visible()
+    expect(friction).to_have_value("0.3")
+    expect(figures(page)).to_contain_text("Force −1.2 kN")
+
+
+def test_one_goes_back_to_an_iteration_and_on_again(visit: Visit) -> None:
+    page = visit()
+    is_solved(page)
+    last = iteration(page)
+    scrub = slider(page, "Iteration")
+    drag(page, scrub, 0.5, -4.0)
+    expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
+    page.mouse.up()
+    back = iteration(page)
+    page.locator(".sentence").click()
+    page.keyboard.press("Shift+ArrowRight")
+    expect(status(page)).not_to_contain_text(f"iteration {back} of")
+    assert back < iteration(page) < last
+    scrub.press("End")
+    expect(status(page)).to_contain_text("certified")
+
+
+def test_the_load_path_is_the_time_line(visit: Visit) -> None:
+    page = visit(f"?{ANSWER}")
+    is_solved(page)
+    expect(figures(page)).to_contain_text("Force −900 N")
+    drag(page, figure(page, 1), 0.75, 0.26)
+    expect(figures(page)).to_contain_text(re.compile(r"Force (8|9)\d\d N"))
+    page.mouse.up()
+    page.locator(".sentence").click()
+    before = figures(page).inner_text()
+    page.keyboard.press("ArrowRight")
+    expect(figures(page)).not_to_have_text(before)
+
+
+def test_one_plays_through_time_and_stops_it(visit: Visit) -> None:
+    page = visit(f"?{ANSWER}&instant=0.1")
+    is_solved(page)
+    button(page, "Play through time").click()
+    expect(figures(page)).to_contain_text(re.compile(r"Force −\d"))
+    expect(figures(page)).to_contain_text(re.compile(r"Force \d"))
+    page.locator(".sentence").click()
+    page.keyboard.press("t")
+    expect(page.get_by_text("play_circle", exact=True)).to_be_visible()
+
+
+def test_a_run_is_paused_stepped_and_begun_anew_by_buttons_and_keys(visit: Visit) -> None:
+    page = visit(f"?{ENDLESS}")
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+    button(page, "Run or pause").click()
+    expect(status(page)).to_contain_text("paused")
+    button(page, "From the start").click()
+    expect(status(page)).to_contain_text("iteration 1 ")
+    button(page, "One iteration").click()
+    expect(status(page)).to_contain_text("iteration 2 ")
+    page.locator(".sentence").click()
+    page.keyboard.press("s")
+    expect(status(page)).to_contain_text("iteration 3 ")
+    page.keyboard.press("r")
+    expect(status(page)).to_contain_text("iteration 1 ")
+    page.keyboard.press(" ")
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+    expect(status(page)).not_to_contain_text("paused")
+
+
+def test_one_watches_the_search_or_has_the_answer_at_once(visit: Visit) -> None:
+    page = visit()
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
+    button(page, "Answer").click()
+    expect(status(page)).to_contain_text("answer:")
+    button(page, "Watch").click()
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d+"))
+    is_solved(page)
+    expect(status(page)).to_contain_text("search:")
+
+
+def test_a_pinned_run_stays_beside_the_next(visit: Visit) -> None:
+    page = visit(f"?{ANSWER}")
+    is_solved(page)
+    button(page, "Keep this run").click()
+    typed = field(page, "Peak load")
+    for value in ("1000", "1100"):
+        typed.fill(value)
+        typed.press("Enter")
+        expect(figures(page)).to_contain_text(f"Force −{int(value) / 1000:g} kN")
+    legend = "model('pulse').document._all_models"
+    holds(page, f"[...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
+    button(page, "Keep this run").click()
+    holds(page, f"![...{legend}.values()].some(m => m.label?.value === 'pinned run' && m.visible)")
+
+
+def test_another_view_takes_the_place_of_one_and_is_remembered(visit: Visit) -> None:
+    page = visit(f"?{ANSWER}")
+    is_solved(page)
+    page.get_by_role("tab", name="Loop").click()
+    titles = "[...model('pulse').document._all_models.values()].filter(m => m.type === 'Title')"
+    holds(page, f"{titles}.some(m => m.text.startsWith('End displacement'))")
+    field(page, "Peak load").fill("1000")
+    field(page, "Peak load").press("Enter")
+    expect(figures(page)).to_contain_text("Force −1 kN")
+    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
+    button(page, "Block").click()
+    expect(page.locator(".sentence")).to_contain_text("block")
+    expect(page.get_by_role("tab", name="Loop")).to_have_attribute("aria-selected", "true")
