@@ -9,7 +9,7 @@ from html import escape
 from typing import Any
 
 import numpy as np
-from bokeh.embed import components
+from bokeh.embed import file_html
 from bokeh.layouts import column, grid
 from bokeh.model import Model
 from bokeh.models import (
@@ -24,6 +24,7 @@ from bokeh.models import (
     Span,
 )
 from bokeh.models.annotations import TextAnnotation
+from bokeh.resources import INLINE
 
 from app.charts import library
 from app.frame import Frame, Selection
@@ -49,12 +50,12 @@ PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Slipfront: {name}</title>
-{library}
-{script}
-<body>{body}</body>
+<title>{{ title }}</title>
+{{ library }}
+<body>{{ macros.embed(doc.roots[0]) }}{{ plot_script }}</body>
 </html>
 """
+"""Of Jinja, as `file_html` takes it; its own has what Panel would have a page load."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -110,8 +111,15 @@ def offline_page(
     slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
     below = Div(text=_below(frame, tables), sizing_mode="stretch_width")
     page = _arranged(copies, slider, caption, below)
-    script, body = components(page)
-    return PAGE.format(name=run.settings.scene, library=library("bokeh-widgets"), script=script, body=body)
+    return file_html(
+        page,
+        INLINE,
+        f"Slipfront: {run.settings.scene}",
+        template=PAGE,
+        template_variables={"library": library("bokeh-widgets")},
+        # What is dragged or tapped there does nothing.
+        suppress_callback_warning=True,
+    )
 
 
 def _arranged(views: Sequence[View], slider: Slider, caption: Div, below: Div) -> Column:
