@@ -59,16 +59,20 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
     """
     figures = [draw(chart) for plot in plots for chart in plot.charts]
     script, places = components(figures, wrap_script=True)
-    # Not `Resources.render`, which brings what Panel would have a page load.
-    library = Resources(mode="inline", components=["bokeh"]).js_raw
     waiting = iter(places)
     sections = [
         f'<div role="figure" aria-label="{escape(plot.heading)}">{keys(plot.charts)}'
         f'<div class="panels">{"".join(next(waiting) for _ in plot.charts)}</div></div>'
         for plot in plots
     ]
-    once = "\n".join(f"<script>{text}</script>" for text in library)
-    return f"{STYLE}\n{once}\n{script}", sections
+    return f"{STYLE}\n{library()}\n{script}", sections
+
+
+def library(*more: str) -> str:
+    """Bokeh itself and more of its parts, for a page that loads nothing (HTML)."""
+    # Not `Resources.render`, which brings what Panel would have a page load.
+    texts = Resources(mode="inline", components=["bokeh", *more]).js_raw
+    return "\n".join(f"<script>{text}</script>" for text in texts)
 
 
 def keys(charts: Sequence[Chart]) -> str:

@@ -12,9 +12,21 @@ import numpy as np
 from bokeh.embed import file_html
 from bokeh.layouts import column, grid
 from bokeh.model import Model
-from bokeh.models import Column, ColumnDataSource, CustomJS, Div, PointDrawTool, Slider
+from bokeh.models import (
+    Column,
+    ColumnDataSource,
+    CustomJS,
+    Div,
+    PointDrawTool,
+    Range1d,
+    Renderer,
+    Slider,
+    Span,
+)
+from bokeh.models.annotations import TextAnnotation
 from bokeh.resources import INLINE
 
+from app.charts import library
 from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.view import View
@@ -25,6 +37,25 @@ MOST_INSTANTS = 60
 HEIGHTS = {"Scene": 260, "Load path": 70}
 HEIGHT = 300
 """Pixels of a figure."""
+MOVING: dict[type[Model], list[str]] = {
+    ColumnDataSource: ["data"],
+    Range1d: ["start", "end"],
+    Span: ["location"],
+    TextAnnotation: ["text"],
+    Div: ["text"],
+    Renderer: ["visible"],
+}
+"""What an instant may change in a figure."""
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{{ title }}</title>
+{{ library }}
+<body>{{ macros.embed(doc.roots[0]) }}{{ plot_script }}</body>
+</html>
+"""
+"""Of Jinja, as `file_html` takes it; its own has what Panel would have a page load."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -60,13 +91,14 @@ def offline_page(
     columns = thinned(len(run.instants), MOST_INSTANTS).tolist()
     at = int(np.argmin(np.abs(np.array(columns) - run.column(selection.phase))))
     instants: list[Values] = []
+    models = list({model for root in (*figures, caption) for model in root.references()})
     # The one that is looked at comes last, so that the page begins with it.
     for number in [*range(len(columns)), at]:
         time = float(run.instants[columns[number]])
         caption.text = f"{escape(run.sentence)} At {unit(time)} of {unit(end)}."
         for view in copies:
             view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
-        instants.append(_values([*figures, caption]))
+        instants.append(_values(models))
     instants.pop()
     last = len(columns) - 1
     slider = Slider(start=0, end=last, value=at, title="Instant", sizing_mode="stretch_width")
@@ -79,8 +111,15 @@ def offline_page(
     slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
     below = Div(text=_below(frame, tables), sizing_mode="stretch_width")
     page = _arranged(copies, slider, caption, below)
-    title = f"Slipfront: {run.settings.scene}"
-    return file_html(page, INLINE, title, suppress_callback_warning=True)
+    return file_html(
+        page,
+        INLINE,
+        f"Slipfront: {run.settings.scene}",
+        template=PAGE,
+        template_variables={"library": library("bokeh-widgets")},
+        # What is dragged or tapped there does nothing.
+        suppress_callback_warning=True,
+    )
 
 
 def _arranged(views: Sequence[View], slider: Slider, caption: Div, below: Div) -> Column:
@@ -96,23 +135,21 @@ def _arranged(views: Sequence[View], slider: Slider, caption: Div, below: Div) -
     return column(slider, caption, *wide, plots, below, sizing_mode="stretch_width")
 
 
-def _values(roots: Sequence[Model]) -> Values:
-    """Data of all sources, and all else of the figures that is a number or a text."""
-    values: Values = {}
-    for model in {model for root in roots for model in root.references()}:
-        if isinstance(model, ColumnDataSource):
-            values[model, "data"] = dict(model.data)
-            continue
-        for name, value in model.properties_with_values(include_defaults=True).items():
-            if isinstance(value, bool | int | float | str) and name != "name":
-                values[model, name] = value
-    return values
+def _values(models: Sequence[Model]) -> Values:
+    """All that an instant changes in them."""
+    return {
+        (model, name): dict(model.data) if name == "data" else getattr(model, name)
+        for model in models
+        for kind, names in MOVING.items()
+        if isinstance(model, kind)
+        for name in names
+    }
 
 
 def _differs(key: tuple[Model, str], instants: Sequence[Values]) -> bool:
     """Whether a value is not the same at all instants."""
     first = instants[0][key]
-    others = [values[key] for values in instants[1:] if key in values]
+    others = [values[key] for values in instants[1:]]
     if not isinstance(first, dict):
         return any(value != first for value in others)
     return any(

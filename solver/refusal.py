@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from typing import Any
 
 
 class RefusedError(ValueError):
@@ -16,6 +17,10 @@ class RefusedError(ValueError):
         super().__init__(f"{name} = {shown} is refused; allowed: {allowed}; {remedy}")
         self.name, self.value = name, value
         self.allowed, self.remedy = allowed, remedy
+
+    def __reduce__(self) -> tuple[type[RefusedError], tuple[Any, ...]]:
+        """What another process makes it of again."""
+        return type(self), (self.name, self.value, self.allowed, self.remedy)
 
 
 def plain(value: float) -> str:
