@@ -29,6 +29,7 @@ from solver.settings import Settings
 from solver.study.other_programs.fclib import can_write
 
 WIDTH = 340
+SVG = "The same, to save plots from as SVG (.html)"
 PROGRAM = """\
 from solver.files import scene_settings
 from solver.latin import solve
@@ -53,7 +54,6 @@ ALONE = "solution = solve(problem, method_of(settings))"
 BESIDE = """\
 distance = distance_to(reference_of(problem), problem)
 solution = solve(problem, method_of(settings), distance=distance)"""
-SVG = "Save button of the plots writes SVG"
 
 
 def program(settings: Settings) -> str:
@@ -164,6 +164,7 @@ class TakeAway:
         name = f"slipfront-{frame.run.settings.scene}"
         texts = [
             ("The run as one page (.html)", f"{name}.html", partial(self.page, frame, views)),
+            (SVG, f"{name}-svg.html", partial(self.page, frame, views, "svg")),
             ("The run as a program (.py)", f"{name}.py", partial(program, frame.run.settings)),
             ("All iterations (.csv)", f"{name}-iterations.csv", partial(history_table, frame)),
         ]
@@ -172,26 +173,17 @@ class TakeAway:
             for view in views
         ]
         offers: list[Any] = [_download(label, file, make) for label, file, make in texts]
-        return [*offers, *self._pictures(views), *([self._fclib(name)] if can_write() else [])]
+        return [*offers, *([self._fclib(name)] if can_write() else [])]
 
-    def page(self, frame: Frame, views: list[View]) -> str:
-        """The run as one page that needs nothing beside it."""
+    def page(self, frame: Frame, views: list[View], backend: str = "canvas") -> str:
+        """The run as one page that needs nothing beside it.
+
+        The save buttons of its plots write PNG, or SVG with the backend "svg".
+        """
         tables = {f"{slug(view)}.csv": plot_table(view, frame) for view in views}
         tables["iterations.csv"] = history_table(frame)
         state = self._state
-        return offline_page(frame, views, state.selection, state.ghost, tables)
-
-    def _pictures(self, views: list[View]) -> list[Any]:
-        """A switch between PNG and SVG: pictures are saved by the plots' own toolbars."""
-        is_svg = any(view.figure.output_backend == "svg" for view in views)
-        switch = pmui.Switch(label=SVG, value=is_svg, margin=(8, 8), description="PNG otherwise")
-
-        def change(event: Any) -> None:
-            for view in views:
-                view.figure.output_backend = "svg" if event.new else "canvas"
-
-        switch.param.watch(change, "value")
-        return [switch] if views else []
+        return offline_page(frame, views, state.selection, state.ghost, tables, backend)
 
     def _fclib(self, name: str) -> pn.Column:
         """A button that has the worker make the file, which is there to be saved then."""

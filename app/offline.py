@@ -20,11 +20,13 @@ from bokeh.models import (
     PointDrawTool,
     Range1d,
     Renderer,
+    SaveTool,
     Slider,
     Span,
 )
 from bokeh.models.annotations import TextAnnotation
 from bokeh.resources import INLINE
+from jinja2 import Template
 
 from app.charts import library
 from app.frame import Frame, Selection
@@ -52,10 +54,10 @@ PAGE = """<!DOCTYPE html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{{ title }}</title>
 {{ library }}
-<body>{{ macros.embed(doc.roots[0]) }}{{ plot_script }}</body>
+<body>{% from macros import embed %}{{ embed(docs[0].roots[0]) }}{{ plot_script }}</body>
 </html>
 """
-"""Of Jinja, as `file_html` takes it; its own has what Panel would have a page load."""
+"""As `file_html` takes it, whose own has what Panel would have a page load."""
 SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
@@ -69,6 +71,7 @@ def offline_page(
     selection: Selection,
     ghost: Frame | None,
     tables: Mapping[str, str],
+    backend: str = "canvas",
 ) -> str:
     """The page (HTML), whose slider moves through the instants.
 
@@ -82,9 +85,15 @@ def offline_page(
         What is looked at.
     tables
         CSV by the name of its file.
+    backend
+        Of Bokeh's figures: "canvas" or "svg".
     """
     copies = [type(view)(view.state) for view in views]
     figures = [view.figure for view in copies]
+    for view, made in zip(copies, figures, strict=True):
+        made.output_backend = backend
+        for tool in made.select({"type": SaveTool}):
+            tool.filename = view.name
     caption = Div(text="", sizing_mode="stretch_width")
     run, end = frame.run, float(frame.run.instants[-1])
     unit = unit_for(end, "s")
@@ -115,7 +124,7 @@ def offline_page(
         page,
         INLINE,
         f"Slipfront: {run.settings.scene}",
-        template=PAGE,
+        template=Template(PAGE),
         template_variables={"library": library("bokeh-widgets")},
         # What is dragged or tapped there does nothing.
         suppress_callback_warning=True,
