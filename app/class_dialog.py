@@ -44,7 +44,9 @@ class ClassDialog:
             align="center",
             css_classes=["class"],
         )
-        self.dialog = pmui.Dialog(title="A class", width_option="sm", show_close_button=True)
+        self.dialog = pmui.Dialog(
+            title="A class", width_option="sm", show_close_button=True, close_on_click=True
+        )
         member.param.watch(lambda event: self._say(), "message")
         self._say()
 

@@ -149,7 +149,9 @@ class TakeAway:
     def __init__(self, state: PageState, display: Display) -> None:
         self._state, self._display = state, display
         self._content = pn.Column(margin=0)
-        self.view = pmui.Dialog(self._content, title="Take away", show_close_button=True)
+        self.view = pmui.Dialog(
+            self._content, title="Take away", show_close_button=True, close_on_click=True
+        )
 
     def open(self) -> None:
         """Offer what there is of what is seen."""

@@ -37,7 +37,9 @@ WORDS = {
 
 def dialog() -> pmui.Dialog:
     """A dialog that is filled when it is first opened."""
-    made = pmui.Dialog(title="Keys and words", width_option="md", show_close_button=True)
+    made = pmui.Dialog(
+        title="Keys and words", width_option="md", show_close_button=True, close_on_click=True
+    )
 
     def fill() -> None:
         if made.open and not made.objects:

@@ -10,6 +10,7 @@ from tornado.httpserver import HTTPServer
 from tornado.httputil import HTTPServerRequest
 from tornado.routing import Matcher, Rule
 from tornado.web import Application, ErrorHandler, GZipContentEncoding
+from tornado.websocket import WebSocketClosedError
 
 LONGEST = 16_000
 """Characters of an address; what is longer is refused (414)."""
@@ -24,6 +25,7 @@ def configure() -> None:
     HTTPServer.configure(PageServer)
     for name in ("bokeh.server.views.ws", "bokeh.server.protocol_handler", "tornado.application"):
         logging.getLogger(name).addFilter(OneLine())
+    logging.getLogger("asyncio").addFilter(is_of_an_open_page)
 
 
 class PageServer(HTTPServer):
@@ -59,6 +61,11 @@ class NoText(Matcher):
     def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
         """Whether it is one."""
         return {} if "%00" in request.path else None
+
+
+def is_of_an_open_page(record: logging.LogRecord) -> bool:
+    """Whether a record is of anything but a message to a page that was closed meanwhile."""
+    return not (record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError))
 
 
 class OneLine(logging.Filter):

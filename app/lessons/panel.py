@@ -64,7 +64,9 @@ class LessonPanel:
         self._choices, self._class = pn.Column(margin=0), pn.Column(margin=0)
         self._shown: tuple[str, bool] = ("", False)
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
-        self.dialog = pmui.Dialog(title="Lessons", width_option="md", show_close_button=True)
+        self.dialog = pmui.Dialog(
+            title="Lessons", width_option="md", show_close_button=True, close_on_click=True
+        )
         state.param.watch(lambda *events: self.show(), ["lesson", "prediction", "poll"])
         state.param.watch(lambda event: self._follow_settings(), "settings")
 
