@@ -15,8 +15,10 @@ ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=20 a second"
 ANSWER = "start=nested&finish=at-once"
 """In an address: a run whose answer is there at once."""
 POLL_MS = 50.0
-FAULT = re.compile(r"Traceback|ERROR|[EW]-1\d{3}")
+FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
+ALLOWED = re.compile("Dropping a patch|session-lifetime")
+"""Lines of it that a page leaves which is closed in the midst of a picture."""
 MODEL = """(name) => {
   for (const document of window.Bokeh ? Bokeh.documents : []) {
     const model = document.get_model_by_name(name)
@@ -58,7 +60,7 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     assert not complaints, complaints
     said = server.log[before:]
     lines = said.splitlines()
-    assert not [s for s in lines if FAULT.search(s)], said
+    assert not [s for s in lines if FAULT.search(s) and not ALLOWED.search(s)], said
 
 
 def status(page: Page) -> Locator:
@@ -126,15 +128,3 @@ def drag(page: Page, place: Locator, start: float, end: float, height: float = 0
     page.mouse.move(box["x"] + start * box["width"], y)
     page.mouse.down()
     page.mouse.move(box["x"] + end * box["width"], y, steps=6)
-
-
-def click_option(page: Page, name: str, option: str) -> None:
-    """Choose an option of a list."""
-    page.get_by_role("combobox", name=re.compile(rf"^{re.escape(name)}")).click()
-    page.get_by_role("option", name=option, exact=True).click()
-
-
-def close_dialog(page: Page) -> None:
-    """Close what has opened over the page."""
-    page.keyboard.press("Escape")
-    expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(0)
