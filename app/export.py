@@ -153,9 +153,19 @@ class TakeAway:
             self._content, title="Take away", show_close_button=True, close_on_click=True
         )
 
+    @property
+    def views(self) -> list[View]:
+        """The views in sight."""
+        return list(self._display.views)
+
+    @property
+    def offers(self) -> list[Any]:
+        """What can be saved."""
+        return list(self._content)
+
     def open(self) -> None:
         """Offer what there is of what is seen."""
-        frame, views = self._state.frame, list(self._display.views)
+        frame, views = self._state.frame, self.views
         if frame is None:
             self._content[:] = [pmui.Typography("There is no run yet.")]
         else:

@@ -47,15 +47,20 @@ class Job:
         As after `python -m solver`; they may name the file `SETTINGS` and the folder `OUT`.
     settings
         Text of that file.
+
+    Attributes
+    ----------
+    folder
+        In which it runs.
     """
 
     def __init__(self, arguments: Sequence[str], settings: str = "") -> None:
-        self._folder = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
-        self._path = Path(self._folder.name)
-        (self._path / SETTINGS).write_text(settings, encoding="utf-8")
+        self._place = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
+        self.folder = Path(self._place.name)
+        (self.folder / SETTINGS).write_text(settings, encoding="utf-8")
         self._asked = time.monotonic()
         self._is_cancelled = False
-        self._future = executor().submit(command, tuple(arguments), self._path)
+        self._future = executor().submit(command, tuple(arguments), self.folder)
 
     @property
     def is_begun(self) -> bool:
@@ -70,13 +75,13 @@ class Job:
     @property
     def lines(self) -> list[str]:
         """What the command has printed so far."""
-        log = self._path / LOG
+        log = self.folder / LOG
         return log.read_text(encoding="utf-8").splitlines() if log.exists() else []
 
     @property
     def files(self) -> dict[str, bytes]:
         """What the command has written, by name."""
-        out = self._path / OUT
+        out = self.folder / OUT
         return {file.name: file.read_bytes() for file in sorted(out.glob("*"))}
 
     @property
@@ -110,4 +115,4 @@ class Job:
     def close(self) -> None:
         """End it and leave nothing behind."""
         self.cancel()
-        self._folder.cleanup()
+        self._place.cleanup()

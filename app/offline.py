@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -88,28 +88,57 @@ def offline_page(
     backend
         Of Bokeh's figures: "canvas" or "svg".
     """
-    copies = [type(view)(view.state) for view in views]
-    figures = [view.figure for view in copies]
-    for view, made in zip(copies, figures, strict=True):
-        made.output_backend = backend
-        for tool in made.select({"type": SaveTool}):
-            tool.filename = view.name
+    copies = _copies(views, backend)
+    columns = thinned(len(frame.run.instants), MOST_INSTANTS).tolist()
+    at = int(np.argmin(np.abs(np.array(columns) - frame.run.column(selection.phase))))
     caption = Div(text="", sizing_mode="stretch_width")
-    run, end = frame.run, float(frame.run.instants[-1])
-    unit = unit_for(end, "s")
-    columns = thinned(len(run.instants), MOST_INSTANTS).tolist()
-    at = int(np.argmin(np.abs(np.array(columns) - run.column(selection.phase))))
+    models = {model for view in copies for model in view.figure.references()} | {caption}
     instants: list[Values] = []
-    models = list({model for root in (*figures, caption) for model in root.references()})
     # The one that is looked at comes last, so that the page begins with it.
     for number in [*range(len(columns)), at]:
-        time = float(run.instants[columns[number]])
-        caption.text = f"{escape(run.sentence)} At {unit(time)} of {unit(end)}."
+        phase = _phase(frame, columns[number])
+        caption.text = f"{escape(frame.run.sentence)} {_words(frame, phase)}"
         for view in copies:
-            view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
+            view.update(frame, replace(selection, phase=phase), ghost)
         instants.append(_values(models))
-    instants.pop()
-    last = len(columns) - 1
+    slider = _slider(instants[:-1], at)
+    below = Div(text=_below(frame, tables), sizing_mode="stretch_width")
+    page = _arranged(copies, slider, caption, below)
+    return file_html(
+        page,
+        INLINE,
+        f"Slipfront: {frame.run.settings.scene}",
+        template=Template(PAGE),
+        template_variables={"library": library("bokeh-widgets")},
+        # What is dragged or tapped there does nothing.
+        suppress_callback_warning=True,
+    )
+
+
+def _copies(views: Sequence[View], backend: str) -> list[View]:
+    """Views of the same kinds, with figures of their own."""
+    copies = [type(view)(view.state) for view in views]
+    for view in copies:
+        view.figure.output_backend = backend
+        for tool in view.figure.select({"type": SaveTool}):
+            tool.filename = view.name
+    return copies
+
+
+def _phase(frame: Frame, column: int) -> float:
+    end = float(frame.run.instants[-1])
+    return float(frame.run.instants[column]) / end if end else 0.0
+
+
+def _words(frame: Frame, phase: float) -> str:
+    end = float(frame.run.instants[-1])
+    unit = unit_for(end, "s")
+    return f"At {unit(phase * end)} of {unit(end)}."
+
+
+def _slider(instants: Sequence[Values], at: int) -> Slider:
+    """What moves through the instants, and begins with one of them."""
+    last = len(instants) - 1
     slider = Slider(start=0, end=last, value=at, title="Instant", sizing_mode="stretch_width")
     moving = [key for key in instants[0] if _differs(key, instants)]
     arguments = {
@@ -118,17 +147,7 @@ def offline_page(
         "values": [[values[key] for values in instants] for key in moving],
     }
     slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
-    below = Div(text=_below(frame, tables), sizing_mode="stretch_width")
-    page = _arranged(copies, slider, caption, below)
-    return file_html(
-        page,
-        INLINE,
-        f"Slipfront: {run.settings.scene}",
-        template=Template(PAGE),
-        template_variables={"library": library("bokeh-widgets")},
-        # What is dragged or tapped there does nothing.
-        suppress_callback_warning=True,
-    )
+    return slider
 
 
 def _arranged(views: Sequence[View], slider: Slider, caption: Div, below: Div) -> Column:
@@ -144,7 +163,7 @@ def _arranged(views: Sequence[View], slider: Slider, caption: Div, below: Div) -
     return column(slider, caption, *wide, plots, below, sizing_mode="stretch_width")
 
 
-def _values(models: Sequence[Model]) -> Values:
+def _values(models: Iterable[Model]) -> Values:
     """All that an instant changes in them."""
     return {
         (model, name): dict(model.data) if name == "data" else getattr(model, name)

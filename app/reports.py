@@ -59,18 +59,20 @@ class Reports:
 
     Attributes
     ----------
-    job
-        The report that is being made, or was last.
+    job, title
+        The report that is being made, or was last, and its kind.
+    kind, page, files
+        What is chosen, and what is shown of it: a page, and files to be saved.
     view
         What stands on the page.
     """
 
     def __init__(self, state: PageState) -> None:
-        self._state = state
+        self.state = state
         self._document = pn.state.curdoc
         self.job: Job | None = None
         self._asked: Asked = ((), "")
-        self._title = ""
+        self.title = ""
         self._looking: Any = None
         self._stood_still = False
         self._make()
@@ -115,15 +117,15 @@ class Reports:
             field.param.watch(lambda event: self._show(), "value")
         self._words = pmui.Typography("", variant="body2", margin=(0, 8))
         self._progress = pmui.Typography("", variant="body2", margin=(6, 8))
-        self._files = pn.FlexBox()
-        self._page = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 8))
-        asked = (self.repeats, self.sizes, self.is_quick, self._start, self._cancel, self._files)
+        self.files = pn.FlexBox()
+        self.page = pn.pane.HTML("", sizing_mode="stretch_width", margin=(4, 8))
+        asked = (self.repeats, self.sizes, self.is_quick, self._start, self._cancel, self.files)
         self.view = pn.Column(
             self.kind,
             self._words,
             pn.FlexBox(*asked),
             self._progress,
-            self._page,
+            self.page,
             sizing_mode="stretch_width",
             css_classes=["reports"],
         )
@@ -138,7 +140,7 @@ class Reports:
             STABILITY: ["stability", *["--quick"] * bool(self.is_quick.value)],
             PROOF: ["proof"],
         }[self.kind.value]
-        settings = dump(self._state.settings) if self.kind.value == STUDY else ""
+        settings = dump(self.state.settings) if self.kind.value == STUDY else ""
         return (*arguments, "--out", OUT), settings
 
     def start(self) -> None:
@@ -147,7 +149,7 @@ class Reports:
             return
         if self.job is not None:
             self.job.close()
-        self._asked, self._title = self.asked, self.kind.value
+        self._asked, self.title = self.asked, self.kind.value
         self.job = Job(*self._asked)
         if self._document is not None:
             self._looking = self._document.add_periodic_callback(self.look, LOOK)
@@ -166,10 +168,10 @@ class Reports:
 
     def look(self) -> None:
         """Follow the job."""
-        job, state = self.job, self._state
+        job, state = self.job, self.state
         if job is None:
             return
-        is_timed = self._title == STUDY and job.is_begun and not job.is_over
+        is_timed = self.title == STUDY and job.is_begun and not job.is_over
         if is_timed and not self._stood_still and state.running and not state.is_over:
             self._stood_still = True
             state.pause()
@@ -188,10 +190,10 @@ class Reports:
 
     def _show(self) -> None:
         """Show what is chosen: its fields, its progress, and the report if there is one."""
-        if self._state.tab != "Reports" and self._words.object:
+        if self.state.tab != "Reports" and self._words.object:
             return
         kind, job = self.kind.value, self.job
-        is_refused = kind == STUDY and not has_reference(self._state.settings)
+        is_refused = kind == STUDY and not has_reference(self.state.settings)
         is_busy = job is not None and not job.is_over
         self._words.object = WORDS[kind] + f" {NO_REFERENCE}" * is_refused
         self.repeats.visible = self.sizes.visible = kind == STUDY
@@ -201,12 +203,12 @@ class Reports:
             disabled=is_busy or is_refused, label="Do it again" if files else "Start"
         )
         self._cancel.visible = is_busy
-        self._progress.object = f"{self._title}: {job.progress}" if job and job.progress else ""
-        names = [download.filename for download in self._files]
+        self._progress.object = f"{self.title}: {job.progress}" if job and job.progress else ""
+        names = [download.filename for download in self.files]
         page = shown(files)
-        if page != self._page.object or names != list(files):
-            self._page.object = page
-            self._files[:] = [_download(name, data) for name, data in files.items()]
+        if page != self.page.object or names != list(files):
+            self.page.object = page
+            self.files[:] = [_download(name, data) for name, data in files.items()]
 
 
 def shown(files: dict[str, bytes]) -> str:

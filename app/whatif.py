@@ -61,6 +61,10 @@ class WhatIf(param.Parameterized):
     ----------
     question
         What is asked; an address says it by `Question.pairs`.
+    sweep
+        Its runs; None before there are any.
+    spans, mesh
+        Fields of the settings that vary, and the button that asks of meshes.
     view
         What stands on the page.
     """
@@ -74,9 +78,9 @@ class WhatIf(param.Parameterized):
         question: Question | None = None,
     ) -> None:
         super().__init__(question=question or bathtub(state.settings))
-        self._state, self._open_run = state, open_run
+        self.state, self._open_run = state, open_run
         self._document = pn.state.curdoc
-        self._sweep: Sweep | None = None
+        self.sweep: Sweep | None = None
         self._job: Job | None = None
         self._looking: Any = None
         self._is_updating = False
@@ -86,13 +90,12 @@ class WhatIf(param.Parameterized):
         self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
         self.view = pn.Column(
             pn.FlexBox(*self._ready, self._help),
-            self._first.view,
-            self._second.view,
+            *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._start, self._cancel),
             self._message,
             self._keys,
             self._chart,
-            pn.FlexBox(self._table, self._mesh, self._meshed),
+            pn.FlexBox(self._table, self.mesh, self._meshed),
             sizing_mode="stretch_width",
             css_classes=["what-if"],
         )
@@ -105,15 +108,17 @@ class WhatIf(param.Parameterized):
 
     def _make_fields(self) -> None:
         changed = self._change
-        self._first = Span("Vary", changed, is_optional=False)
-        self._second = Span("and", changed, is_optional=True)
+        self.spans = (
+            Span("Vary", changed, is_optional=False),
+            Span("and", changed, is_optional=True),
+        )
         self._of = pmui.Select(label="See what happens to", width=386, **FIELD)
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")
         self._start = _button("Draw", "play_arrow", self.start, variant="contained")
         self._cancel = _button("Cancel", "stop", self._on_cancel)
-        self._mesh = _button(MESH, "grid_on", self._on_mesh)
+        self.mesh = _button(MESH, "grid_on", self._on_mesh)
         self._ready = [
             _button(title, "", lambda title=title: self._on_ready(title)) for title in READY
         ]
@@ -126,16 +131,21 @@ class WhatIf(param.Parameterized):
         self._meshed = pmui.Typography("", variant="body2", margin=(10, 8))
         self._keys = pn.pane.HTML("", margin=(4, 8))
 
+    @property
+    def message(self) -> str:
+        """How far the runs are, or what is refused."""
+        return str(self._message.object)
+
     def start(self) -> None:
         """Have the question answered, in place of the one before."""
-        refusal = self.question.refusal(self._state.settings)
+        refusal = self.question.refusal(self.state.settings)
         if refusal:
             self._message.object = refusal
             return
         self._on_cancel()
-        plan = self.question.plan(self._state.settings)
+        plan = self.question.plan(self.state.settings)
         self._form = ()
-        self._sweep = Sweep(plan, self._soon)
+        self.sweep = Sweep(plan, self._soon)
         self._follow()
 
     def end(self) -> None:
@@ -146,13 +156,13 @@ class WhatIf(param.Parameterized):
 
     def table(self) -> io.StringIO:
         """Rows of the sweep so far, as CSV in SI, with all settings."""
-        sweep = self._sweep
+        sweep = self.sweep
         rows = sorted(sweep.rows, key=lambda row: row.number) if sweep is not None else []
         return io.StringIO(csv_of(sweep.plan, rows) if sweep is not None else "")
 
     def chart(self) -> Chart | None:
         """What has come so far, in the units that are read."""
-        sweep = self._sweep
+        sweep = self.sweep
         if sweep is None:
             return None
         return in_units(chart_of(sweep.plan, list(sweep.rows), 0, _measured))
@@ -161,11 +171,11 @@ class WhatIf(param.Parameterized):
 
     def _show(self) -> None:
         """Show the question in the fields."""
-        settings, question = self._state.settings, self.question
+        settings, question = self.state.settings, self.question
         self._is_updating = True
         first, second, *_ = (*question.vary, "", "")
-        self._first.show(settings, first)
-        self._second.show(settings, second)
+        self.spans[0].show(settings, first)
+        self.spans[1].show(settings, second)
         name, _, at = question.of.partition("@")
         options = {quantity.title: key for key, quantity in quantities(settings).items()}
         self._of.param.update(options=options, value=name)
@@ -183,30 +193,30 @@ class WhatIf(param.Parameterized):
         if self._is_updating:
             return
         try:
-            vary = tuple(text for span in (self._first, self._second) if (text := span.text))
+            vary = tuple(text for span in self.spans if (text := span.text))
         except ValueError as problem:
             self._message.object = f"{problem}."
             return
         at = self._at.value if self._at.visible else ""
         self.question = Question(vary, quantity_with(self._of.value, at))
-        self._message.object = self.question.refusal(self._state.settings)
+        self._message.object = self.question.refusal(self.state.settings)
         self._start.disabled, self._help.object = bool(self._message.object), ""
 
     def _on_ready(self, title: str) -> None:
-        question = READY[title][1](self._state.settings)
+        question = READY[title][1](self.state.settings)
         if question is not None:
             self.question, self._help.object = question, READY[title][0]
             self.start()
 
     def _on_cancel(self) -> None:
-        if self._sweep is not None:
-            self._sweep.cancel()
+        if self.sweep is not None:
+            self.sweep.cancel()
 
     def _follow_page(self) -> None:
         """Offer what the present settings have; another scene may know nothing of the question."""
-        if self._state.tab != "What if":
+        if self.state.tab != "What if":
             return
-        settings = self._state.settings
+        settings = self.state.settings
         if not set(self.question.names) <= variable(settings).keys():
             self.question = bathtub(settings)
         self._show()
@@ -223,7 +233,7 @@ class WhatIf(param.Parameterized):
 
     def _follow(self) -> None:
         """Show what has come."""
-        sweep, chart = self._sweep, self.chart()
+        sweep, chart = self.sweep, self.chart()
         if sweep is None or chart is None:
             return
         self._cancel.visible = not sweep.is_over
@@ -231,10 +241,10 @@ class WhatIf(param.Parameterized):
         if not sweep.is_over:
             rest = f", {sweep.left:.0f} s left" if sweep.rows else ""
             words = f"{len(sweep.rows)} of {sweep.plan.size} runs{rest}"
-        elif not _is_of(sweep.plan, self.question.asked(self._state.settings)):
+        elif not _is_of(sweep.plan, self.question.asked(self.state.settings)):
             words += " These are runs of other settings: draw them again."
         self._message.object = " ".join(filter(None, (sweep.message, words)))
-        here = _place_of(sweep.plan, chart, self._state.settings)
+        here = _place_of(sweep.plan, chart, self.state.settings)
         if form(chart) == self._form:
             self._pipe.send((chart, here))
             return
@@ -257,14 +267,14 @@ class WhatIf(param.Parameterized):
         place = nearest(chart, x, y) if chart is not None and chart.runs is not None else None
         if place is None:
             return
-        plan = self._sweep.plan
+        plan = self.sweep.plan
         try:
             settings = plan.settings_at(int(chart.runs.numbers[place]))
         except SettingError as refusal:
-            self._state.refusal = message_of(refusal, self._state.settings)
+            self.state.refusal = message_of(refusal, self.state.settings)
             return
         varied = [axis.name for axis in plan.axes]
-        self._open_run(as_watched(settings, self._state.settings, varied))
+        self._open_run(as_watched(settings, self.state.settings, varied))
 
     # Mesh
 
@@ -275,9 +285,9 @@ class WhatIf(param.Parameterized):
             return
         if self._job is not None:
             self._job.close()
-        settings = dump(answer(self._state.settings))
+        settings = dump(answer(self.state.settings))
         self._job = Job(["mesh", SETTINGS, "--of", self.question.of], settings)
-        self._mesh.label = "No more"
+        self.mesh.label = "No more"
         self._look()
         if self._document is not None:
             self._looking = self._document.add_periodic_callback(self._look, LOOK)
@@ -288,17 +298,17 @@ class WhatIf(param.Parameterized):
             return
         self._meshed.object = job.progress or "  \n".join(map(str.strip, job.lines))
         if job.is_over:
-            self._mesh.label = MESH
+            self.mesh.label = MESH
             if self._looking is not None:
                 self._document.remove_periodic_callback(self._looking)
                 self._looking = None
 
     def _tell_mesh(self) -> None:
         try:
-            can = decides(self._state.settings, reading(self.question.of))
+            can = decides(self.state.settings, reading(self.question.of))
         except SettingError:
             can = False
-        self._mesh.visible = can
+        self.mesh.visible = can
 
 
 def nearest(chart: Chart, x: float, y: float) -> int | None:

@@ -1,0 +1,128 @@
+"""Charts are drawn of plain data, in units that are read, and stand in pages by themselves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from tomllib import loads
+from typing import Any
+
+import holoviews as hv
+import numpy as np
+import pytest
+from bokeh.models import ColorBar, ColumnDataSource, GlyphRenderer
+from sweeps import tiny
+
+from app.charts import draw, form, in_units, keys, levels, overlay, render
+from solver.study import page
+from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.page import PlotSection, write_page
+from solver.study.sweep import Row
+from solver.study.sweep.chart import chart_of, charts
+
+X = np.array([1.0, 2.0, 3.0])
+PANEL = Panel(
+    "Curves",
+    PanelAxis("Place", "m"),
+    PanelAxis("Force", "N", logarithmic=True),
+    (PanelCurve("one", X, 1e3 * X, 1), PanelCurve("two", X, np.array([1e3, 0.0, 2e3]), 2)),
+)
+LINES = tiny(["k_scale=0.1:10:3:log", "acceleration=none,anderson"], ["iterations"])
+AREA = tiny(["friction=0.1:0.7:7", "peak=300:1500:9"], ["peak_displacement"])
+CELLS = [
+    Row(n, "converged", "", (1e-3 * (1.0 + n % 9 * (n // 9 + 1.0)),)) for n in range(AREA.size)
+]
+ENDS = [
+    Row(4, "converged", "", (3.0,)),
+    Row(0, "exhausted", "Raise max_iterations.", (12.0,)),
+    Row(2, "converged", "", (np.inf,)),
+    Row(1, "converged", "", (5.0,)),
+]
+
+
+def data_of(figure: Any, column: str) -> list[dict[str, Any]]:
+    """Data of all sources that have a column."""
+    sources = figure.select({"type": ColumnDataSource})
+    return [source.data for source in sources if column in source.data]
+
+
+def test_values_are_drawn_in_units_that_are_read_but_what_a_scale_cannot_hold() -> None:
+    figure = draw(PANEL)
+    ys = [list(map(str, data["y"])) for data in data_of(figure, "y") if len(data["y"]) == 3]
+    assert sorted(ys) == [["1.0", "2.0", "3.0"], ["1.0", "nan", "2.0"]]
+    assert (figure.title.text, figure.yaxis.axis_label) == ("Curves", "Force (kN)")
+    assert "> one<" in keys([PANEL])
+
+
+def test_a_run_that_did_not_converge_is_hollow_and_says_why() -> None:
+    figure = draw(chart_of(LINES, ENDS))
+    points = [
+        renderer
+        for renderer in figure.renderers
+        if isinstance(renderer, GlyphRenderer) and "said" in renderer.data_source.data
+    ]
+    by_fill = {
+        renderer.glyph.fill_alpha: renderer.data_source.data["said"]
+        for renderer in points
+        if renderer.glyph.marker == "circle"
+    }
+    assert "Raise max_iterations." in by_fill[0.0][0]
+    assert len(by_fill[1.0]) == 2
+    (crosses,) = (renderer for renderer in points if renderer.glyph.marker == "x")
+    assert "never" in crosses.data_source.data["said"][0]
+
+
+def test_a_map_has_a_cell_for_each_run_contours_their_values_and_a_scale() -> None:
+    rows = [replace(row, ending="exhausted") if row.number == 5 else row for row in CELLS]
+    figure = draw(chart_of(AREA, rows))
+    cells = sorted(len(data["said"]) for data in data_of(figure, "left"))
+    assert cells == [1, AREA.size - 1]
+    assert "20" in data_of(figure, "text")[0]["text"]
+    assert "(mm)" in figure.title.text
+    assert len(figure.select({"type": ColorBar})) == 1
+
+
+def test_what_lies_between_few_runs_is_drawn_and_the_runs_upon_it() -> None:
+    (chart,) = charts(AREA, [CELLS[n] for n in (0, 8, 54, 62, 30)])
+    figure = draw(chart)
+    assert [len(data["left"]) for data in data_of(figure, "left")] == [AREA.size]
+    assert [len(data["said"]) for data in data_of(figure, "said")] == [5]
+
+
+def test_a_chart_that_fills_shows_what_is_new_in_the_same_figure() -> None:
+    first, whole = (in_units(chart_of(LINES, rows)) for rows in (ENDS[:1], ENDS))
+    assert form(first) == form(whole)
+    pipe = hv.streams.Pipe(data=first)
+    filling = hv.DynamicMap(lambda data: overlay(data), streams=[pipe])
+    figure = hv.renderer("bokeh").get_plot(filling).state
+    pipe.send(whole)
+    assert sum(len(data["said"]) for data in data_of(figure, "said")) == 4
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "is_logarithmic", "first"),
+    [(0.0, 10.0, False, 2.0), (1.0, 1000.0, True, 2.0), (3.0, 3.1, False, 3.02)],
+)
+def test_levels_are_round_numbers_inside_the_scale(
+    low: float, high: float, is_logarithmic: bool, first: float
+) -> None:
+    values = levels(low, high, is_logarithmic=is_logarithmic)
+    assert values[0] == pytest.approx(first)
+    assert low < values.min()
+    assert values.max() < high
+
+
+def test_a_page_of_a_command_loads_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "renderer", lambda: render)
+    assert write_page(tmp_path / "page.html", "Two", [PlotSection("Both", [PANEL])]) == ""
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "<script src" not in text
+    assert 'aria-label="Both"' in text
+
+
+def test_the_engine_finds_who_draws() -> None:
+    root = Path(__file__).resolve().parents[1]
+    project = loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    ((name, value),) = project["entry-points"][page.GROUP].items()
+    assert EntryPoint(name, value, page.GROUP).load() is render

@@ -1,0 +1,239 @@
+"""What if: runs reach the chart as they come. Reports: commands are run in turn, and read."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+from sweeps import TINY, Here
+
+from app import jobs, reports, sweeps
+from app.jobs import Job
+from app.questions import READY, Question, as_watched, bathtub, question_from_query, variable
+from app.state import PageState, default_settings
+from app.sweeps import Sweep, share_of
+from app.whatif import WhatIf, nearest
+from solver.running.pool import Pool
+from solver.scenes import CATALOGUE
+from solver.settings import Settings
+
+LOADS = Question(("friction=0.2:0.4:3", "peak=600:900:2"), "dissipation")
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> Here:
+    """Runs take place in this process."""
+    pool = Here()
+
+    @contextmanager
+    def shared() -> Iterator[Pool]:
+        yield pool
+
+    monkeypatch.setattr(sweeps, "shared", shared)
+    return pool
+
+
+def tiny() -> Settings:
+    return default_settings("bar").replace(**TINY)
+
+
+def asked(question: Question, opened: list[Settings] | None = None) -> WhatIf:
+    """The tab, whose first chart is drawn."""
+    made = WhatIf(PageState(tiny()), (opened if opened is not None else []).append, question)
+    assert made.sweep is not None
+    made.sweep.wait()
+    return made
+
+
+@pytest.mark.usefixtures("here")
+def test_the_tab_opens_with_its_first_chart_drawn() -> None:
+    made = asked(LOADS)
+    chart = made.chart()
+    assert chart is not None
+    assert np.isfinite(chart.runs.values).sum() == 6
+    assert "6 of 6 runs: 6 converged" in made.message
+    rows = [line for line in made.table().getvalue().splitlines() if line[:1] not in ("#", "f")]
+    assert len(rows) == 6
+
+
+def test_rows_reach_the_chart_as_they_come_and_cancel_ends_them(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sweeps, "OFTEN", 0.0)
+    plan = Question(("friction=0.1:0.9:400",), "dissipation").plan(tiny())
+    counts: list[int] = []
+    running: list[Sweep] = []
+
+    def changed() -> None:
+        counts.append(len(running[0].rows))
+        running[0].cancel()
+
+    submit = here.submit
+
+    def late(*arguments: Any) -> Any:
+        time.sleep(0.01)
+        return submit(*arguments)
+
+    monkeypatch.setattr(here, "submit", late)
+    running.append(Sweep(plan, changed))
+    running[0].wait()
+    assert running[0].is_over
+    assert running[0].message == "Cancelled."
+    assert 0 < counts[0] <= len(running[0].rows) < plan.size
+
+
+@pytest.mark.usefixtures("here")
+def test_a_tap_on_a_point_opens_its_run_as_the_page_shows_runs() -> None:
+    opened: list[Settings] = []
+    made = asked(LOADS, opened)
+    chart = made.chart()
+    assert chart is not None
+    place = list(chart.runs.numbers).index(3)
+    assert nearest(chart, chart.runs.x[place], chart.runs.y[place]) == place
+    made.open_at(chart.runs.x[place], chart.runs.y[place])
+    (settings,) = opened
+    assert (settings.friction, settings.peak) == (0.3, 900.0)
+    assert (settings.start, settings.finish) == ("zero", "accuracy")
+
+
+@pytest.mark.usefixtures("here")
+def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
+    made = asked(LOADS)
+    first, second = made.spans
+    first.name.value = "length"
+    first.low.value, first.high.value, first.count.value = "0.5", "2000 mm", 3
+    assert made.question.vary[0] == "length=0.5:2:3:log"
+    first.spacing.value = "a list"
+    assert made.question.vary[0] == "length=0.5,1,2"
+    first.listed.value = "1, long"
+    assert "number" in made.message
+    first.listed.value = "-1, 2"
+    assert "cannot be" in made.message
+    second.name.value = "acceleration"
+    assert made.question.vary[1] == "acceleration=none,anderson"
+
+
+@pytest.mark.usefixtures("here")
+def test_meshes_are_asked_of_only_where_they_decide_the_answer() -> None:
+    made = asked(LOADS)
+    assert made.mesh.visible
+    made.question = bathtub(made.state.settings)
+    assert not made.mesh.visible
+
+
+def test_what_is_asked_stands_in_an_address() -> None:
+    query = "?" + "&".join(f"{name}={text}" for name, text in LOADS.pairs())
+    assert question_from_query(query) == LOADS
+    assert question_from_query("?vary=friction=0:1:3") is None
+
+
+@pytest.mark.parametrize("scene", CATALOGUE)
+def test_each_ready_question_can_be_asked_or_is_not_offered(scene: str) -> None:
+    settings = default_settings(scene)
+    offered = [question for _, make in READY.values() if (question := make(settings))]
+    assert len(offered) >= 3
+    for question in offered:
+        assert question.refusal(settings) == ""
+        assert set(question.names) <= variable(settings).keys()
+
+
+def test_iterations_are_counted_of_the_search_and_all_else_is_taken_of_the_answer() -> None:
+    settings = tiny()
+    assert bathtub(settings).asked(settings).finish == "accuracy"
+    answered = LOADS.asked(settings)
+    assert answered.finish == "at-once"
+    assert as_watched(answered, settings, LOADS.names).values() == settings.values()
+
+
+@pytest.mark.parametrize(
+    ("executor", "users", "share"),
+    [
+        ("processes:8", 1, "processes:8"),
+        ("processes:8", 3, "processes:2"),
+        ("processes:2", 9, "processes:1"),
+        ("dask://host:8786", 9, "dask://host:8786"),
+        ("processes:x", 2, "processes:x"),
+    ],
+)
+def test_pages_share_the_processes_of_a_server(executor: str, users: int, share: str) -> None:
+    assert share_of(executor, users) == share
+
+
+@pytest.fixture
+def no_queue() -> Iterator[None]:
+    """Nothing else waits for its turn, and nothing is left running."""
+    jobs.executor.cache_clear()
+    yield
+    jobs.executor().shutdown(cancel_futures=True)
+    jobs.executor.cache_clear()
+
+
+def wait_for(job: Job) -> None:
+    while not job.is_over:
+        time.sleep(0.05)
+
+
+@pytest.mark.usefixtures("no_queue")
+def test_commands_run_in_turn_to_their_end_and_a_cancelled_one_leaves_nothing() -> None:
+    short = ["mesh", "bar", "--of", "dissipation"]
+    short += [f"--set={name}={value}" for name, value in TINY.items()]
+    first, second, wrong = Job(short), Job(["proof"]), Job(["study", "no"])
+    assert second.progress.startswith("Waiting")
+    second.cancel()
+    wait_for(first)
+    wait_for(wrong)
+    assert first.failure == ""
+    assert any(line.startswith("Elements: ") for line in first.lines)
+    assert second.failure == "Cancelled."
+    assert "no" in wrong.failure
+    folder = first.folder
+    for job in (first, second, wrong):
+        job.close()
+    assert not folder.exists()
+
+
+class Done:
+    """A job that is over."""
+
+    is_begun, is_over, failure, progress = True, True, "", ""
+
+    def __init__(self, *arguments: Any) -> None:
+        link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
+        self.files = {"proof.csv": b"a,b", "proof.html": f"<style></style>{link}".encode()}
+
+    def close(self) -> None:
+        """Nothing is left."""
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> reports.Reports:
+    """The tab, of a server whose commands are over at once."""
+    monkeypatch.setattr(reports, "Job", Done)
+    monkeypatch.setattr(reports, "DONE", type(reports.DONE)())
+    return reports.Reports(PageState(tiny(), tab="Reports"))
+
+
+def test_a_report_is_read_with_its_files_and_its_links_lead_here(made: reports.Reports) -> None:
+    made.kind.value = reports.PROOF
+    assert made.page.object == ""
+    made.start()
+    assert "a run" in made.page.object
+    assert "localhost" not in made.page.object
+    assert [file.filename for file in made.files] == ["proof.csv", "proof.html"]
+
+
+def test_a_run_stands_still_while_a_study_is_timed(
+    made: reports.Reports, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Done, "is_over", False)
+    made.kind.value = reports.STUDY
+    made.job = None
+    made.start()
+    assert not made.state.running
+    monkeypatch.setattr(Done, "is_over", True)
+    made.look()
+    assert made.state.running
