@@ -47,7 +47,7 @@ LAYERS = [
 ]
 """Parts of the solver; each may import itself and what stands before it. Problem and method stand
 before all that knows settings and scenes."""
-LONGEST_FILE, LONGEST_FUNCTION = 400, 65
+LONGEST_FILE, LONGEST_FUNCTION = 400, 50
 GRAPHICS = {"panel", "bokeh", "holoviews", "panel_material_ui", "pandas", "app"}
 
 
