@@ -17,6 +17,12 @@ ANSWER = "start=nested&finish=at-once"
 POLL_MS = 50.0
 FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
+CLOSED = re.compile(
+    r"[^\n]*(Failed sending message as connection was closed\n"
+    r"|Task exception was never retrieved\n.*?WebSocketClosedError(?!\()[^\n]*\n)",
+    re.DOTALL,
+)
+"""What is said of a message that was on its way to a page that closed, and of nothing else."""
 ALLOWED = re.compile("Dropping a patch|session-lifetime")
 """Lines of it that a page leaves which is closed in the midst of a picture."""
 MODEL = """(name) => {
@@ -59,8 +65,7 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
         chrome.leave(page)
     assert not complaints, complaints
     said = server.log[before:]
-    # Tornado tells of messages that were on their way to a page that closed.
-    lines = [] if "WebSocketClosedError" in said else said.splitlines()
+    lines = CLOSED.sub("", said).splitlines()
     assert not [s for s in lines if FAULT.search(s) and not ALLOWED.search(s)], said
 
 
