@@ -14,6 +14,8 @@ ENDLESS = "method=paper&max_iterations=100000&tolerance=1e-30&pace=20 a second"
 """In an address: a run that goes on."""
 ANSWER = "start=nested&finish=at-once"
 """In an address: a run whose answer is there at once."""
+IGNORED = re.compile("GL Driver Message|Failed to repull session")
+"""In the console: a hint on speed, and Bokeh's words on binary columns after a network broke."""
 POLL_MS = 50.0
 FAULT = re.compile(r"Traceback|ERROR|WARNING")
 """In the server's log."""
@@ -42,7 +44,7 @@ def visits(server: Server, chrome: Chrome) -> Iterator[Visit]:
     before = len(server.log)
 
     def hear(message: ConsoleMessage) -> None:
-        if message.type in ("error", "warning"):
+        if message.type in ("error", "warning") and not IGNORED.search(message.text):
             complaints.append(message.text)
 
     def stumble(error: Error) -> None:
@@ -134,3 +136,9 @@ def drag(page: Page, place: Locator, start: float, end: float, height: float = 0
     page.mouse.move(box["x"] + start * box["width"], y)
     page.mouse.down()
     page.mouse.move(box["x"] + end * box["width"], y, steps=6)
+
+
+def close_dialog(page: Page) -> None:
+    """Close what has opened over the page."""
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(0)

@@ -1,0 +1,158 @@
+"""A person loses the network or the worker, reloads, goes back, or comes by a foolish address."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import urllib.request
+from pathlib import Path
+from urllib.error import HTTPError
+
+import pytest
+from browser import Chrome, Server, serving
+from pages import ANSWER, ENDLESS, Visit, button, field, figures, is_solved, painted, status, visits
+from playwright.sync_api import Page, expect
+from processes import is_alive, wait_for
+from proxy import Proxy
+
+FOOLISH = (
+    "?friction=-1",
+    "?friction=nan",
+    "?elements=1e99",
+    "?scene=moon&peak=900",
+    "?lesson=moon",
+    "?class=ZZZZ",
+    "?tab=%00&view=&plots=,,,&pace=never",
+    "?load=[[0,0],[0,1]]&instant=7",
+    "?peak=" + "9" * 4000,
+    "?%3Cscript%3Ealert(1)%3C/script%3E=1",
+)
+SPEAK = """async (address) => {
+  const [, token] = (await (await fetch(address)).text()).match(/"token":\\s*"([^"]+)"/)
+  const socket = new WebSocket(address.replace("http", "ws") + "/ws", ["bokeh", token])
+  await new Promise((resolve) => {
+    socket.onmessage = () => socket.send("Hello?")
+    socket.onclose = resolve
+  })
+}"""
+"""Has the browser open a session, and say what is no message of Bokeh's."""
+
+
+def newest_worker(server: Server, before: list[int]) -> int:
+    """The process of a page that was opened since."""
+    new = [pid for pid in server.processes() if pid not in before]
+    return new[-1]
+
+
+def change_peak(page: Page, value: str) -> None:
+    typed = field(page, "Peak load")
+    typed.fill(value)
+    typed.press("Enter")
+
+
+def test_a_network_that_breaks_and_is_mended_costs_no_settings(visit: Visit, proxy: Proxy) -> None:
+    page = visit(f"?{ANSWER}&peak=1000", root=f"http://localhost:{proxy.port}")
+    is_solved(page)
+    expect(figures(page)).to_contain_text("Force −1 kN")
+    with page.expect_console_message(lambda message: "Lost websocket" in message.text):
+        proxy.cut()
+    with page.expect_console_message(lambda message: "is now open" in message.text):
+        proxy.mend()
+    change_peak(page, "1100")
+    expect(figures(page)).to_contain_text("Force −1.1 kN")
+    is_solved(page)
+
+
+def test_a_reload_keeps_the_settings_and_back_undoes_them(visit: Visit) -> None:
+    page = visit(f"?{ANSWER}")
+    is_solved(page)
+    change_peak(page, "1100")
+    expect(figures(page)).to_contain_text("Force −1.1 kN")
+    button(page, "Block").click()
+    expect(page.locator(".sentence")).to_contain_text("block")
+    page.go_back()
+    expect(figures(page)).to_contain_text("Force −1.1 kN")
+    page.go_back()
+    expect(figures(page)).to_contain_text("Force −900 N")
+    page.go_forward()
+    expect(figures(page)).to_contain_text("Force −1.1 kN")
+    page.reload()
+    expect(figures(page)).to_contain_text("Force −1.1 kN")
+    expect(field(page, "Peak load")).to_have_value("1100")
+
+
+@pytest.mark.parametrize(
+    ("blow", "said"),
+    [
+        (signal.SIGKILL, "process ended; the run was started anew"),
+        (signal.SIGSTOP, "no sign of life for some seconds; the run was started anew"),
+    ],
+    ids=["killed", "stopped"],
+)
+def test_a_worker_that_is_gone_is_said_and_its_run_begun_anew(
+    visit: Visit, server: Server, blow: signal.Signals, said: str
+) -> None:
+    before = server.processes()
+    page = visit(f"?{ENDLESS}")
+    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+    worker = newest_worker(server, before)
+    os.kill(worker, blow)
+    expect(page.locator(".status")).to_contain_text(said)
+    painted(page, 3)
+    wait_for(lambda: not is_alive(worker))
+
+
+def test_nothing_is_left_of_a_page_that_is_closed_in_the_midst_of_a_run(
+    chrome: Chrome, tmp_path: Path
+) -> None:
+    quick = ("--unused-session-lifetime", "6000", "--check-unused-sessions", "300")
+    with serving(tmp_path / "log", 0, *quick) as server:
+        idle = server.processes()
+        with visits(server, chrome) as visit:
+            page = visit(f"?{ENDLESS}")
+            expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+            worker = newest_worker(server, idle)
+        wait_for(lambda: not is_alive(worker))
+        wait_for(lambda: server.processes() == idle)
+    wait_for(lambda: not any(map(is_alive, idle)))
+
+
+@pytest.mark.parametrize("query", FOOLISH, ids=range(len(FOOLISH)))
+def test_a_foolish_address_is_answered_by_a_page(server: Server, query: str) -> None:
+    before = len(server.log)
+    with urllib.request.urlopen(server.address + query) as answer:
+        assert "Slipfront" in answer.read().decode()
+    assert "Traceback" not in server.log[before:]
+
+
+def test_what_a_foolish_address_has_is_said_on_its_page(visit: Visit) -> None:
+    page = visit("?friction=-1&moon=3&scene=bar&" + ANSWER)
+    expect(page.locator(".status")).to_contain_text("From the address: ")
+    expect(page.locator(".status")).to_contain_text("cannot be −1")
+    expect(page.locator(".status")).to_contain_text("there is no setting moon")
+    is_solved(page)
+
+
+@pytest.mark.parametrize(
+    ("path", "code"), [("/app?load=" + "1" * 20_000, 414), ("/static/%00", 404), ("/moon", 404)]
+)
+def test_what_is_no_address_is_refused(server: Server, path: str, code: int) -> None:
+    before = len(server.log)
+    with pytest.raises(HTTPError) as refused:
+        urllib.request.urlopen(server.root + path)
+    with refused.value as answer:
+        assert answer.code == code
+    assert "Traceback" not in server.log[before:]
+
+
+def test_whoever_speaks_another_language_leaves_a_line_in_the_log(
+    visit: Visit, server: Server
+) -> None:
+    page = visit(f"?{ANSWER}")
+    is_solved(page)
+    before = len(server.log)
+    page.evaluate(SPEAK, server.address)
+    said = server.log[before:]
+    assert "Traceback" not in said
+    assert len([line for line in said.splitlines() if "onnection" not in line]) <= 1, said

@@ -1,0 +1,115 @@
+"""A person asks what if, takes the run away, and brings a file."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from browser import ROOT
+from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved
+from playwright.sync_api import Browser, Page, expect
+
+SMALL = f"elements=20&instants=21&substructures=4&{ANSWER}"
+LOAD = "time (s),force (kN)\n0,0\n1,1.2\n2,-0.6\n"
+ROWS = "".join(f"{x},0.75,1.4\n" for x in range(0, 1001, 100))
+RESULTS = f"x (mm),t (s),friction force (kN/m)\n{ROWS}"
+
+
+def download(page: Page, name: str, folder: Path) -> Path:
+    """What a button of the dialog writes."""
+    with page.expect_download() as event:
+        page.get_by_role("button", name=name).click()
+    path = folder / event.value.suggested_filename
+    event.value.save_as(path)
+    return path
+
+
+def open_files(page: Page) -> None:
+    button(page, "Files").click()
+    expect(page.get_by_text("Open settings or a table").first).to_be_visible()
+
+
+def upload(page: Page, path: Path, text: str) -> None:
+    """Open a file by the browser's own dialog."""
+    path.write_text(text, encoding="utf-8")
+    with page.expect_file_chooser() as chooser:
+        page.locator("label, button").filter(has=page.locator("input[type=file]")).first.click()
+    chooser.value.set_files(path)
+
+
+def opens_alone(browser: Browser, path: Path) -> None:
+    """Check that a page is drawn from a file without a network."""
+    context, complaints = browser.new_context(offline=True), list[str]()
+    page = context.new_page()
+    page.on("request", lambda request: complaints.append(request.url))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(path.as_uri())
+    expect(page.locator(".bk-Figure").first).to_be_visible()
+    context.close()
+    assert [c for c in complaints if not c.startswith(("file:", "data:", "blob:"))] == []
+
+
+def test_what_if_draws_its_first_chart_by_itself(visit: Visit) -> None:
+    page = visit(f"?{SMALL}")
+    is_solved(page)
+    button(page, "What if").click()
+    expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
+    expect(page.get_by_text(re.compile(r"26 of 26 runs: \d+ converged"))).to_be_visible()
+    expect(page.locator(".bk-Figure").locator("visible=true")).to_have_count(1)
+    button(page, "Live").click()
+    is_solved(page)
+
+
+def test_a_run_is_taken_away_as_table_program_and_a_page_that_needs_no_network(
+    visit: Visit, tmp_path: Path
+) -> None:
+    page = visit(f"?{SMALL}")
+    is_solved(page)
+    button(page, "Take away").click()
+    table = download(page, "All iterations", tmp_path).read_text(encoding="utf-8").splitlines()
+    (head,) = [number for number, line in enumerate(table) if "error" in line]
+    assert len(table) > head + 2
+    program = download(page, "The run as a program", tmp_path)
+    done = subprocess.run(
+        [sys.executable, program],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    offline = download(page, "The run as one page", tmp_path)
+    close_dialog(page)
+    assert page.context.browser
+    opens_alone(page.context.browser, offline)
+
+
+def test_a_path_from_a_file_is_run_and_what_was_understood_is_said(
+    visit: Visit, tmp_path: Path
+) -> None:
+    page = visit(f"?{SMALL}")
+    is_solved(page)
+    open_files(page)
+    upload(page, tmp_path / "pulled.csv", LOAD)
+    expect(page.get_by_text("The run lasts 2 s").first).to_be_visible()
+    is_solved(page)
+    assert "load=" in page.url
+    upload(page, tmp_path / "bad.csv", "time,force\n0,0\n1,much\n")
+    expect(page.get_by_text("much").first).to_be_visible()
+
+
+def test_what_another_program_found_is_drawn_beside_and_its_distance_told(
+    visit: Visit, tmp_path: Path
+) -> None:
+    page = visit(f"?{SMALL}")
+    is_solved(page)
+    open_files(page)
+    upload(page, tmp_path / "theirs.csv", RESULTS)
+    expect(figures(page)).to_contain_text("Distance to theirs.csv")
+    button(page, "Remove theirs.csv").click()
+    expect(figures(page)).not_to_contain_text("Distance to")
+    expect(field(page, "Peak load")).to_have_value("900")

@@ -1,0 +1,99 @@
+"""A lesson is taken, alone and in a class."""
+
+from __future__ import annotations
+
+import re
+
+from pages import ANSWER, Visit, button, close_dialog, field, figures, is_solved, status
+from playwright.sync_api import Page, expect
+
+QUESTION = "Is a small indicator a small error?"
+
+
+def lead(page: Page) -> str:
+    """Begin a class, and return its code."""
+    button(page, "A class").click()
+    page.get_by_role("button", name="Begin a class").click()
+    expect(page.locator(".class").first).to_contain_text("0 follow")
+    match = re.search(r"class=(\w{4})", page.url)
+    assert match
+    expect(page.get_by_role("dialog")).to_contain_text(match[1])
+    close_dialog(page)
+    return match[1]
+
+
+def follow(visit: Visit, code: str) -> Page:
+    """A page that follows by a link."""
+    page = visit(f"?class={code}")
+    expect(page.locator(".class").first).to_contain_text(f"You follow class {code}")
+    return page
+
+
+def test_a_lesson_asks_and_after_a_prediction_shows_what_was_measured(visit: Visit) -> None:
+    page = visit()
+    button(page, "Lessons").click()
+    page.get_by_role("button", name=QUESTION).click()
+    expect(page.get_by_role("heading", name=QUESTION)).to_be_visible()
+    assert "lesson=small-indicator" in page.url
+    expect(button(page, "Show me")).to_be_visible()
+    expect(page.get_by_role("alert")).to_have_count(0)
+    button(page, "Some 75 %").click()
+    expect(page.get_by_role("alert")).to_be_visible()
+    expect(status(page)).to_contain_text("75 % wrong")
+    expect(button(page, "Handout")).to_be_visible()
+    expect(page.get_by_text("{value:")).to_have_count(0)
+    button(page, "Explore freely").click()
+    expect(page.get_by_role("heading", name=QUESTION)).to_have_count(0)
+    expect(field(page, "Friction coefficient")).to_be_visible()
+
+
+def test_a_class_of_four_sees_what_its_leader_sees(visit: Visit) -> None:
+    leader = visit(f"?{ANSWER}")
+    is_solved(leader)
+    code = lead(leader)
+    first = follow(visit, code)
+    second = visit(f"?{ANSWER}")
+    button(second, "A class").click()
+    second.get_by_role("textbox", name="Code").fill(code.lower())
+    second.get_by_role("button", name="Join").click()
+    expect(second.locator(".class").first).to_contain_text(f"You follow class {code}")
+    typed = field(leader, "Peak load")
+    typed.fill("1100")
+    typed.press("Enter")
+    third = follow(visit, code)
+    for page in (leader, first, second, third):
+        expect(figures(page)).to_contain_text("Force −1.1 kN")
+    expect(leader.locator(".class").first).to_contain_text("3 follow")
+    leader.reload()
+    expect(leader.locator(".class").first).to_contain_text("3 follow")
+    expect(figures(leader)).to_contain_text("Force −1.1 kN")
+    typed = field(leader, "Peak load")
+    typed.fill("1000")
+    typed.press("Enter")
+    expect(figures(third)).to_contain_text("Force −1 kN")
+
+
+def test_a_class_predicts_and_whoever_goes_on_alone_may_come_back(visit: Visit) -> None:
+    leader = visit(f"?{ANSWER}")
+    is_solved(leader)
+    code = lead(leader)
+    page = follow(visit, code)
+    typed = field(page, "Peak load")
+    typed.fill("1200")
+    typed.press("Enter")
+    expect(figures(page)).to_contain_text("Force −1.2 kN")
+    expect(page.locator(".class").first).to_contain_text("You have left class")
+    is_solved(page)
+    button(page, "Follow").click()
+    expect(figures(page)).to_contain_text("Force −900 N")
+    button(leader, "Lessons").click()
+    leader.get_by_role("button", name=QUESTION).click()
+    expect(page.get_by_role("heading", name=QUESTION)).to_be_visible()
+    button(page, "Some 10 %").click()
+    expect(leader.get_by_text("1 of 1 have predicted")).to_be_visible()
+    button(leader, "Open the counts").click()
+    for each in (leader, page):
+        expect(each.get_by_role("button", name="Some 10 %: 1")).to_be_visible()
+    button(leader, "Go on to the answer").click()
+    expect(page.get_by_role("alert")).to_be_visible()
+    expect(status(page)).to_contain_text("75 % wrong")
