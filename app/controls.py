@@ -13,6 +13,7 @@ import panel_material_ui as pmui
 import param
 
 from app.curves import CurveDialog
+from app.echoes import Echoes
 from app.files import FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
@@ -87,6 +88,7 @@ class Control:
         self._about = about(self._definition)
         self._unit = unit_of(self._definition)
         self._is_updating = self._is_dragged = False
+        self._echoes = Echoes()
         self._dialog: CurveDialog | None = None
         self.slider: pmui.FloatSlider | None = None
         self.field, self.view = self._make()
@@ -180,7 +182,7 @@ class Control:
         elif self.slider is None:
             self.field.value = value
         else:
-            self.field.value = self._written(value)
+            self.field.value = self._echoes.give(self._written(value))
             if not self._is_dragged:
                 self._show_on_slider(value)
 
@@ -201,7 +203,7 @@ class Control:
             self.field.param.update(helper_text=refusal, error_state=bool(refusal))
 
     def _on_field(self, value: Any) -> None:
-        if self._is_updating or value is None:
+        if self._is_updating or value is None or self._echoes.has(value):
             return
         if value == POINTS and isinstance(self._definition, CurveParameter):
             self._edit()

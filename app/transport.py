@@ -8,6 +8,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
+from app.echoes import Echoes
 from app.state import ANSWER, PACES, SEARCH, PageState, known
 
 PLAYED_IN = 6.0
@@ -36,7 +37,8 @@ class Transport:
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
         self._playing: tuple[Any, float, float, float] | None = None
-        self._is_updating = False
+        self._is_updating = self._is_in_hand = False
+        self._echoes = Echoes()
         self.view = pn.Row(*self._buttons(), *self._choices(), margin=0)
         self.play_button.on_click(lambda event: self.play())
         state.param.watch(
@@ -158,8 +160,14 @@ class Transport:
             state.seek(state.history.after(shown) if way > 0 else shown - 1)
 
     def _seek(self, iteration: int) -> None:
-        if not self._is_updating:
+        """Show the iteration to which the slider was moved."""
+        if self._is_updating or self._echoes.has(iteration):
+            return
+        self._is_in_hand = True
+        try:
             self._state.seek(iteration)
+        finally:
+            self._is_in_hand = False
 
     def _choose_way(self, finish: str) -> None:
         if not self._is_updating and finish != self._state.settings.finish:
@@ -185,6 +193,8 @@ class Transport:
             if newest is not None and frame is not None:
                 last = max(newest.iteration + newest.is_answer, 2)
                 at = last if frame is newest else min(frame.iteration, last)
-                self._iteration.param.update(end=last, value=at)
+                # A slider that is held stays where the hand is.
+                value = {} if self._is_in_hand else {"value": self._echoes.give(at)}
+                self._iteration.param.update(end=last, **value)
         finally:
             self._is_updating = False

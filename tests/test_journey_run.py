@@ -78,6 +78,23 @@ def test_a_value_is_typed_in_its_unit_and_what_cannot_be_is_refused_beside_it(
     expect(figures(page)).to_contain_text("Force −1.2 kN")
 
 
+def test_one_goes_back_to_an_iteration_and_on_again(visit: Visit) -> None:
+    page = visit()
+    is_solved(page)
+    last = iteration(page)
+    scrub = slider(page, "Iteration")
+    drag(page, scrub, 0.5, -4.0)
+    expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
+    page.mouse.up()
+    back = iteration(page)
+    page.locator(".sentence").click()
+    page.keyboard.press("Shift+ArrowRight")
+    expect(status(page)).not_to_contain_text(f"iteration {back} of")
+    assert back < iteration(page) < last
+    scrub.press("End")
+    expect(status(page)).to_contain_text("certified")
+
+
 def test_the_load_path_is_the_time_line(visit: Visit) -> None:
     page = visit(f"?{ANSWER}")
     is_solved(page)

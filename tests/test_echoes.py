@@ -1,0 +1,28 @@
+"""What a widget was given comes back from the browser, and is no choice of anybody."""
+
+from __future__ import annotations
+
+import app.echoes
+from app.controls import Control
+from app.state import PageState, default_settings
+
+
+def test_a_value_that_a_field_showed_on_the_way_changes_nothing_when_it_comes_back() -> None:
+    state = PageState(default_settings("bar"))
+    control = Control("peak", state)
+    for peak in (1000.0, 1100.0):
+        state.change(peak=peak)
+        control.update()
+    control.field.value = "1000"
+    assert state.settings.values()["peak"] == 1100.0
+
+
+def test_later_the_same_value_is_typed_by_hand(monkeypatch) -> None:
+    monkeypatch.setattr(app.echoes, "LASTS", 0.0)
+    state = PageState(default_settings("bar"))
+    control = Control("peak", state)
+    for peak in (1000.0, 1100.0):
+        state.change(peak=peak)
+        control.update()
+    control.field.value = "1000"
+    assert state.settings.values()["peak"] == 1000.0
