@@ -182,7 +182,7 @@ class Control:
         elif self.slider is None:
             self.field.value = value
         else:
-            self.field.value = self._echoes.give(self._written(value))
+            self.field.value = self._echoes.give(self._written(value), self.field.value)
             if not self._is_dragged:
                 self._show_on_slider(value)
 
@@ -203,7 +203,11 @@ class Control:
             self.field.param.update(helper_text=refusal, error_state=bool(refusal))
 
     def _on_field(self, value: Any) -> None:
-        if self._is_updating or value is None or self._echoes.has(value):
+        if self._is_updating or value is None:
+            return
+        if self._echoes.has(value):
+            # The browser may show it too.
+            self.update()
             return
         if value == POINTS and isinstance(self._definition, CurveParameter):
             self._edit()

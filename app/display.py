@@ -81,6 +81,15 @@ class Display:
         if not self.is_waiting:
             self._paint()
 
+    def catch_up(self) -> None:
+        """Ask again whether the last picture is on the screen, once its answer counts as lost."""
+        if self.pulse.painted < self.pulse.sent and not self.is_waiting:
+            if self._is_due:
+                self._paint()
+            else:
+                self._sent_at = time.monotonic()
+                self.pulse.sent += 1
+
     def _paint(self) -> None:
         state, frame = self._state, self._state.frame
         self._is_due = False

@@ -10,7 +10,7 @@ import time
 from collections import deque
 from typing import Any
 
-LASTS = 0.7
+LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
 
 
@@ -20,9 +20,12 @@ class Echoes:
     def __init__(self) -> None:
         self._given: deque[tuple[float, Any]] = deque(maxlen=64)
 
-    def give(self, value: Any) -> Any:
-        """Note a value, and return it for the widget."""
-        self._given.append((time.monotonic(), value))
+    def give(self, value: Any, before: Any) -> Any:
+        """Note a value and the one that it takes the place of, and return it for the widget."""
+        now = time.monotonic()
+        if value != before:
+            # What is empty was never shown.
+            self._given.extend((now, each) for each in (before, value) if each != "")
         return value
 
     def has(self, value: Any) -> bool:

@@ -46,10 +46,12 @@ class History:
         return self._frames[max(bisect_right(search, iteration) - 1, 0)]
 
     def after(self, iteration: int) -> int:
-        """Number of the next iterate of the search that is kept; one more behind the last."""
+        """Number of the next iterate of the search that is kept; behind the last, of the answer."""
         numbers = [kept.iteration for kept in self._frames if not kept.is_answer]
         place = bisect_right(numbers, iteration)
-        return numbers[place] if place < len(numbers) else iteration + 1
+        if place < len(numbers):
+            return numbers[place]
+        return (self._frames[-1].iteration if self._frames else iteration) + 1
 
 
 def _key(frame: Frame) -> tuple[int, bool]:

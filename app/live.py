@@ -20,6 +20,8 @@ from app.views.view import TEXT, View
 STYLE = (Path(__file__).parents[1] / "static" / "style.css").read_text(encoding="utf-8")
 LARGE = "2.6vh"
 """Size of the type of plots on a projector."""
+LOOK = 1000
+"""Milliseconds between two looks for a picture that got lost."""
 PRESENTED = 2
 """Plots that a projector has room for beside the scene."""
 
@@ -49,6 +51,7 @@ class Live:
         self.transport = Transport(state, document)
         self.display = Display(state, self._say)
         document.add_root(self.display.pulse)
+        document.add_periodic_callback(self.display.catch_up, LOOK)
         self._above = pn.Row(
             self.transport.view, self._status, sizing_mode="stretch_width", margin=0
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from typing import Any
 
@@ -15,6 +16,11 @@ PLAYED_IN = 6.0
 """Seconds in which one plays through the interval."""
 TICK = 50
 """Milliseconds between two instants that are shown, at least."""
+FOLLOWS = 400
+"""Milliseconds between two moves of the iteration's slider by itself: of values that follow each
+other more quickly the browser sends the older one back (see `Echoes`)."""
+HELD = 1.0
+"""Seconds after a move of it for which it stays where the hand has left it."""
 ROUND = {"minWidth": "30px", "padding": "4px", "& .MuiButton-startIcon": {"margin": 0}}
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
@@ -37,7 +43,8 @@ class Transport:
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
         self._playing: tuple[Any, float, float, float] | None = None
-        self._is_updating = self._is_in_hand = False
+        self._is_updating = False
+        self._moved_at = -math.inf
         self._echoes = Echoes()
         self.view = pn.Row(*self._buttons(), *self._choices(), margin=0)
         self.play_button.on_click(lambda event: self.play())
@@ -45,6 +52,7 @@ class Transport:
             lambda *events: self._show(),
             ["settings", "frame", "newest", "running", "is_costly", "pinned"],
         )
+        document.add_periodic_callback(self._follow, FOLLOWS)
         self._show()
 
     def _buttons(self) -> list[Any]:
@@ -161,13 +169,9 @@ class Transport:
 
     def _seek(self, iteration: int) -> None:
         """Show the iteration to which the slider was moved."""
-        if self._is_updating or self._echoes.has(iteration):
-            return
-        self._is_in_hand = True
-        try:
+        if not self._is_updating and not self._echoes.has(iteration):
+            self._moved_at = time.monotonic()
             self._state.seek(iteration)
-        finally:
-            self._is_in_hand = False
 
     def _choose_way(self, finish: str) -> None:
         if not self._is_updating and finish != self._state.settings.finish:
@@ -175,8 +179,8 @@ class Transport:
             self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
-        """Show where the run is."""
-        state, newest, frame = self._state, self._state.newest, self._state.frame
+        """Show how the run goes."""
+        state = self._state
         self._is_updating = True
         try:
             icon = "play_arrow"
@@ -190,11 +194,18 @@ class Transport:
             self._pin.color = "default" if state.pinned is None else "primary"
             if state.settings.finish in WATCH.values():
                 self._way.value = state.settings.finish
-            if newest is not None and frame is not None:
-                last = max(newest.iteration + newest.is_answer, 2)
-                at = last if frame is newest else min(frame.iteration, last)
-                # A slider that is held stays where the hand is.
-                value = {} if self._is_in_hand else {"value": self._echoes.give(at)}
-                self._iteration.param.update(end=last, **value)
+        finally:
+            self._is_updating = False
+
+    def _follow(self) -> None:
+        """Show which iteration is shown."""
+        newest, frame, slider = self._state.newest, self._state.frame, self._iteration
+        if newest is None or frame is None or time.monotonic() < self._moved_at + HELD:
+            return
+        last = max(newest.iteration + newest.is_answer, 2)
+        at = last if frame is newest else min(frame.iteration, last)
+        self._is_updating = True
+        try:
+            slider.param.update(end=last, value=self._echoes.give(at, slider.value))
         finally:
             self._is_updating = False

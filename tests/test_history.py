@@ -1,0 +1,68 @@
+"""One goes back and forth among the iterates that were shown, though not each of them was."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import app.display
+from app.display import Display
+from app.frame import Frame
+from app.history import History
+from app.messages import Needs, Ready, Start
+from app.state import PageState, default_settings
+from app.worker.references import ReferenceCache
+from app.worker.runner import Runner
+
+
+@pytest.fixture(scope="module")
+def answer() -> Frame:
+    """The last frame of a run."""
+    settings = default_settings("bar").replace(elements=10, instants=11)
+    runner = Runner(Start(0, settings, math.inf), ReferenceCache(), lambda: False)
+    while runner.rest() is not None:
+        runner.advance()
+    return runner.frame(Needs())
+
+
+def test_one_steps_from_each_kept_iterate_to_the_next_and_at_last_to_the_answer(
+    answer: Frame,
+) -> None:
+    last = answer.iteration
+    kept = [
+        replace(answer, iteration=number, is_answer=False, status=None)
+        for number in (1, 4, last - 2)
+    ]
+    state = PageState(answer.run.settings)
+    state.history = History()
+    for frame in (*kept, answer):
+        state.history.add(frame)
+    state.newest = answer
+    seen = []
+    state.seek(1)
+    while state.frame is not answer:
+        seen.append(state.frame)
+        state.step()
+    assert [frame.iteration for frame in seen] == [1, 4, last - 2]
+    state.seek(3)
+    assert state.frame is kept[0]
+
+
+def test_a_picture_whose_answer_got_lost_is_asked_for_again(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = PageState(answer.run.settings)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, lambda: None)
+    state.frame = answer
+    sent = display.pulse.sent
+    display.catch_up()
+    assert display.pulse.sent == sent
+    monkeypatch.setattr(app.display, "LOST", 0.0)
+    display.catch_up()
+    assert display.pulse.sent == sent + 1
+    display.pulse.painted = display.pulse.sent
+    assert Ready() in orders
