@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
+from bokeh.events import DocumentReady
 
 from app.cards import Card
 from app.display import Display
@@ -51,6 +52,8 @@ class Live:
         self.transport = Transport(state, document)
         self.display = Display(state, self._say)
         document.add_root(self.display.pulse)
+        # The first picture comes with the page.
+        document.js_on_event(DocumentReady, self.display.painted)
         document.add_periodic_callback(self.display.catch_up, LOOK)
         self._above = pn.Row(
             self.transport.view, self._status, sizing_mode="stretch_width", margin=0

@@ -18,9 +18,10 @@ from app.keys import listen
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
 from app.live import STYLE, Live, column
+from app.messages import Pace
 from app.pages import FULL, PAGES
 from app.reports import Reports
-from app.state import TABS, PageState
+from app.state import PACES, TABS, PageState
 from app.supervisor import Supervisor
 from app.whatif import WhatIf
 from solver.settings import Settings
@@ -67,14 +68,15 @@ class Page:
         document = pn.state.curdoc
         link = Link(state)
         self._supervisor = Supervisor(state, document)
+        if not state.room:
+            self._begin()
         self.live = Live(state, document)
         self.member = Member(state, self._supervisor, document)
         self.lesson = LessonPanel(
             state, self.live.transport, self._arrange, lambda: self.member.open_counts()
         )
-        self.lesson.view.stylesheets = [STYLE]
         self.classroom = classroom = ClassDialog(self.member)
-        classroom.view.stylesheets = [STYLE]
+        self.lesson.view.stylesheets = classroom.view.stylesheets = [STYLE]
         self._beside = column("beside", self.live.view)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
@@ -110,16 +112,25 @@ class Page:
         self.lesson.show()
         self._turn(state.tab)
         self._dress()
+        self._supervisor.take()
 
     def loaded(self) -> None:
-        """Start the worker and the first run, now that a browser is there."""
-        if self.member.enter(self.state.room):
-            return
+        """Let the first run go on, or follow a class, now that a browser is there."""
+        self._supervisor.open()
+        if not self.state.room:
+            if not self._iteration:
+                self.state.send(Pace(PACES[self.state.pace]))
+        elif not self.member.enter(self.state.room):
+            self._begin()
+            self.state.run()
+
+    def _begin(self) -> None:
+        """Start the worker and a run, whose first picture comes with the page."""
         self._supervisor.begin()
         if self._iteration:
             wait_at(self.state, self._iteration)
         else:
-            self.state.run()
+            self.state.open()
 
     def end(self, _context: Any) -> None:
         """Leave nothing behind."""

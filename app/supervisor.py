@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from typing import Any
 
 from app.messages import Alive, Order, Report, Start
@@ -36,6 +37,8 @@ class Supervisor:
         self._asked = time.monotonic()
         self._failed = 0
         self._callback: Any = None
+        self._reports: deque[tuple[Worker, Report | None]] = deque()
+        self._is_open = False
 
     def begin(self) -> None:
         """Start the worker."""
@@ -43,6 +46,11 @@ class Supervisor:
             self._callback = self._document.add_periodic_callback(self._look, LOOK)
         self._state.send = self.send
         self._start()
+
+    def open(self) -> None:
+        """Take reports as they come, now that a browser is there to see them."""
+        self._is_open = True
+        self.take()
 
     def end(self) -> None:
         """End the worker."""
@@ -63,17 +71,22 @@ class Supervisor:
         self._state.send_needs()
 
     def _hear(self, worker: Worker, report: Report | None) -> None:
-        """Bring a report to the document's own thread."""
+        """Bring a report to the document's own thread, once what is said there is heard."""
         if not isinstance(report, Alive):
-            self._document.add_next_tick_callback(lambda: self._take(worker, report))
+            self._reports.append((worker, report))
+            if self._is_open:
+                self._document.add_next_tick_callback(self.take)
 
-    def _take(self, worker: Worker, report: Report | None) -> None:
-        if worker is not self._worker:
-            return
-        if report is None:
-            self._restart(ENDED)
-        else:
-            self._state.take(report)
+    def take(self) -> None:
+        """Take what has been reported."""
+        while self._reports:
+            worker, report = self._reports.popleft()
+            if worker is not self._worker:
+                continue
+            if report is None:
+                self._restart(ENDED)
+            else:
+                self._state.take(report)
 
     def _look(self) -> None:
         """Start a worker anew that hangs, or that is too busy with a run to begin the next one."""

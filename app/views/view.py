@@ -76,6 +76,7 @@ class View:
     def figure(self) -> figure:
         """The figure."""
         made = self.make()
+        lighten(made)
         self._magnify(made)
         return made
 
@@ -221,6 +222,12 @@ def plot(x: str, y: str, **more: Any) -> figure:
     made.add_layout(Title(text=x, align="center", standoff=2), "below")
     made.grid.grid_line_alpha = 0.3
     return made
+
+
+def lighten(made: figure) -> None:
+    """Leave out glyphs of what nobody selects or mutes: a page opens sooner."""
+    for renderer in made.renderers:
+        renderer.update(nonselection_glyph=None, muted_glyph=None)
 
 
 def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:

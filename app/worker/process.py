@@ -14,8 +14,9 @@ from app.messages import Order, Report
 from app.worker.loop import main
 
 PROCESSES = get_context("forkserver")
-# Workers share these modules' memory: 29 MB each instead of 130.
-PROCESSES.set_forkserver_preload(["app.worker.loop"])
+# Workers share the memory of these modules; the script that serves imports the last, and so would
+# each of them.
+PROCESSES.set_forkserver_preload(["app.worker.loop", "panel.command"])
 # One thread a worker: pages share the processors. The fork server inherits it.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 SILENT = 8.0
