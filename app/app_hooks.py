@@ -19,7 +19,7 @@ def on_server_loaded(_server_context: Any) -> None:
         sys.path.insert(0, ROOT)
     from app.worker.process import Worker
 
-    Worker(lambda report: None).end()
+    Worker(lambda worker, report: None).end()
     # What is imported stays: without this every full collection walks it for 0.15 s.
     gc.collect()
     gc.freeze()

@@ -43,8 +43,8 @@ class Display:
 
     Attributes
     ----------
-    pulse, painted
-        The model by which the browser says what it has painted, and how it does.
+    pulse
+        The model by which the browser says what it has painted.
     """
 
     def __init__(self, state: PageState, also: Callable[[], None]) -> None:
@@ -53,8 +53,7 @@ class Display:
         self._is_due = False
         self._sent_at = 0.0
         self.pulse = Pulse(name="pulse")
-        self.painted = CustomJS(args={"pulse": self.pulse}, code=PAINTED)
-        self.pulse.js_on_change("sent", self.painted)
+        self.pulse.js_on_change("sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED))
         self.pulse.on_change("painted", lambda name, old, new: self._painted())
         state.param.watch(lambda *events: self.update(), ["frame", "selection", "ghost"])
 

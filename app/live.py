@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
-from bokeh.events import DocumentReady
 
 from app.cards import Card
 from app.display import Display
@@ -52,22 +51,44 @@ class Live:
         self.transport = Transport(state, document)
         self.display = Display(state, self._say)
         document.add_root(self.display.pulse)
-        # The first picture comes with the page.
-        document.js_on_event(DocumentReady, self.display.painted)
         document.add_periodic_callback(self.display.catch_up, LOOK)
+        # While the browser loads.
+        document.add_next_tick_callback(self.prepare)
         self._above = pn.Row(
             self.transport.view, self._status, sizing_mode="stretch_width", margin=0
         )
-        self._plots = column("plots")
+        self._scene, self._plots = column("scene"), column("plots")
+        self._timeline = pn.Row(
+            self.transport.play_button, sizing_mode="stretch_width", min_height=56, margin=0
+        )
+        self._is_open = False
         self.view = self._arranged()
         watch = state.param.watch
         watch(lambda *events: self._say(), ["running", "message", "refusal", "is_costly"])
-        watch(lambda event: self.arrange(), "view")
+        watch(lambda event: self.arrange(self._kinds), "view")
         watch(lambda event: self._fit(), ["settings", "plots"])
+
+    def prepare(self) -> None:
+        """Make the figures."""
+        for view in (*self._views, *(card.views[0] for card in self._cards)):
+            view.figure  # noqa: B018  # it is made when it is first asked for
+
+    def open(self) -> None:
+        """Show the figures, and what there is of a run, now that a browser has all else.
+
+        It would lay them out anew for each widget that follows.
+        """
+        self._is_open = True
+        self.arrange(self._kinds)
+        scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
+        scene.sizing_mode = "stretch_both"
+        timeline.param.update(sizing_mode="stretch_width", height=56)
+        self._scene.append(scene)
+        self._timeline.append(timeline)
 
     def arrange(self, kinds: list[type[View]] | None = None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
-        state = self.state
+        state, self._kinds = self.state, kinds
         self._cards = self._all
         if kinds is not None:
             self._cards = [Card((kind,), state, self.look) for kind in kinds]
@@ -76,7 +97,8 @@ class Live:
         self._above.visible = not state.is_asked and state.view != "embed"
         self._figures.visible = not state.is_asked
         self._plots.visible = bool(self._cards)
-        self._plots[:] = [card.view for card in self._cards]
+        if self._is_open:
+            self._plots[:] = [card.view for card in self._cards]
         self.transport.view.visible = state.view == "page"
         size = LARGE if state.view == "present" else TEXT
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
@@ -88,7 +110,7 @@ class Live:
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
         seen: list[View] = []
-        if self.state.tab == TABS[0]:
+        if self._is_open and self.state.tab == TABS[0]:
             seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
         self.display.views = seen
 
@@ -98,17 +120,14 @@ class Live:
         return list(self.display.views)
 
     def _fit(self) -> None:
-        for card in self._cards:
-            card.fit(self.state)
-        self.look()
+        if self._is_open:
+            for card in self._cards:
+                card.fit(self.state)
+            self.look()
 
     def _arranged(self) -> pn.Column:
-        scene, timeline = (pn.pane.Bokeh(view.figure, margin=0) for view in self._views)
-        scene.sizing_mode = "stretch_both"
-        timeline.param.update(sizing_mode="stretch_width", height=56)
         below = column("words", self._sentence, self._figures)
-        row = pn.Row(self.transport.play_button, timeline, sizing_mode="stretch_width", margin=0)
-        return column("live", self._above, below, column("scene", scene), row, self._plots)
+        return column("live", self._above, below, self._scene, self._timeline, self._plots)
 
     def _say(self) -> None:
         """Bring the words up to the frame."""

@@ -112,11 +112,11 @@ class Page:
         self.lesson.show()
         self._turn(state.tab)
         self._dress()
-        self._supervisor.take()
 
     def loaded(self) -> None:
-        """Let the first run go on, or follow a class, now that a browser is there."""
+        """Show the figures, and let the first run go on or follow a class: a browser is there."""
         self._supervisor.open()
+        self.live.open()
         if not self.state.room:
             if not self._iteration:
                 self.state.send(Pace(PACES[self.state.pace]))
@@ -125,7 +125,7 @@ class Page:
             self.state.run()
 
     def _begin(self) -> None:
-        """Start the worker and a run, whose first picture comes with the page."""
+        """Start the worker and a run, whose first picture is there once the browser is."""
         self._supervisor.begin()
         if self._iteration:
             wait_at(self.state, self._iteration)

@@ -66,8 +66,7 @@ class Supervisor:
             self._worker.send(order)
 
     def _start(self) -> None:
-        worker = Worker(lambda report: self._hear(worker, report))
-        self._worker = worker
+        self._worker = Worker(self._hear)
         self._state.send_needs()
 
     def _hear(self, worker: Worker, report: Report | None) -> None:

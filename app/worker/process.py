@@ -29,11 +29,12 @@ class Worker:
     Parameters
     ----------
     hear
-        Called with each report, and with None once the process has ended, on a thread of its own.
+        Called with this and each report, and with None once the process has ended, on a thread of
+        its own.
     """
 
-    def __init__(self, hear: Callable[[Report | None], None]) -> None:
-        self._hear: Callable[[Report | None], None] | None = hear
+    def __init__(self, hear: Callable[[Worker, Report | None], None]) -> None:
+        self._hear: Callable[[Worker, Report | None], None] | None = hear
         self._connection, theirs = PROCESSES.Pipe()
         self._process: Any = PROCESSES.Process(target=main, args=(theirs,), daemon=True)
         self._process.start()
@@ -69,6 +70,6 @@ class Worker:
                 report: Report = self._connection.recv()
                 self._heard = time.monotonic()
                 if self._hear is not None:
-                    self._hear(report)
+                    self._hear(self, report)
         if self._hear is not None:
-            self._hear(None)
+            self._hear(self, None)
