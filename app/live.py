@@ -97,6 +97,8 @@ class Live:
         self._above.visible = not state.is_asked and state.view != "embed"
         self._figures.visible = not state.is_asked
         self._plots.visible = bool(self._cards)
+        # What they hold first: of tabs that change while they are being shown some are lost.
+        self._fit()
         if self._is_open:
             self._plots[:] = [card.view for card in self._cards]
         self.transport.view.visible = state.view == "page"
@@ -105,7 +107,6 @@ class Live:
             view.magnify(size)
         bare = [state.view] if state.view != "page" else []
         self.view.css_classes = ["live", *bare]
-        self._fit()
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""

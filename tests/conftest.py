@@ -103,7 +103,8 @@ def server(tmp_path_factory: pytest.TempPathFactory, proxy: Proxy) -> Iterator[S
     """What serves the page."""
     port = free_port()
     origins = [f"--allow-websocket-origin=localhost:{each}" for each in (port, proxy.port)]
-    with serving(tmp_path_factory.mktemp("server") / "log", port, *origins) as made:
+    quick = ("--unused-session-lifetime", "8000", "--check-unused-sessions", "500")
+    with serving(tmp_path_factory.mktemp("server") / "log", port, *origins, *quick) as made:
         proxy.target = made.port
         yield made
 
