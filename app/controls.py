@@ -13,7 +13,7 @@ import panel_material_ui as pmui
 import param
 
 from app.curves import CurveDialog
-from app.echoes import Echoes
+from app.browser import Echoes
 from app.files import FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of

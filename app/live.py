@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import panel as pn
+import panel_material_ui as pmui
 from bokeh.events import DocumentReady
 
-from app.cards import Card
-from app.display import Display
+from app.browser import Display
 from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.transport import Transport
@@ -25,32 +26,30 @@ LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
 PRESENTED = 2
 """Plots that a projector has room for beside the scene."""
+SMALL_TABS = {
+    "&.MuiTabs-root, & .MuiTabs-root": {"minHeight": "26px"},
+    "& .MuiTab-root": {
+        "minHeight": "26px",
+        "minWidth": 0,
+        "padding": "2px 10px",
+        "textTransform": "none",
+        "fontSize": "13px",
+    },
+    "& .MuiTabs-scrollButtons": {"width": "20px"},
+}
 
 
 class Live:
-    """The live run on the page.
-
-    Parameters
-    ----------
-    state, document
-        Of the page.
-
-    Attributes
-    ----------
-    view
-        What stands on the page.
-    transport, display
-        Its buttons, and what paints its views.
-    """
+    """The live run on the page: its transport, its display, and its views."""
 
     def __init__(self, state: PageState, document: Any) -> None:
         self.state = state
-        self._status = words("status", margin=(8, 6))
-        self._sentence, self._figures = words("sentence"), words("figures")
+        self._status = _words("status", margin=(8, 6))
+        self._sentence, self._figures = _words("sentence"), _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._all = self._cards = [Card(kinds, state, self.look) for kinds in CARDS]
         self.transport = Transport(state, document)
-        self.display = Display(state, self._say)
+        self.display = Display(state, self._write)
         document.add_root(self.display.pulse)
         # The first picture comes with the page.
         document.js_on_event(DocumentReady, self.display.painted)
@@ -61,11 +60,11 @@ class Live:
         self._plots = column("plots")
         self.view = self._arranged()
         watch = state.param.watch
-        watch(lambda *events: self._say(), ["running", "message", "refusal", "is_costly"])
+        watch(lambda *events: self._write(), ["running", "message", "refusal", "is_costly"])
         watch(lambda event: self.arrange(), "view")
         watch(lambda event: self._fit(), ["settings", "plots"])
 
-    def arrange(self, kinds: list[type[View]] | None = None) -> None:
+    def arrange(self, kinds: tuple[type[View], ...] | None = None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
         state = self.state
         self._cards = self._all
@@ -81,8 +80,7 @@ class Live:
         size = LARGE if state.view == "present" else TEXT
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
-        bare = [state.view] if state.view != "page" else []
-        self.view.css_classes = ["live", *bare]
+        self.view.css_classes = ["live", *([state.view] if state.view != "page" else [])]
         self._fit()
 
     def look(self) -> None:
@@ -92,14 +90,9 @@ class Live:
             seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
         self.display.views = seen
 
-    @property
-    def seen(self) -> list[View]:
-        """The views in sight."""
-        return list(self.display.views)
-
     def _fit(self) -> None:
         for card in self._cards:
-            card.fit(self.state)
+            card.fit()
         self.look()
 
     def _arranged(self) -> pn.Column:
@@ -110,13 +103,75 @@ class Live:
         row = pn.Row(self.transport.play_button, timeline, sizing_mode="stretch_width", margin=0)
         return column("live", self._above, below, column("scene", scene), row, self._plots)
 
-    def _say(self) -> None:
+    def _write(self) -> None:
         """Bring the words up to the frame."""
         frame = self.state.frame
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = frame.run.sentence
+
+
+class Card:
+    """Views that share a place as tabs, of which one is in sight; `changed` follows each turn."""
+
+    def __init__(
+        self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
+    ) -> None:
+        self._state, self._changed = state, changed
+        self.views = [kind(state) for kind in kinds]
+        self._fitting: list[View] = []
+        self._chosen: View | None = None
+        self._is_fitting = False
+        self._panes: dict[View, pn.pane.Bokeh] = {}
+        self.tabs = pmui.TabMenu(items=[], margin=0, sx=SMALL_TABS, sizing_mode="stretch_width")
+        self.tabs.param.watch(lambda event: self._choose(), "active")
+        self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
+
+    @property
+    def seen(self) -> View | None:
+        """The view in sight."""
+        return self._fitting[self.tabs.active or 0] if self._fitting else None
+
+    def fit(self) -> None:
+        """Offer the views that say anything about the present settings.
+
+        The one that was chosen last is in sight, wherever it is offered.
+        """
+        named = [view for view in self.views if view.name in self._state.plots.split(",")]
+        self._chosen = named[0] if named else self._chosen
+        fitting = [view for view in self.views if view.applies(self._state.settings)]
+        if fitting == self._fitting and (not named or self.seen in named):
+            return
+        self._is_fitting = True
+        self._fitting = fitting
+        self.view.visible = bool(fitting)
+        active = fitting.index(self._chosen) if self._chosen in fitting else 0
+        self.tabs.param.update(items=[view.name for view in fitting], active=active)
+        self._is_fitting = False
+        self._turn()
+
+    def _choose(self) -> None:
+        if not self._is_fitting:
+            self._chosen = self.seen
+            self._turn()
+            mine = {view.name for view in self.views}
+            others = [name for name in self._state.plots.split(",") if name and name not in mine]
+            own = [] if self._chosen is self._fitting[0] else [self._chosen.name]
+            self._state.plots = ",".join([*others, *own])
+
+    def _turn(self) -> None:
+        """Make the figure of the view in sight, where it was not seen yet, and show the frame."""
+        view, state = self.seen, self._state
+        if view is not None:
+            if view not in self._panes:
+                pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+                self._panes[view] = pane
+            if state.frame is not None:
+                view.update(state.frame, state.selection, state.ghost)
+            if list(self.view) != [self.tabs, self._panes[view]]:
+                self.view[:] = [self.tabs, self._panes[view]]
+        self._changed()
 
 
 def column(role: str, *parts: Any) -> pn.Column:
@@ -126,6 +181,6 @@ def column(role: str, *parts: Any) -> pn.Column:
     )
 
 
-def words(role: str, **more: Any) -> pn.pane.HTML:
+def _words(role: str, **more: Any) -> pn.pane.HTML:
     """A pane of words, which tests and style sheets know by its role."""
     return pn.pane.HTML(css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more})

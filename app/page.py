@@ -10,17 +10,16 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app import glossary
-from app.class_dialog import ClassDialog
-from app.classroom import Member
+from app.browser import listen
+from app.classroom import ClassDialog, Member
 from app.controls import Controls
 from app.export import TakeAway
-from app.keys import listen
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
 from app.live import STYLE, Live, column
 from app.messages import Pace
-from app.pages import FULL, PAGES
 from app.reports import Reports
+from app.server import FULL, PAGES
 from app.state import PACES, TABS, PageState
 from app.supervisor import Supervisor
 from app.whatif import WhatIf

@@ -9,7 +9,7 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app.echoes import Echoes
+from app.browser import Echoes
 from app.state import ANSWER, PACES, SEARCH, PageState, known
 
 PLAYED_IN = 6.0

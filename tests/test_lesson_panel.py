@@ -15,7 +15,7 @@ from app.lessons.handout import handout
 from app.lessons.panel import WITHOUT, LessonPanel
 from app.lessons.text import PENDING, filled, parts_of, without_controls
 from app.messages import Needs
-from app.poll import Poll
+from app.state import Poll
 from app.state import PageState, default_settings
 from app.worker.sampling import Sampler
 from solver.lessons.lesson import Control, Lesson

@@ -15,7 +15,7 @@ from app.lessons.catalogue import LESSONS, kinds_of, lesson_after, readings_of, 
 from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
 from app.lessons.text import filled, parts_of
-from app.poll import Poll
+from app.state import Poll
 from app.state import PageState
 from app.transport import Transport
 from app.views.view import View
