@@ -7,7 +7,7 @@ from bisect import bisect_right
 from app.frame import Frame
 
 LIMIT = 24_000_000
-"""Bytes that the frames of a run may take; beyond, every other one is dropped but first and last."""
+"""Bytes that the frames of a run may take; beyond, every other one is dropped."""
 
 
 class History:

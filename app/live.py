@@ -59,12 +59,11 @@ class Live:
         )
         self._plots = column("plots")
         self.view = self._arranged()
-        watch = state.param.watch
-        watch(lambda *events: self._write(), ["running", "message", "refusal", "is_costly"])
-        watch(lambda event: self.arrange(), "view")
-        watch(lambda event: self._fit(), ["settings", "plots"])
+        said = ["running", "message", "refusal", "is_costly"]
+        state.param.watch(lambda *events: self._write(), said)
+        state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
-    def arrange(self, kinds: tuple[type[View], ...] | None = None) -> None:
+    def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
         state = self.state
         self._cards = self._all

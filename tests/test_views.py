@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
-from app.live import Card
 from app.frame import Frame, Selection
+from app.live import Card
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.axial_force import AxialForce
