@@ -69,11 +69,6 @@ class Classroom:
         self.leader, self._gone_at = member, None
         self.notify()
 
-    def join(self, member: Member) -> None:
-        """Have one more follow."""
-        self.members.append(member)
-        self.notify()
-
     def part(self, member: Member) -> None:
         """Wait for a leader whose page is closed, or let a follower go."""
         if member is self.leader and not self.is_alone:
@@ -171,7 +166,7 @@ class Member(param.Parameterized):
             if code:
                 ask = "ask for its code; it may have ended"
                 self.message = f"There is no class {code[:20]}: {ask}."
-            self._write_address()
+            self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
             last = room.leader.state
             self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
@@ -191,7 +186,7 @@ class Member(param.Parameterized):
         if self.leads:
             self.room.end()
             self.room = self.state.poll = None
-            self._write_address()
+            self.state.room = self._address()
             self.message = ""
 
     def leave(self) -> None:
@@ -207,7 +202,7 @@ class Member(param.Parameterized):
             state.history.add(state.newest)
         state.number += APART
         state.poll = None
-        self._write_address()
+        self.state.room = self._address()
         self.message = f"You have left class {room.code}."
         self._supervisor.begin()
         state.run()
@@ -237,14 +232,15 @@ class Member(param.Parameterized):
     def _lead(self, room: Classroom) -> None:
         self.room = room
         room.lead(self)
-        self._write_address()
+        self.state.room = self._address()
 
     def _follow(self, room: Classroom) -> None:
         self._supervisor.end()
         self.state.send = self._send
         self.room, self.left = room, None
-        room.join(self)
-        self._write_address()
+        room.members.append(self)
+        room.notify()
+        self.state.room = self._address()
         self._take()
 
     def _send(self, order: Order) -> None:
@@ -267,6 +263,7 @@ class Member(param.Parameterized):
             leader = room.leader.state
             state.history, state.number, state.began = leader.history, leader.number, leader.number
             values |= {name: getattr(leader, name) for name in SHARED}
+        # Watchers of what is as it was have nothing to do.
         changed = {name: value for name, value in values.items() if value != getattr(state, name)}
         state.param.update(**changed)
         self.message = self._sentence(room)
@@ -295,9 +292,6 @@ class Member(param.Parameterized):
             return ""
         return f"{self.room.code}.{self.room.key}" if self.leads else self.room.code
 
-    def _write_address(self) -> None:
-        self.state.room = self._address()
-
     def _on_address(self, address: str) -> None:
         """Follow, or leave, as the browser goes back and on."""
         if address == self._address() or self.leads:
@@ -318,7 +312,7 @@ class ClassDialog:
     def __init__(self, member: Member) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
-        self._act = _button("", self._do, variant="text")
+        self._act = _button("", lambda: self._offer()[1](), variant="text")
         self._code = _button("Code", lambda: self.open(), variant="text")
         parts = self._message, self._act, self._code
         self.view = pn.Row(*parts, visible=False, margin=0, align="center", css_classes=["class"])
@@ -373,25 +367,22 @@ class ClassDialog:
         self._member.end()
         self.dialog.open = False
 
-    def _do(self) -> None:
+    def _offer(self) -> tuple[str, Callable[[], None]]:
+        """What one can do, and its name; nothing outside of a class."""
         member = self._member
         if member.leads:
-            self._end()
-        elif member.follows:
-            member.leave()
-        else:
-            member.follow_again()
+            return "End the class", self._end
+        if member.follows:
+            return "Go on by myself", member.leave
+        can_return = member.left is not None and not member.left.is_over
+        return "Follow again" if can_return else "", member.follow_again
 
     def _show(self) -> None:
-        member = self._member
-        can_return = member.left is not None and not member.left.is_over
-        label = "Follow again" if can_return else ""
-        if member.leads or member.follows:
-            label = "End the class" if member.leads else "Go on by myself"
-        self._message.object = escape(member.message)
+        label, _ = self._offer()
+        self._message.object = escape(self._member.message)
         self._act.param.update(label=label or " ", visible=bool(label))
-        self._code.visible = member.leads
-        self.view.visible = bool(member.message)
+        self._code.visible = self._member.leads
+        self.view.visible = bool(self._member.message)
 
 
 def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:

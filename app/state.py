@@ -124,11 +124,8 @@ class PageState(param.Parameterized):
 
     def drag(self, name: str, value: float) -> None:
         """Follow a slider as far as is allowed; the answer alone is shown until it is let go."""
-        try:
-            settings = self.settings.with_change(name, value)
-        except RefusedError:
-            allowed = nearest_allowed(self.settings, name, value)
-            settings = self.settings.with_change(name, allowed)
+        allowed = nearest_allowed(self.settings, name, value)
+        settings = self.settings.with_change(name, allowed)
         self.param.update(refusal="", settings=settings, is_dragged=True)
         self._start(answer(settings), is_dragged=True)
 
@@ -197,11 +194,11 @@ class PageState(param.Parameterized):
         newest = self.newest
         if newest is None:
             return
-        if iteration > newest.iteration or (iteration == newest.iteration and not newest.is_answer):
-            self.param.update(iteration=None, frame=newest, ghost=self._ghost_at(newest))
-        else:
-            frame = self.history.at(iteration)
-            self.param.update(iteration=frame.iteration, frame=frame, ghost=self._ghost_at(frame))
+        # The answer has the number of the last iterate before it.
+        is_newest = iteration >= newest.iteration + newest.is_answer
+        frame = newest if is_newest else self.history.at(iteration)
+        place = None if is_newest else frame.iteration
+        self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))
 
     def _start(self, settings: Settings, pace: float | None = None, **how: bool) -> None:
         """Order a run; `how` is that of `Start`."""
@@ -262,7 +259,7 @@ class PageState(param.Parameterized):
         self.send(order)
 
     def send_needs(self, *, is_news: bool = True) -> None:
-        """Tell the worker what frames shall carry."""
+        """Have frames carry what is seen; a worker that is new is told in any case."""
         seen = self.selection
         needs = Needs(self.needs, seen.interface, seen.substructure, seen.place, seen.stress)
         needs = replace(needs, readings=tuple(self.readings), brought=self.brought)

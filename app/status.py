@@ -35,16 +35,14 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
     if frame is not newest:
         return f"<b>iteration {frame.iteration}</b> of {newest.iteration} · {wrong} wrong"
     if newest.status is None:
-        verb = "" if state.running else " · paused"
-        return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{verb}"
+        paused = "" if state.running else " · paused"
+        return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{paused}"
     counted = f"{newest.iteration} iteration{'s' * (newest.iteration != 1)}"
     if frame.run.is_idle:
         return f"<b>at rest</b> · {counted}: nothing acts here; give a load, or move a side"
-    ending = ENDINGS[newest.status.ending]
-    if newest.residual is not None:
-        what = "answer" if not newest.is_answer else "search"
-        return f"<b>{ending}</b> · {what}: {counted} · certified"
-    return f"<b>{ending}</b> · search: {counted} · {wrong} wrong"
+    search = "search" if newest.residual is None or newest.is_answer else "answer"
+    end = f"{wrong} wrong" if newest.residual is None else "certified"
+    return f"<b>{ENDINGS[newest.status.ending]}</b> · {search}: {counted} · {end}"
 
 
 def _details(frame: Frame) -> str:
@@ -100,5 +98,4 @@ def key_figures(frame: Frame, selection: Selection) -> dict[str, str]:
 def figures_line(frame: Frame, selection: Selection) -> str:
     """The key figures in a line (HTML)."""
     figures = key_figures(frame, selection).items()
-    words = (f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures)
-    return "".join(words)
+    return "".join(f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures)
