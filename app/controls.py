@@ -250,7 +250,6 @@ class Controls:
     def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
         self._state, self._copy = state, copy
         self._controls: list[Control] = []
-        self._closed: dict[int, list[str]] = {}
         pictures = {
             f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
             for number, entry in enumerate(CATALOGUE.values(), start=1)
@@ -274,7 +273,6 @@ class Controls:
             sx=GROUP,
         )
         self._groups.param.watch(lambda event: self._open(), "active")
-        self._files = pn.Column(margin=0)
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
@@ -296,19 +294,20 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [Control(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
-        self._closed = dict(enumerate(groups.values()))
+        self._names = [*groups.values(), []]
         self._groups.active = []
-        columns = [(title, pn.Column(margin=0)) for title in groups]
-        self._groups[:] = [*columns, ("Files", self._files)]
+        self._groups[:] = [(title, pn.Column(margin=0)) for title in (*groups, "Files")]
 
     def _open(self) -> None:
-        """Build the controls of groups that are opened for the first time."""
-        for place in set(self._groups.active) & self._closed.keys():
-            controls = [Control(name, self._state) for name in self._closed.pop(place)]
+        """Fill the groups that are opened for the first time; the last has the files."""
+        for place in self._groups.active:
+            column = self._groups[place]
+            if column.objects:
+                continue
+            controls = [Control(name, self._state) for name in self._names[place]]
             self._controls += controls
-            self._groups[place][:] = [control.view for control in controls]
-        if len(self._groups) - 1 in self._groups.active and not self._files.objects:
-            self._files.append(FilesPanel(self._state, self._copy, WIDTH).view)
+            files = [] if controls else [FilesPanel(self._state, self._copy, WIDTH).view]
+            column[:] = [control.view for control in controls] + files
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:

@@ -67,10 +67,9 @@ _NUMBERS = {
     "instant": quantity(0.0, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
     "iteration": count(0, (0, 100_000), (0, 100_000), "", group="", title=""),
 }
-_CHOICES = {"tab": TABS, "pace": PACES, "view": VIEWS, "theme": ["light", "dark"]}
+_CHOICES = {"tab": TABS, "pace": list(PACES), "view": VIEWS, "theme": ["light", "dark"]}
 _PLACE: dict[str, Any] = _NUMBERS | {
-    name: choice(next(iter(options)), options, "", group="", title="")
-    for name, options in _CHOICES.items()
+    name: choice(options[0], options, "", group="", title="") for name, options in _CHOICES.items()
 }
 """What an address may say beside settings, scene, lesson, class and plots."""
 
@@ -158,9 +157,8 @@ def place_of(state: PageState) -> Place:
 
 def link_of(state: PageState) -> tuple[str, str]:
     """The whole link to what is shown, instant and iteration too, and what it had to leave out."""
-    frame, newest = state.frame, state.newest
-    is_waiting = frame is not None and not frame.is_answer
-    is_waiting = is_waiting and (not state.running or frame is not newest)
+    frame, is_held = state.frame, not state.running or state.frame is not state.newest
+    is_waiting = frame is not None and not frame.is_answer and is_held
     place = replace(
         place_of(state),
         # Who leads a class has its key there, too.
@@ -189,7 +187,8 @@ def query_of(place: Place) -> str:
         for name, value in changed.items()
         if name not in long
     }
-    pairs |= {"file": ",".join(long)} if long else {}
+    if long:
+        pairs["file"] = ",".join(long)
     first = Place(place.settings, instant=lesson.instant if lesson else Selection().phase)
     for name in ("tab", "instant", "iteration", "pace", "plots", "view", "theme"):
         value = getattr(place, name)
@@ -216,7 +215,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     for name in [name for name in _PLACE if name in pairs]:
         text = pairs.pop(name)
         try:
-            value = parse(text) if name in ("instant", "iteration") else text
+            value = parse(text) if name in _NUMBERS else text
             given[name] = checked_value(_PLACE[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
@@ -284,7 +283,5 @@ def _refused(refusal: RefusedError, settings: Settings, name: str, value: Any) -
 
 def too_long(settings: Settings) -> list[str]:
     """Names of the settings whose values are too long for an address."""
-    values = settings.values().items()
-    return [
-        n for n, value in values if isinstance(value, tuple) and len(json.dumps(value)) > LONGEST
-    ]
+    tables = {n: value for n, value in settings.values().items() if isinstance(value, tuple)}
+    return [name for name, table in tables.items() if len(json.dumps(table)) > LONGEST]

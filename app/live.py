@@ -119,58 +119,48 @@ class Card:
     ) -> None:
         self._state, self._changed = state, changed
         self.views = [kind(state) for kind in kinds]
-        self._fitting: list[View] = []
-        self._chosen: View | None = None
-        self._is_fitting = False
+        self.seen: View | None = None
+        self._offered: list[View] = []
         self._panes: dict[View, pn.pane.Bokeh] = {}
         self.tabs = pmui.TabMenu(items=[], margin=0, sx=SMALL_TABS, sizing_mode="stretch_width")
-        self.tabs.param.watch(lambda event: self._choose(), "active")
+        self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
         self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
 
-    @property
-    def seen(self) -> View | None:
-        """The view in sight."""
-        return self._fitting[self.tabs.active or 0] if self._fitting else None
-
     def fit(self) -> None:
-        """Offer the views that say anything about the present settings.
-
-        The one that was chosen last is in sight, wherever it is offered.
-        """
-        named = [view for view in self.views if view.name in self._state.plots.split(",")]
-        self._chosen = named[0] if named else self._chosen
-        fitting = [view for view in self.views if view.applies(self._state.settings)]
-        if fitting == self._fitting and (not named or self.seen in named):
+        """Offer the views that say anything here; the one that the state names is in sight."""
+        state, names = self._state, self._state.plots.split(",")
+        offered = [view for view in self.views if view.applies(state.settings)]
+        first = offered[0] if offered else None
+        seen = next((view for view in offered if view.name in names), first)
+        if (offered, seen) == (self._offered, self.seen):
             return
-        self._is_fitting = True
-        self._fitting = fitting
-        self.view.visible = bool(fitting)
-        active = fitting.index(self._chosen) if self._chosen in fitting else 0
-        self.tabs.param.update(items=[view.name for view in fitting], active=active)
-        self._is_fitting = False
-        self._turn()
+        is_turned = seen is not self.seen
+        self._offered, self.seen = offered, seen
+        self.view.visible = bool(offered)
+        active = offered.index(seen) if offered else 0
+        self.tabs.param.update(items=[view.name for view in offered], active=active)
+        if is_turned:
+            self.view[:] = [self.tabs, self._pane(seen)] if seen is not None else [self.tabs]
+            self._changed()
 
-    def _choose(self) -> None:
-        if not self._is_fitting:
-            self._chosen = self.seen
-            self._turn()
+    def _choose(self, place: int) -> None:
+        """Have the state name the view of a tab; the first that is offered needs no name."""
+        view = self._offered[place]
+        if view is not self.seen:
             mine = {view.name for view in self.views}
-            others = [name for name in self._state.plots.split(",") if name and name not in mine]
-            own = [] if self._chosen is self._fitting[0] else [self._chosen.name]
-            self._state.plots = ",".join([*others, *own])
+            names = [name for name in self._state.plots.split(",") if name and name not in mine]
+            self._state.plots = ",".join([*names, view.name] if place else names)
+            self.fit()
 
-    def _turn(self) -> None:
-        """Make the figure of the view in sight, where it was not seen yet, and show the frame."""
-        view, state = self.seen, self._state
-        if view is not None:
-            if view not in self._panes:
-                pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
-                self._panes[view] = pane
-            if state.frame is not None:
-                view.update(state.frame, state.selection, state.ghost)
-            if list(self.view) != [self.tabs, self._panes[view]]:
-                self.view[:] = [self.tabs, self._panes[view]]
-        self._changed()
+    def _pane(self, view: View) -> pn.pane.Bokeh:
+        """The figure of a view with the frame; it is made when it is first seen."""
+        state = self._state
+        if view not in self._panes:
+            pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+            self._panes[view] = pane
+        if state.frame is not None:
+            view.update(state.frame, state.selection, state.ghost)
+        return self._panes[view]
 
 
 def column(role: str, *parts: Any) -> pn.Column:

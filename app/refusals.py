@@ -9,7 +9,7 @@ from typing import Any
 import param
 
 from app.units import Unit, number, unit_of, units_of_points
-from solver.definitions import CurveParameter, Parameter, about, allowed
+from solver.definitions import CurveParameter, about, allowed
 from solver.refusal import RefusedError
 from solver.settings import Settings
 
