@@ -19,10 +19,9 @@ import param
 import segno
 
 from app.addresses import address_for_others, how_to_open
-from app.history import History
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
-from app.state import PageState, Poll
+from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"

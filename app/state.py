@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -10,7 +11,6 @@ from typing import Any
 import param
 
 from app.frame import Frame, Selection
-from app.history import History
 from app.messages import (
     WHOLE,
     Began,
@@ -32,6 +32,8 @@ from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.other_programs.brought import Brought
 
+LIMIT = 24_000_000
+"""Bytes that the frames of a run may take; beyond, every other one is dropped."""
 SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings with which one sees the search from nothing, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
@@ -61,6 +63,46 @@ class Poll:
     present: int
     counts: tuple[int, ...] = ()
     is_answered: bool = False
+
+
+class History:
+    """The frames of a run that were shown, by iteration, thinned under a memory limit."""
+
+    def __init__(self) -> None:
+        self._frames: list[Frame] = []
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    @property
+    def newest(self) -> Frame | None:
+        """The last frame, the answer where the run has one."""
+        return self._frames[-1] if self._frames else None
+
+    def add(self, frame: Frame) -> None:
+        """Keep a frame; another one of the same iterate takes its place."""
+        last = self.newest
+        if last is not None and (last.iteration, last.is_answer) == (
+            frame.iteration,
+            frame.is_answer,
+        ):
+            self._frames.pop()
+        self._frames.append(frame)
+        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self) > 2:
+            self._frames = [*self._frames[:-1:2], self._frames[-1]]
+
+    def at(self, iteration: int) -> Frame:
+        """The last kept frame of the search up to an iteration, or the first one."""
+        return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
+
+    def after(self, iteration: int) -> int:
+        """Number of the next iterate of the search that is kept; behind the last, of the answer."""
+        numbers = self._search()
+        place = bisect_right(numbers, iteration)
+        return numbers[place] if place < len(numbers) else self._frames[-1].iteration + 1
+
+    def _search(self) -> list[int]:
+        return [kept.iteration for kept in self._frames if not kept.is_answer]
 
 
 def default_settings(scene: str) -> Settings:

@@ -11,9 +11,8 @@ import pytest
 from app import classroom
 from app.classroom import Member, find
 from app.frame import Frame
-from app.history import History
 from app.messages import Needs, Order, Ready, Start
-from app.state import PageState, default_settings
+from app.state import History, PageState, default_settings
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.quantities.finished import finished_run

@@ -10,9 +10,8 @@ import pytest
 import app.browser
 from app.browser import Display
 from app.frame import Frame
-from app.history import History
 from app.messages import Needs, Ready, Start
-from app.state import PageState, default_settings
+from app.state import History, PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 
