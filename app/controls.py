@@ -273,6 +273,7 @@ class Controls:
             sx=GROUP,
         )
         self._groups.param.watch(lambda event: self._open(), "active")
+        self._files = pn.Column(margin=0)
         self.view = pn.Column(self._scene, self._chief, self._groups, width=WIDTH, margin=(4, 12))
         self._built = ""
         state.param.watch(lambda event: self.update(), "settings")
@@ -294,20 +295,23 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [Control(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
-        self._names = [*groups.values(), []]
+        self._names = list(groups.values())
         self._groups.active = []
-        self._groups[:] = [(title, pn.Column(margin=0)) for title in (*groups, "Files")]
+        columns = [(title, pn.Column(margin=0)) for title in groups]
+        self._groups[:] = [*columns, ("Files", self._files)]
 
     def _open(self) -> None:
-        """Fill the groups that are opened for the first time; the last has the files."""
+        """Fill the groups that are opened for the first time."""
         for place in self._groups.active:
             column = self._groups[place]
             if column.objects:
                 continue
+            if column is self._files:
+                column.append(FilesPanel(self._state, self._copy, WIDTH).view)
+                continue
             controls = [Control(name, self._state) for name in self._names[place]]
             self._controls += controls
-            files = [] if controls else [FilesPanel(self._state, self._copy, WIDTH).view]
-            column[:] = [control.view for control in controls] + files
+            column[:] = [control.view for control in controls]
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:
