@@ -6,17 +6,22 @@ some minutes, as whoever loads a page again is gone as well.
 
 from __future__ import annotations
 
+import math
 import secrets
 import time
+from collections.abc import Callable
+from html import escape
 from typing import Any
 
+import panel as pn
+import panel_material_ui as pmui
 import param
+import segno
 
-from app.history import History
+from app.addresses import address_for_others, how_to_open
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
-from app.poll import Poll
-from app.state import PageState
+from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
 
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
@@ -24,10 +29,9 @@ LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"
 LENGTH = 4
 KEPT = 300.0
 """Seconds for which a class waits for its leader."""
-SHARED = (
-    *("settings", "frame", "newest", "ghost", "iteration", "running"),
-    *("selection", "lesson", "plots"),
-)
+RESUMED = "settings", "selection", "lesson", "plots"
+"""What the next leader has of the last one's state."""
+SHARED = *RESUMED, "frame", "newest", "ghost", "iteration", "running"
 """What followers have of the leader's state."""
 APART = 10_000
 """Runs of a page that has left a class are counted so far from the leader's."""
@@ -36,158 +40,101 @@ APART = 10_000
 class Classroom:
     """What the pages of a class have in common.
 
-    Parameters
-    ----------
-    code
-        By which one joins.
-
-    Attributes
-    ----------
-    key
-        Whoever has it may lead: the page that began the class, after it was loaded again.
-    leader
-        The state that followers see; that of the last leader while there is none.
-    members
-        The pages that follow.
+    Whoever has `key` may lead: the page that began the class, after it was loaded again. `leader`
+    is the last one while there is none; `members` follow.
     """
 
-    def __init__(self, code: str) -> None:
+    def __init__(self, code: str, leader: Member) -> None:
         self.code, self.key = code, secrets.token_hex(8)
-        self.leader: PageState | None = None
+        self.leader = leader
         self.members: list[Member] = []
-        self._guide: Member | None = None
-        self._watcher: Any = None
         self._gone_at: float | None = None
-        self._is_ended = self._is_open = False
         self._lesson = ""
-        self._votes: dict[Member, int] = {}
-
-    @property
-    def is_over(self) -> bool:
-        """Whether it was ended, or its leader has not come back."""
-        gone = self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
-        return self._is_ended or gone
+        self.votes: dict[Member, int] = {}
+        self.is_open = False
 
     @property
     def is_alone(self) -> bool:
         """Whether nobody leads it at present."""
-        return self._gone_at is not None or self._is_ended
+        return self._gone_at is not None
 
-    def lead(self, guide: Member) -> None:
+    @property
+    def is_over(self) -> bool:
+        """Whether it was ended, or its leader has not come back."""
+        return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
+
+    def lead(self, member: Member) -> None:
         """Have a page lead it, in place of the one that did."""
-        if self.leader is not None and self._watcher is not None:
-            self.leader.param.unwatch(self._watcher)
-        self._guide, self.leader, self._gone_at = guide, guide.state, None
-        self._watcher = self.leader.param.watch(
-            lambda *events: self._on_leader(), [*SHARED, "prediction"]
-        )
-        self._on_leader()
-
-    def is_led_by(self, member: Member) -> bool:
-        """Whether a page leads it."""
-        return self._guide is member and not self.is_over
+        self.leader, self._gone_at = member, None
+        self.notify()
 
     def part(self, member: Member) -> None:
         """Wait for a leader whose page is closed, or let a follower go."""
-        if self._guide is member:
-            self._guide, self._gone_at = None, time.monotonic()
+        if member is self.leader and not self.is_alone:
+            self._gone_at = time.monotonic()
         elif member in self.members:
             self.members.remove(member)
-            self._votes.pop(member, None)
-        self.tell()
-
-    def join(self, member: Member) -> None:
-        """Have one more follow."""
-        self.members.append(member)
-        self.tell()
+            self.votes.pop(member, None)
+        self.notify()
 
     def end(self) -> None:
         """End it; followers keep the last picture."""
-        self._is_ended = True
-        self.tell()
-
-    def vote(self, member: Member, choice: int) -> None:
-        """Take what a follower predicts, in place of what was predicted before."""
-        self._votes[member] = choice
-        self.tell()
-
-    def open_counts(self) -> None:
-        """Have all see how many predicted what."""
-        self._is_open = True
-        self.tell()
+        self._gone_at = -math.inf
+        self.notify()
 
     def poll_for(self, member: Member) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
-        leader = self.leader
-        if leader is None or leader.lesson not in LESSONS or self.is_over:
+        state = self.leader.state
+        if state.lesson not in LESSONS or self.is_over:
             return None
-        votes = list(self._votes.values())
-        choices = range(len(LESSONS[leader.lesson].choices))
-        counts = tuple(votes.count(choice) for choice in choices)
+        votes = list(self.votes.values())
+        choices = range(len(LESSONS[state.lesson].choices))
         return Poll(
-            leads=self.is_led_by(member),
+            leads=member.leads,
             predicted=len(votes),
             present=len(self.members),
-            counts=counts if self._is_open else (),
-            is_answered=leader.prediction is not None,
+            counts=tuple(votes.count(choice) for choice in choices) if self.is_open else (),
+            is_answered=state.prediction is not None,
         )
 
-    def tell(self) -> None:
-        """Have all pages take what is new."""
-        for member in [*self.members, self._guide]:
-            if member is not None:
-                member.notify()
-
-    def _on_leader(self) -> None:
-        assert self.leader is not None
-        if self.leader.lesson != self._lesson:
-            self._lesson, self._votes, self._is_open = self.leader.lesson, {}, False
-        self.tell()
+    def notify(self) -> None:
+        """Have all pages take what is new; another lesson is predicted anew."""
+        lesson = self.leader.state.lesson
+        if lesson != self._lesson:
+            self._lesson, self.votes, self.is_open = lesson, {}, False
+        for member in self.members + [self.leader] * (not self.is_alone):
+            member.notify()
 
 
-class Classrooms:
-    """The classes of a server, by their codes."""
-
-    def __init__(self) -> None:
-        self._open: dict[str, Classroom] = {}
-
-    def begin(self) -> Classroom:
-        """A new class."""
-        self._open = {code: room for code, room in self._open.items() if not room.is_over}
-        code = ""
-        while not code or code in self._open:
-            code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
-        self._open[code] = Classroom(code)
-        return self._open[code]
-
-    def find(self, code: str) -> Classroom | None:
-        """The class of a code, unless it has ended."""
-        room = self._open.get(code.strip().upper())
-        return None if room is None or room.is_over else room
+CLASSROOMS: dict[str, Classroom] = {}
+"""The classes of the server, by their codes."""
 
 
-CLASSROOMS = Classrooms()
+def find(code: str) -> Classroom | None:
+    """The class of a code, unless it has ended."""
+    room = CLASSROOMS.get(code.strip().upper())
+    return None if room is None or room.is_over else room
+
+
+def begin_class(leader: Member) -> Classroom:
+    """A new class; those that are over are forgotten."""
+    for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
+        del CLASSROOMS[code]
+    code = ""
+    while not code or code in CLASSROOMS:
+        code = "".join(secrets.choice(LETTERS) for _ in range(LENGTH))
+    CLASSROOMS[code] = Classroom(code, leader)
+    return CLASSROOMS[code]
 
 
 class Member(param.Parameterized):
     """The part of a page in a class: it leads one, follows one, or neither.
 
-    Parameters
-    ----------
-    state, supervisor, document
-        Of the page; its worker is ended while the page follows.
-
-    Attributes
-    ----------
-    message
-        What is to be said of the class, in a sentence.
-    room
-        The class that is led or followed.
-    left
-        The class that was followed last.
+    Its worker is ended while it follows. `room` is the class that is led or followed, `left` the
+    one that was followed last.
     """
 
-    message = param.String()
+    message = param.String(doc="What is to be said of the class, in a sentence.")
 
     def __init__(self, state: PageState, supervisor: Supervisor, document: Any) -> None:
         super().__init__()
@@ -195,13 +142,15 @@ class Member(param.Parameterized):
         self.room: Classroom | None = None
         self.left: Classroom | None = None
         self._is_due = False
+        state.param.watch(lambda *events: self._on_change(), [*SHARED, "prediction"])
         state.param.watch(lambda event: self._vote(event.new), "prediction")
         state.param.watch(lambda event: self._on_address(event.new), "room")
 
     @property
     def leads(self) -> bool:
         """Whether this page leads a class."""
-        return self.room is not None and self.room.is_led_by(self)
+        room = self.room
+        return room is not None and room.leader is self and not room.is_alone
 
     @property
     def follows(self) -> bool:
@@ -211,15 +160,17 @@ class Member(param.Parameterized):
     def enter(self, address: str) -> bool:
         """Follow the class of an address, or lead it on with its key; whether the page follows."""
         code, _, key = address.partition(".")
-        room = CLASSROOMS.find(code)
+        room = find(code)
         if room is None:
             if code:
-                self.message = (
-                    f"There is no class {code[:20]}: ask for its code; it may have ended."
-                )
-            self._set_address("")
+                ask = "ask for its code; it may have ended"
+                self.message = f"There is no class {code[:20]}: {ask}."
+            self.state.room = self._address()
         elif secrets.compare_digest(room.key.encode(), key.encode()):
-            self._resume(room)
+            last = room.leader.state
+            self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
+            self.state.prediction = last.prediction
+            self._lead(room)
         else:
             self._follow(room)
         return self.follows
@@ -227,31 +178,30 @@ class Member(param.Parameterized):
     def begin(self) -> None:
         """Begin a class that sees what this page shows."""
         if self.room is None:
-            self._lead(CLASSROOMS.begin())
+            self._lead(begin_class(self))
 
     def end(self) -> None:
         """End the class that this page leads."""
-        if self.leads and self.room is not None:
-            room, self.room = self.room, None
-            self.state.poll = None
-            room.end()
-            self._set_address("")
+        if self.leads:
+            self.room.end()
+            self.room = self.state.poll = None
+            self.state.room = self._address()
             self.message = ""
 
     def leave(self) -> None:
         """Follow no more, and go on with a run of its own."""
-        if self.room is None or not self.follows:
+        if not self.follows:
             return
         state, room = self.state, self.room
         self.left, self.room = room, None
         room.part(self)
         # The leader's history stays the leader's, and so do its numbers.
-        state.history, newest = History(), state.newest
-        if newest is not None:
-            state.history.add(newest)
+        state.history = History()
+        if state.newest is not None:
+            state.history.add(state.newest)
         state.number += APART
         state.poll = None
-        self._set_address("")
+        self.state.room = self._address()
         self.message = f"You have left class {room.code}."
         self._supervisor.begin()
         state.run()
@@ -263,8 +213,8 @@ class Member(param.Parameterized):
 
     def open_counts(self) -> None:
         """Have all see how many predicted what."""
-        if self.room is not None and self.leads:
-            self.room.open_counts()
+        self.room.is_open = True
+        self.room.notify()
 
     def close(self) -> None:
         """Leave nothing behind of a page that is closed."""
@@ -281,29 +231,25 @@ class Member(param.Parameterized):
     def _lead(self, room: Classroom) -> None:
         self.room = room
         room.lead(self)
-        self._set_address(f"{room.code}.{room.key}")
-
-    def _resume(self, room: Classroom) -> None:
-        """Lead a class on, where its last leader was."""
-        before = room.leader
-        if before is not None:
-            names = ("settings", "selection", "lesson", "plots")
-            self.state.param.update(**{name: getattr(before, name) for name in names})
-            self.state.prediction = before.prediction
-        self._lead(room)
+        self.state.room = self._address()
 
     def _follow(self, room: Classroom) -> None:
         self._supervisor.end()
         self.state.send = self._send
         self.room, self.left = room, None
-        room.join(self)
-        self._set_address(room.code)
+        room.members.append(self)
+        room.notify()
+        self.state.room = self._address()
         self._take()
 
     def _send(self, order: Order) -> None:
         """Go on alone once a run is ordered; pictures need no answer."""
         if not isinstance(order, Ready | Needs):
             self.leave()
+
+    def _on_change(self) -> None:
+        if self.leads:
+            self.room.notify()
 
     def _take(self) -> None:
         """Show what the leader shows."""
@@ -312,10 +258,11 @@ class Member(param.Parameterized):
         if room is None:
             return
         values: dict[str, Any] = {"poll": room.poll_for(self)}
-        if self.follows and room.leader is not None:
-            state.history, state.number = room.leader.history, room.leader.number
-            state.began = state.number
-            values |= {name: getattr(room.leader, name) for name in SHARED}
+        if self.follows:
+            leader = room.leader.state
+            state.history, state.number, state.began = leader.history, leader.number, leader.number
+            values |= {name: getattr(leader, name) for name in SHARED}
+        # Watchers of what is as it was have nothing to do.
         changed = {name: value for name, value in values.items() if value != getattr(state, name)}
         state.param.update(**changed)
         self.message = self._sentence(room)
@@ -333,20 +280,110 @@ class Member(param.Parameterized):
         return f"You follow class {room.code}. Change anything to go on by yourself."
 
     def _vote(self, choice: int | None) -> None:
-        if choice is not None and choice >= 0 and self.follows and self.room is not None:
-            self.room.vote(self, choice)
+        """Predict, in place of what was predicted before."""
+        if self.follows and choice is not None and choice >= 0:
+            self.room.votes[self] = choice
+            self.room.notify()
+
+    def _address(self) -> str:
+        """What the page's address has of the class: its code; of one that is led its key, too."""
+        if self.room is None:
+            return ""
+        return f"{self.room.code}.{self.room.key}" if self.leads else self.room.code
 
     def _on_address(self, address: str) -> None:
         """Follow, or leave, as the browser goes back and on."""
-        if address == self._address or self.leads:
+        if address == self._address() or self.leads:
             return
         if address:
             self.enter(address)
         else:
             self.leave()
 
-    _address = ""
 
-    def _set_address(self, address: str) -> None:
-        self._address = address
-        self.state.room = address
+class ClassDialog:
+    """Begins a class and shows its code, or joins one.
+
+    `view` is the line that stands on the page while it is in a class, or has left one; `dialog` is
+    what the header's button opens.
+    """
+
+    def __init__(self, member: Member) -> None:
+        self._member = member
+        self._message = pn.pane.HTML(margin=(4, 8))
+        self._act = _button("", lambda: self._offer()[1](), variant="text")
+        self._code = _button("Code", lambda: self.open(), variant="text")
+        parts = self._message, self._act, self._code
+        self.view = pn.Row(*parts, visible=False, margin=0, align="center", css_classes=["class"])
+        self.dialog = pmui.Dialog(
+            title="A class", width_option="sm", show_close_button=True, close_on_click=True
+        )
+        member.param.watch(lambda event: self._show(), "message")
+
+    def open(self) -> None:
+        """Open the dialog."""
+        # It is filled anew: models that were taken off the page are not put on it again.
+        self.dialog[:] = self._led() if self._member.leads else self._offered()
+        self.dialog.open = True
+
+    def _offered(self) -> list[Any]:
+        self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
+        self._refusal = pn.pane.Markdown(margin=0)
+        join = _button("Join", self._join, variant="outlined")
+        return [
+            pn.pane.Markdown("Whoever joins a class sees what its leader sees, and predicts too."),
+            _button("Begin a class", self._begin),
+            pn.Row(self._field, join, align="end", margin=(12, 0)),
+            self._refusal,
+        ]
+
+    def _led(self) -> list[Any]:
+        code = self._member.room.code
+        large = f'<div style="font-size: 64px; letter-spacing: 8px">{code}</div>'
+        address = address_for_others()
+        if address:
+            link = f"{address}?class={code}"
+            svg = segno.make(link, error="m").svg_inline(scale=6, light="#fff", omitsize=True)
+            below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
+        else:
+            below = how_to_open()
+        return [pn.pane.HTML(large), pn.pane.HTML(below), _button("End the class", self._end)]
+
+    def _begin(self) -> None:
+        self._member.begin()
+        self.open()
+
+    def _join(self) -> None:
+        code = self._field.value_input or self._field.value
+        if find(code) is None:
+            self._refusal.object = f"There is no class {code[:4] or 'without a code'}."
+            return
+        self._member.leave()
+        self._member.enter(code)
+        self.dialog.open = False
+
+    def _end(self) -> None:
+        self._member.end()
+        self.dialog.open = False
+
+    def _offer(self) -> tuple[str, Callable[[], None]]:
+        """What one can do, and its name; nothing outside of a class."""
+        member = self._member
+        if member.leads:
+            return "End the class", self._end
+        if member.follows:
+            return "Go on by myself", member.leave
+        can_return = member.left is not None and not member.left.is_over
+        return "Follow again" if can_return else "", member.follow_again
+
+    def _show(self) -> None:
+        label, _ = self._offer()
+        self._message.object = escape(self._member.message)
+        self._act.param.update(label=label or " ", visible=bool(label))
+        self._code.visible = self._member.leads
+        self.view.visible = bool(self._member.message)
+
+
+def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
+    style = {"variant": "contained", "size": "small", "sx": {"textTransform": "none"}, **more}
+    return pmui.Button(label=label, on_click=lambda event: act(), **style)

@@ -12,8 +12,8 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
+from app.browser import Echoes
 from app.curves import CurveDialog
-from app.echoes import Echoes
 from app.files import FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
@@ -63,23 +63,10 @@ PICTURES = {
 
 
 class Control:
-    """The widget of one setting.
+    """The widget of one setting: it shows the state's and changes it.
 
-    Parameters
-    ----------
-    name
-        Of the setting, one of the present scene.
-    state
-        Is changed by the widget, and shown by it.
-
-    Attributes
-    ----------
-    field
-        The widget that takes the value; of a number a text field, which has a slider too.
-    slider
-        Of a number; else None.
-    view
-        What stands on the page.
+    `field` takes the value; of a number it is a text field, which has a `slider`, too. Both stand
+    in `view`.
     """
 
     def __init__(self, name: str, state: PageState) -> None:
@@ -102,18 +89,19 @@ class Control:
         try:
             self.view.visible = settings.applies(self.name)
             self._show(getattr(settings, self.name))
-            self._tell("")
+            self._explain("")
         finally:
             self._is_updating = False
 
     def _make(self) -> tuple[Any, Any]:
+        """The field and what stands on the page."""
         definition = self._definition
-        more: dict[str, Any] = {"description": definition.doc, "size": "small"}
-        more |= {"width": WIDTH, "margin": (4, 0), "label": self._unit.titled(self._about.title)}
+        more: dict[str, Any] = {"description": definition.doc, "size": "small", "width": WIDTH}
+        more |= {"margin": (4, 0), "label": self._unit.titled(self._about.title)}
         if isinstance(definition, CurveParameter):
             options = [*definition.presets, POINTS]
             field = pmui.Select(options=options, variant="standard", **more)
-            edit = pmui.Button(
+            self._edit_button = pmui.Button(
                 label="Edit points",
                 icon="show_chart",
                 variant="text",
@@ -121,30 +109,27 @@ class Control:
                 margin=(-4, 0, 0, 0),
                 on_click=lambda event: self._edit(),
             )
-            self._edit_button = edit
-            return field, pn.Column(field, edit, margin=0)
+            return field, pn.Column(field, self._edit_button, margin=0)
         if isinstance(definition, param.Boolean):
             field = pmui.Switch(**more)
             return field, field
         if isinstance(definition, param.Selector):
             field = pmui.Select(options=list(definition.objects), variant="standard", **more)
             return field, field
-        default = self._written(definition.default)
         more |= {"margin": 0, "variant": "standard", "sx": FIELD}
+        default = self._written(definition.default)
         field = pmui.TextInput(placeholder=f"{default} by default", **more)
         self.slider = self._make_slider()
         return field, pn.Column(field, self.slider, margin=(3, 0, 0, 0))
 
     def _make_slider(self) -> pmui.FloatSlider:
         low, high = (self._to_slider(end) for end in self._definition.softbounds)
-        step = 10.0 ** math.floor(math.log10((high - low) / STEPS))
-        if isinstance(self._definition, param.Integer) and not self._about.logarithmic:
-            step = 1
+        is_count = isinstance(self._definition, param.Integer) and not self._about.logarithmic
         slider = pmui.FloatSlider(
             label=self._about.title,
             start=low,
             end=high,
-            step=step,
+            step=1 if is_count else 10.0 ** math.floor(math.log10((high - low) / STEPS)),
             value=low,
             show_value=False,
             tooltips=False,
@@ -187,7 +172,6 @@ class Control:
                 self._show_on_slider(value)
 
     def _show_on_slider(self, value: float) -> None:
-        assert self.slider is not None
         low, high = self._definition.softbounds
         most = ends_of(self._state.settings).get(self.name, high)
         self.slider.end = self._to_slider(max(min(most, high), low + 1) if most < high else high)
@@ -198,7 +182,7 @@ class Control:
         with param.edit_constant(self.slider):
             self.slider.param.update(value=place, value_throttled=place)
 
-    def _tell(self, refusal: str) -> None:
+    def _explain(self, refusal: str) -> None:
         if getattr(self.field, "helper_text", refusal) != refusal:
             self.field.param.update(helper_text=refusal, error_state=bool(refusal))
 
@@ -208,8 +192,7 @@ class Control:
         if self._echoes.has(value):
             # The browser may show it too.
             self.update()
-            return
-        if value == POINTS and isinstance(self._definition, CurveParameter):
+        elif value == POINTS and isinstance(self._definition, CurveParameter):
             self._edit()
         elif self.slider is not None:
             self._take_text(value)
@@ -221,20 +204,19 @@ class Control:
         try:
             value = typed(text, self._unit, self._about.unit) if text else self._definition.default
         except ValueError as problem:
-            self._state.refusal = f"{self._about.title} cannot be “{text[:40]}”: {problem}."
-            self._refuse()
-            return
-        self._change(value)
+            self._refuse(f"{self._about.title} cannot be “{text[:40]}”: {problem}.")
+        else:
+            self._change(value)
 
     def _change(self, value: Any) -> None:
         if not self._state.change(**{self.name: value}):
-            self._refuse()
+            self._refuse(self._state.refusal)
 
-    def _refuse(self) -> None:
+    def _refuse(self, refusal: str) -> None:
         """Show the value that holds again, and why the other does not."""
-        refusal = self._state.refusal
+        self._state.refusal = refusal
         self.update()
-        self._tell(refusal)
+        self._explain(refusal)
 
     def _drag(self, place: float) -> None:
         if not self._is_updating:
@@ -262,34 +244,23 @@ class Control:
 class Controls:
     """All controls of the present scene: the chief ones, and groups that open.
 
-    Parameters
-    ----------
-    state
-        Is changed and shown.
-    copy
-        As in `FilesPanel`.
-
-    Attributes
-    ----------
-    view
-        What stands at the side.
+    `copy` is that of `FilesPanel`.
     """
 
     def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
         self._state, self._copy = state, copy
         self._controls: list[Control] = []
-        self._closed: dict[int, list[str]] = {}
+        pictures = {
+            f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
+            for number, entry in enumerate(CATALOGUE.values(), start=1)
+        }
         self._scene = pmui.RadioButtonGroup(
             options={name.capitalize(): name for name in CATALOGUE},
             value=state.settings.scene,
             width=WIDTH,
             margin=0,
             size="small",
-            sx=PICTURES
-            | {
-                f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
-                for number, entry in enumerate(CATALOGUE.values(), start=1)
-            },
+            sx=PICTURES | pictures,
         )
         self._scene.param.watch(lambda event: self._choose(event.new), "value")
         self._chief = pn.Column(margin=0)
@@ -324,21 +295,23 @@ class Controls:
         chief, groups = _groups_of(type(settings))
         self._controls = [Control(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
-        self._closed = dict(enumerate(groups.values()))
+        self._names = list(groups.values())
         self._groups.active = []
-        self._groups[:] = [
-            *((title, pn.Column(margin=0)) for title in groups),
-            ("Files", self._files),
-        ]
+        columns = [(title, pn.Column(margin=0)) for title in groups]
+        self._groups[:] = [*columns, ("Files", self._files)]
 
     def _open(self) -> None:
-        """Build the controls of groups that are opened for the first time."""
-        for place in set(self._groups.active) & self._closed.keys():
-            controls = [Control(name, self._state) for name in self._closed.pop(place)]
+        """Fill the groups that are opened for the first time."""
+        for place in self._groups.active:
+            column = self._groups[place]
+            if column.objects:
+                continue
+            if column is self._files:
+                column.append(FilesPanel(self._state, self._copy, WIDTH).view)
+                continue
+            controls = [Control(name, self._state) for name in self._names[place]]
             self._controls += controls
-            self._groups[place][:] = [control.view for control in controls]
-        if len(self._groups) - 1 in self._groups.active and not self._files.objects:
-            self._files.append(FilesPanel(self._state, self._copy, WIDTH).view)
+            column[:] = [control.view for control in controls]
 
     def _choose(self, scene: str) -> None:
         if scene != self._state.settings.scene:

@@ -14,7 +14,7 @@ import panel as pn
 import panel_material_ui as pmui
 from bokeh.models import GlyphRenderer
 
-from app.display import Display
+from app.browser import Display
 from app.frame import Frame
 from app.messages import Compute
 from app.offline import offline_page

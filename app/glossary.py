@@ -5,7 +5,7 @@ from __future__ import annotations
 import panel as pn
 import panel_material_ui as pmui
 
-from app.keys import HELP
+from app.browser import HELP
 
 WORDS = {
     "LATIN": "The method: in turns it obeys the contact laws point by point and the elasticity of "

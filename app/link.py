@@ -22,7 +22,6 @@ from app.state import PACES, TABS, VIEWS, PageState, default_settings
 from app.views.catalogue import CARDS
 from solver.checked import dump
 from solver.definitions import SettingError, about, checked_value, choice, count, parse, quantity
-from solver.lessons.lesson import Lesson
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
@@ -45,20 +44,10 @@ addEventListener("popstate", () => { page.search = location.search })
 
 @dataclass(frozen=True)
 class Place:
-    """What an address says.
+    """What an address says, as `PageState` has it; the room is "class" there.
 
-    Attributes
-    ----------
-    settings
-        Of the run.
-    lesson, tab, pace, plots, view, room
-        As in `PageState`; the room is "class" in an address.
-    instant
-        As a share of the interval; None leaves it.
-    iteration
-        At which the run waits; 0 has it go on.
-    theme
-        "light" or "dark"; empty is that of the browser.
+    The instant is a share of the interval, and None leaves it; the run waits at the iteration, and
+    goes on at 0; an empty theme is that of the browser.
     """
 
     settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))
@@ -73,18 +62,14 @@ class Place:
     theme: str = ""
 
 
-def _choice(options: Any) -> Any:
-    return choice(next(iter(options)), options, "", group="", title="")
-
-
 _PLOTS = [view.name for card in CARDS for view in card]
-_PLACE: dict[str, Any] = {
-    "tab": _choice(TABS),
+_NUMBERS = {
     "instant": quantity(0.0, (0.0, 1.0), (0.0, 1.0), "", group="", title=""),
     "iteration": count(0, (0, 100_000), (0, 100_000), "", group="", title=""),
-    "pace": _choice(PACES),
-    "view": _choice(VIEWS),
-    "theme": _choice(["light", "dark"]),
+}
+_CHOICES = {"tab": TABS, "pace": list(PACES), "view": VIEWS, "theme": ["light", "dark"]}
+_PLACE: dict[str, Any] = _NUMBERS | {
+    name: choice(options[0], options, "", group="", title="") for name, options in _CHOICES.items()
 }
 """What an address may say beside settings, scene, lesson, class and plots."""
 
@@ -100,17 +85,7 @@ class Link:
     """Keeps the address of a page, and brings the page to an address that one goes back to.
 
     Each change is an entry of the browser's history, so that Back undoes it; but for one that is
-    dragged, and instants and iterations.
-
-    Parameters
-    ----------
-    state
-        Of the page.
-
-    Attributes
-    ----------
-    query
-        The address, from the question mark on.
+    dragged, and instants and iterations. `query` is the address from the question mark on.
     """
 
     def __init__(self, state: PageState) -> None:
@@ -120,13 +95,12 @@ class Link:
         self.browser.on_change("search", lambda name, old, new: self.go(new))
         args = {"page": self.browser}
         self.browser.js_on_change("copied", CustomJS(args=args, code=COPY))
-        document = pn.state.curdoc
-        if document is not None:
-            document.add_root(self.browser)
-            document.js_on_event("document_ready", CustomJS(args=args, code=BACK))
-        state.param.watch(lambda *events: self.write(), ["settings", "is_dragged", *SHARED])
+        if pn.state.curdoc is not None:
+            pn.state.curdoc.add_root(self.browser)
+            pn.state.curdoc.js_on_event("document_ready", CustomJS(args=args, code=BACK))
+        state.param.watch(lambda *events: self._write(), ["settings", "is_dragged", *SHARED])
 
-    def write(self) -> None:
+    def _write(self) -> None:
         """Have the address say what is shown."""
         query = query_of(place_of(self._state))
         if self._state.is_dragged or query == self.query:
@@ -183,9 +157,8 @@ def place_of(state: PageState) -> Place:
 
 def link_of(state: PageState) -> tuple[str, str]:
     """The whole link to what is shown, instant and iteration too, and what it had to leave out."""
-    frame, newest = state.frame, state.newest
-    is_waiting = frame is not None and not frame.is_answer
-    is_waiting = is_waiting and (not state.running or frame is not newest)
+    frame, is_held = state.frame, not state.running or state.frame is not state.newest
+    is_waiting = frame is not None and not frame.is_answer and is_held
     place = replace(
         place_of(state),
         # Who leads a class has its key there, too.
@@ -193,10 +166,7 @@ def link_of(state: PageState) -> tuple[str, str]:
         instant=round(state.selection.phase, 4),
         iteration=frame.iteration if is_waiting else 0,
     )
-    location = pn.state.location
-    root = f"{location.protocol}//{location.hostname}" if location is not None else ""
-    if location is not None:
-        root += f":{location.port}" * bool(location.port) + location.pathname
+    root = pn.state.location.href.partition("?")[0] if pn.state.location is not None else ""
     long = too_long(state.settings)
     titles = ", ".join(about(state.settings.definitions()[name]).title for name in long)
     message = f"Too long for a link, so that a saved file has it alone: {titles}." if long else ""
@@ -217,7 +187,8 @@ def query_of(place: Place) -> str:
         for name, value in changed.items()
         if name not in long
     }
-    pairs |= {"file": ",".join(long)} if long else {}
+    if long:
+        pairs["file"] = ",".join(long)
     first = Place(place.settings, instant=lesson.instant if lesson else Selection().phase)
     for name in ("tab", "instant", "iteration", "pace", "plots", "view", "theme"):
         value = getattr(place, name)
@@ -227,32 +198,24 @@ def query_of(place: Place) -> str:
 
 
 def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
-    """Read an address.
+    """What an address says from the question mark on, and what of it was refused and why, or "".
 
-    Parameters
-    ----------
-    query
-        What stands behind the path, from the question mark on.
-    present
-        Settings that hold: these have what is too long for an address.
-
-    Returns
-    -------
-    What it says, where it says nothing the defaults; and what of it was refused and why, or "".
+    The settings that hold at present have what is too long for an address.
     """
     pairs = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
     refused: list[str] = []
-    lesson = _lesson(pairs.pop("lesson", ""), refused)
-    base = _base(lesson, pairs.pop("scene", ""), refused)
-    given: dict[str, Any] = {}
+    given: dict[str, Any] = {"room": pairs.pop("class", "")}
+    lesson = LESSONS.get(pairs.get("lesson", ""))
     if lesson is not None:
-        given = {"lesson": lesson.name, "instant": lesson.instant}
-    given["room"] = pairs.pop("class", "")
-    given["plots"] = _plots(pairs.pop("plots", ""), refused)
+        given |= {"lesson": lesson.name, "instant": lesson.instant}
+    base = _base(pairs.pop("lesson", ""), pairs.pop("scene", ""), refused)
+    plots = [name.strip() for name in pairs.pop("plots", "").split(",") if name.strip()]
+    given["plots"] = ",".join(name for name in plots if name in _PLOTS)
+    refused += [f"there is no plot {name[:40]}" for name in plots if name not in _PLOTS]
     for name in [name for name in _PLACE if name in pairs]:
         text = pairs.pop(name)
         try:
-            value = parse(text) if name in ("instant", "iteration") else text
+            value = parse(text) if name in _NUMBERS else text
             given[name] = checked_value(_PLACE[name], name, value)
         except SettingError as refusal:
             refused.append(str(refusal))
@@ -273,29 +236,18 @@ def _message(refused: list[str]) -> str:
     return f"From the address: {told}{f'; and {more} more' if more > 0 else ''}."
 
 
-def _lesson(name: str, refused: list[str]) -> Lesson | None:
+def _base(name: str, scene: str, refused: list[str]) -> Settings:
+    """Settings from which an address says what differs: of a lesson, or of a scene."""
     lesson = LESSONS.get(name)
-    if name and lesson is None:
-        refused.append(f"there is no lesson {name[:40]}")
-    return lesson
-
-
-def _base(lesson: Lesson | None, scene: str, refused: list[str]) -> Settings:
-    """Settings from which an address says what differs."""
     if lesson is not None:
         if scene not in ("", lesson.settings.scene):
             refused.append(f"the lesson has a scene of its own, {lesson.settings.scene}")
         return settings_of(lesson)
+    if name:
+        refused.append(f"there is no lesson {name[:40]}")
     if scene and scene not in CATALOGUE:
         refused.append(f"there is no scene {scene[:40]}: choose {', '.join(CATALOGUE)}")
     return default_settings(scene if scene in CATALOGUE else next(iter(CATALOGUE)))
-
-
-def _plots(text: str, refused: list[str]) -> str:
-    names = [name.strip() for name in text.split(",") if name.strip()]
-    unknown = [name for name in names if name not in _PLOTS]
-    refused.extend(f"there is no plot {name[:40]}" for name in unknown)
-    return ",".join(name for name in names if name in _PLOTS)
 
 
 def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> Settings:
@@ -305,8 +257,7 @@ def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> 
     except RefusedError:
         pass
     taken: dict[str, Any] = {}
-    messages: dict[str, str] = {}
-    left = dict(values)
+    left, messages = dict(values), dict[str, str]()
     while left:
         # One that was refused may hold beside one that came later.
         messages = {}
@@ -332,7 +283,5 @@ def _refused(refusal: RefusedError, settings: Settings, name: str, value: Any) -
 
 def too_long(settings: Settings) -> list[str]:
     """Names of the settings whose values are too long for an address."""
-    values = settings.values().items()
-    return [
-        n for n, value in values if isinstance(value, tuple) and len(json.dumps(value)) > LONGEST
-    ]
+    tables = {n: value for n, value in settings.values().items() if isinstance(value, tuple)}
+    return [name for name, table in tables.items() if len(json.dumps(table)) > LONGEST]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import panel as pn
+import panel_material_ui as pmui
 
-from app.cards import Card
-from app.display import Display
+from app.browser import Display
 from app.state import TABS, PageState
 from app.status import figures_line, status_line
 from app.transport import Transport
@@ -24,32 +25,30 @@ LOOK = 1000
 """Milliseconds between two looks for a picture that got lost."""
 PRESENTED = 2
 """Plots that a projector has room for beside the scene."""
+SMALL_TABS = {
+    "&.MuiTabs-root, & .MuiTabs-root": {"minHeight": "26px"},
+    "& .MuiTab-root": {
+        "minHeight": "26px",
+        "minWidth": 0,
+        "padding": "2px 10px",
+        "textTransform": "none",
+        "fontSize": "13px",
+    },
+    "& .MuiTabs-scrollButtons": {"width": "20px"},
+}
 
 
 class Live:
-    """The live run on the page.
-
-    Parameters
-    ----------
-    state, document
-        Of the page.
-
-    Attributes
-    ----------
-    view
-        What stands on the page.
-    transport, display
-        Its buttons, and what paints its views.
-    """
+    """The live run on the page: its transport, its display, and its views."""
 
     def __init__(self, state: PageState, document: Any) -> None:
         self.state = state
-        self._status = words("status", margin=(8, 6))
-        self._sentence, self._figures = words("sentence"), words("figures")
+        self._status = _words("status", margin=(8, 6))
+        self._sentence, self._figures = _words("sentence"), _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._all = self._cards = [Card(kinds, state, self.look) for kinds in CARDS]
         self.transport = Transport(state, document)
-        self.display = Display(state, self._say)
+        self.display = Display(state, self._write)
         document.add_root(self.display.pulse)
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.
@@ -61,12 +60,12 @@ class Live:
         self._timeline = pn.Row(
             self.transport.play_button, sizing_mode="stretch_width", min_height=56, margin=0
         )
+        self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
         self.view = self._arranged()
-        watch = state.param.watch
-        watch(lambda *events: self._say(), ["running", "message", "refusal", "is_costly"])
-        watch(lambda event: self.arrange(self._kinds), "view")
-        watch(lambda event: self._fit(), ["settings", "plots"])
+        said = ["running", "message", "refusal", "is_costly"]
+        state.param.watch(lambda *events: self._write(), said)
+        state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
         """Make the figures."""
@@ -86,7 +85,7 @@ class Live:
         self._scene.append(scene)
         self._timeline.append(timeline)
 
-    def arrange(self, kinds: list[type[View]] | None = None) -> None:
+    def arrange(self, kinds: tuple[type[View], ...] | None) -> None:
         """Show the cards, or the plots of a lesson; what gives its answer away waits."""
         state, self._kinds = self.state, kinds
         self._cards = self._all
@@ -105,8 +104,7 @@ class Live:
         size = LARGE if state.view == "present" else TEXT
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
-        bare = [state.view] if state.view != "page" else []
-        self.view.css_classes = ["live", *bare]
+        self.view.css_classes = ["live", *([state.view] if state.view != "page" else [])]
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -115,28 +113,75 @@ class Live:
             seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
         self.display.views = seen
 
-    @property
-    def seen(self) -> list[View]:
-        """The views in sight."""
-        return list(self.display.views)
-
     def _fit(self) -> None:
         if self._is_open:
             for card in self._cards:
-                card.fit(self.state)
+                card.fit()
             self.look()
 
     def _arranged(self) -> pn.Column:
         below = column("words", self._sentence, self._figures)
         return column("live", self._above, below, self._scene, self._timeline, self._plots)
 
-    def _say(self) -> None:
+    def _write(self) -> None:
         """Bring the words up to the frame."""
         frame = self.state.frame
         self._status.object = status_line(self.state)
         if frame is not None:
             self._figures.object = figures_line(frame, self.state.selection)
             self._sentence.object = frame.run.sentence
+
+
+class Card:
+    """Views that share a place as tabs, of which one is in sight; `changed` follows each turn."""
+
+    def __init__(
+        self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
+    ) -> None:
+        self._state, self._changed = state, changed
+        self.views = [kind(state) for kind in kinds]
+        self.seen: View | None = None
+        self._offered: list[View] = []
+        self._panes: dict[View, pn.pane.Bokeh] = {}
+        self.tabs = pmui.TabMenu(items=[], margin=0, sx=SMALL_TABS, sizing_mode="stretch_width")
+        self.tabs.param.watch(lambda event: self._choose(event.new or 0), "active")
+        self.view = pn.Column(self.tabs, sizing_mode="stretch_both", min_height=170, margin=0)
+
+    def fit(self) -> None:
+        """Offer the views that say anything here; the one that the state names is in sight."""
+        state, names = self._state, self._state.plots.split(",")
+        offered = [view for view in self.views if view.applies(state.settings)]
+        first = offered[0] if offered else None
+        seen = next((view for view in offered if view.name in names), first)
+        if (offered, seen) == (self._offered, self.seen):
+            return
+        is_turned = seen is not self.seen
+        self._offered, self.seen = offered, seen
+        self.view.visible = bool(offered)
+        active = offered.index(seen) if offered else 0
+        self.tabs.param.update(items=[view.name for view in offered], active=active)
+        if is_turned:
+            self.view[:] = [self.tabs, self._pane(seen)] if seen is not None else [self.tabs]
+            self._changed()
+
+    def _choose(self, place: int) -> None:
+        """Have the state name the view of a tab; the first that is offered needs no name."""
+        view = self._offered[place]
+        if view is not self.seen:
+            mine = {view.name for view in self.views}
+            names = [name for name in self._state.plots.split(",") if name and name not in mine]
+            self._state.plots = ",".join([*names, view.name] if place else names)
+            self.fit()
+
+    def _pane(self, view: View) -> pn.pane.Bokeh:
+        """The figure of a view with the frame; it is made when it is first seen."""
+        state = self._state
+        if view not in self._panes:
+            pane = pn.pane.Bokeh(view.figure, sizing_mode="stretch_both", margin=0)
+            self._panes[view] = pane
+        if state.frame is not None:
+            view.update(state.frame, state.selection, state.ghost)
+        return self._panes[view]
 
 
 def column(role: str, *parts: Any) -> pn.Column:
@@ -146,6 +191,6 @@ def column(role: str, *parts: Any) -> pn.Column:
     )
 
 
-def words(role: str, **more: Any) -> pn.pane.HTML:
+def _words(role: str, **more: Any) -> pn.pane.HTML:
     """A pane of words, which tests and style sheets know by its role."""
     return pn.pane.HTML(css_classes=[role], stylesheets=[STYLE], **{"margin": (0, 8), **more})

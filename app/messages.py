@@ -15,19 +15,10 @@ WHOLE = -1.0
 
 @dataclass(frozen=True)
 class Start:
-    """Start a run.
+    """Start a run at a pace, in iterations a second: 0 waits, infinity is as fast as it can.
 
-    Attributes
-    ----------
-    number
-        Of the run.
-    pace
-        Iterations a second; 0 waits, `WHOLE` takes three seconds for all, infinity is as fast as
-        it can.
-    is_dragged
-        Whether a slider is being dragged: the run hurries to its end before it is shown.
-    is_agreed
-        Whether it may take long or much memory.
+    One that is dragged hurries to its end before it is shown; one that is agreed to may take long
+    or much memory.
     """
 
     number: int
@@ -53,21 +44,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Needs:
-    """What frames shall carry.
-
-    Attributes
-    ----------
-    extras
-        Names of the extras that views in sight need.
-    interface
-        The selected interface.
-    substructure, place, stress
-        As in `Selection`.
-    readings
-        Names of quantities of the run.
-    brought
-        Results of another program, to be laid beside it.
-    """
+    """What frames shall carry: extras of views in sight, and quantities; for what is selected."""
 
     extras: frozenset[str] = frozenset()
     interface: str = ""

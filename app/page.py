@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -10,27 +9,22 @@ import panel as pn
 import panel_material_ui as pmui
 
 from app import glossary
-from app.class_dialog import ClassDialog
-from app.classroom import Member
+from app.browser import listen
+from app.classroom import ClassDialog, Member
 from app.controls import Controls
 from app.export import TakeAway
-from app.keys import listen
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
 from app.live import STYLE, Live, column
 from app.messages import Pace
-from app.pages import FULL, PAGES
 from app.reports import Reports
+from app.server import FULL, PAGES
 from app.state import PACES, TABS, PageState
 from app.supervisor import Supervisor
 from app.whatif import WhatIf
 from solver.settings import Settings
 
-HEADER = 48
-"""Pixels that the header takes."""
-COMPACT = {
-    "& .MuiToolbar-root": {"minHeight": f"{HEADER}px !important"},
-}
+COMPACT = {"& .MuiToolbar-root": {"minHeight": "48px !important"}}
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 IN_HEADER = {
     "& button": {
@@ -48,19 +42,9 @@ IN_HEADER = {
 
 
 class Page:
-    """One page: its state, its worker, its widgets and views.
+    """One page: its state, its worker, its widgets and views; `template` is what is served.
 
-    Parameters
-    ----------
-    state
-        Of the page.
-    iteration
-        At which the first run waits; 0 has it go on.
-
-    Attributes
-    ----------
-    template
-        What is served.
+    The first run waits at `iteration`; 0 has it go on.
     """
 
     def __init__(self, state: PageState, iteration: int = 0) -> None:
@@ -69,80 +53,66 @@ class Page:
         link = Link(state)
         self._supervisor = Supervisor(state, document)
         if not state.room:
-            self._begin()
-        self.live = Live(state, document)
-        self.member = Member(state, self._supervisor, document)
-        self.lesson = LessonPanel(
-            state, self.live.transport, self._arrange, lambda: self.member.open_counts()
+            # The first picture is there once the browser is.
+            self._supervisor.begin()
+            if iteration:
+                wait_at(state, iteration)
+            else:
+                state.open()
+        self._live = Live(state, document)
+        self._member = Member(state, self._supervisor, document)
+        self._lesson = LessonPanel(
+            state, self._live.transport, self._on_lesson, self._member.open_counts
         )
-        self.classroom = classroom = ClassDialog(self.member)
-        self.lesson.view.stylesheets = classroom.view.stylesheets = [STYLE]
-        self._beside = column("beside", self.live.view)
+        self._class = ClassDialog(self._member)
+        self._lesson.view.stylesheets = self._class.view.stylesheets = [STYLE]
+        self._beside = column("beside", self._live.view)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
-        classroom.view.param.watch(lambda event: self._place(), "visible")
-        take_away, self._words = TakeAway(state, self.live.display), glossary.dialog()
-        actions = {
-            "Lessons": ("school", self.lesson.offer),
-            "A class": ("groups", classroom.open),
-            "Presenter view (p)": ("slideshow", self.present),
-            "Take away": ("download", take_away.open),
-            "Keys and words (?)": ("help_outline", self._help),
-        }
+        take_away, self._words = TakeAway(state, self._live.display), glossary.dialog()
+        dialogs = [self._lesson.dialog, self._class.dialog, take_away.view, self._words]
         self.template = pmui.Page(
             title="Slipfront",
             sidebar=[Controls(state, link.copy).view],
             sidebar_width=320,
-            header=[self._header(actions)],
-            main=[
-                self._main,
-                self.lesson.dialog,
-                classroom.dialog,
-                take_away.view,
-                self._words,
-            ],
+            header=[self._header(take_away)],
+            main=[self._main, *dialogs],
             busy_indicator=None,
             sx=COMPACT,
         )
-        self.lesson.view.param.watch(lambda event: self._on_lesson(), "visible")
-        listen(document, {**self.live.transport.keys(), "p": self.present, "?": self._help})
+        listen(document, {**self._live.transport.keys(), "p": self._present, "?": self._help})
+        self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda *events: self.lesson.update(), ["frame", "selection"])
-        self.lesson.show()
+        state.param.watch(lambda *events: self._lesson.update(), ["frame", "selection"])
         self._turn(state.tab)
-        self._dress()
+        self._lesson.show()
 
     def loaded(self) -> None:
         """Show the figures, and let the first run go on or follow a class: a browser is there."""
         self._supervisor.open()
-        self.live.open()
+        self._live.open()
         if not self.state.room:
             if not self._iteration:
                 self.state.send(Pace(PACES[self.state.pace]))
-        elif not self.member.enter(self.state.room):
-            self._begin()
+        elif not self._member.enter(self.state.room):
+            self._supervisor.begin()
             self.state.run()
-
-    def _begin(self) -> None:
-        """Start the worker and a run, whose first picture is there once the browser is."""
-        self._supervisor.begin()
-        if self._iteration:
-            wait_at(self.state, self._iteration)
-        else:
-            self.state.open()
 
     def end(self, _context: Any) -> None:
         """Leave nothing behind."""
-        self.member.close()
+        self._member.close()
         self._supervisor.end()
         PAGES.leave()
 
-    def present(self) -> None:
-        """Show the page as a projector needs it, or as before."""
-        self.state.view = "present" if self.state.view == "page" else "page"
-
-    def _header(self, actions: dict[str, tuple[str, Callable[[], Any]]]) -> pn.Row:
+    def _header(self, take_away: TakeAway) -> pn.Row:
+        actions = {
+            "Lessons": ("school", self._lesson.offer),
+            "A class": ("groups", self._class.open),
+            "Presenter view (p)": ("slideshow", self._present),
+            "Take away": ("download", take_away.open),
+            "Keys and words (?)": ("help_outline", self._help),
+        }
         tabs = pmui.RadioButtonGroup.from_param(
             self.state.param.tab, label="", size="small", margin=(0, 8), sx=IN_HEADER
         )
@@ -154,8 +124,12 @@ class Page:
         space = pn.layout.HSpacer()
         return pn.Row(tabs, space, *buttons, sizing_mode="stretch_width", align="center")
 
-    def _arrange(self) -> None:
-        self.live.arrange(self.lesson.kinds)
+    def _present(self) -> None:
+        """Show the page as a projector needs it, or as before."""
+        self.state.view = "present" if self.state.view == "page" else "page"
+
+    def _help(self) -> None:
+        self._words.open = True
 
     def _turn(self, tab: str) -> None:
         """Show a tab, which is built when it is first opened."""
@@ -163,15 +137,12 @@ class Page:
             made = WhatIf(self.state, self._open_run) if tab == TABS[1] else Reports(self.state)
             self._tabs[tab] = made.view
         self._place()
-        self.live.look()
+        self._live.look()
 
     def _open_run(self, settings: Settings) -> None:
         """Show a run on the live tab."""
         self.state.tab = TABS[0]
         self.state.adopt(settings)
-
-    def _help(self) -> None:
-        self._words.open = True
 
     def _on_lesson(self) -> None:
         """Give a lesson the room of the controls: it has those that it speaks of."""
@@ -182,22 +153,23 @@ class Page:
         """Have on the page what is seen: beside what is hidden figures are not painted."""
         # What comes in front is appended, and put there by the style sheet: a column whose children
         # change their order loses some of them.
-        lesson, classroom = self.lesson.view, self.classroom.view
+        lesson, line = self._lesson.view, self._class.view
         self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
         views = (
-            (self._beside, [self.live.view] + [lesson] * lesson.visible),
-            (self._main, [self._tabs[self.state.tab]] + [classroom] * classroom.visible),
+            (self._beside, [self._live.view] + [lesson] * lesson.visible),
+            (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),
         )
         for place, objects in views:
             if list(place) != objects:
                 place[:] = objects
 
     def _dress(self) -> None:
-        """Have nothing around the plots in the views for a projector and for a frame."""
+        """Have the plots that belong here, and in a view for a projector or a frame no more."""
         is_bare = self.state.view != "page"
+        self._live.arrange(self._lesson.kinds)
         self.template.param.update(
             sx=BARE if is_bare else COMPACT,
-            sidebar_open=not (is_bare or self.lesson.view.visible),
+            sidebar_open=not (is_bare or self._lesson.view.visible),
         )
 
 

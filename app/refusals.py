@@ -9,7 +9,7 @@ from typing import Any
 import param
 
 from app.units import Unit, number, unit_of, units_of_points
-from solver.definitions import CurveParameter, Parameter, about, allowed
+from solver.definitions import CurveParameter, about, allowed
 from solver.refusal import RefusedError
 from solver.settings import Settings
 
@@ -25,14 +25,7 @@ NUMBER = r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?![\w.])"
 def message_of(refusal: RefusedError, settings: Settings, name: str = "", value: Any = None) -> str:
     """What was refused, why, and what is allowed, in a sentence.
 
-    Parameters
-    ----------
-    refusal
-        Of a setting, or of something else that was given.
-    settings
-        Those that hold.
-    name, value
-        The setting that was to change, and to what; another may be the one that is refused.
+    Where the setting `name` was to change to `value`, another one may be refused.
     """
     definitions = settings.definitions()
     remedy = _in_titles(settings, refusal.remedy)
@@ -40,39 +33,30 @@ def message_of(refusal: RefusedError, settings: Settings, name: str = "", value:
     if definition is None:
         limits = _in_titles(settings, refusal.allowed)
         return f"{refusal.name} cannot be {_written(refusal.value)}: {remedy}. Allowed: {limits}."
-    title, unit = about(definition).title, _unit_of(settings, refusal.name)
-    limits = _in_unit(_allowed(definition, refusal), _si_of(settings, refusal.name), unit)
-    limits = _in_titles(settings, limits)
+    title, (si, unit) = about(definition).title, _units(settings, refusal.name)
+    limits = refusal.allowed
+    if isinstance(definition, CurveParameter) and limits == allowed(definition):
+        # As its widget offers it.
+        table = f"a table of {definition.abscissa} and {definition.ordinate}"
+        limits = f"{', '.join(definition.presets)}, or {table}"
+    limits = _in_titles(settings, _in_unit(limits, si, unit))
     refused = _written(refusal.value, unit)
     if name in ("", refusal.name):
         return f"{title} cannot be {refused}: {remedy}. Allowed: {limits}."
-    changed = about(definitions[name]).title
-    to = _written(value, _unit_of(settings, name))
+    to = _written(value, _units(settings, name)[1])
     return (
-        f"{changed} cannot be {to} while {title} is {refused}: {remedy}. "
+        f"{about(definitions[name]).title} cannot be {to} while {title} is {refused}: {remedy}. "
         f"Allowed for {title}: {limits}."
     )
 
 
-def _unit_of(settings: Settings, name: str) -> Unit:
+def _units(settings: Settings, name: str) -> tuple[str, Unit]:
+    """The SI unit of a setting's values, and the one in which the page has them."""
     definition = settings.definitions()[name]
     if isinstance(definition, CurveParameter):
-        return units_of_points(settings.scene, name, settings.curve_units(name))[1]
-    return unit_of(definition)
-
-
-def _si_of(settings: Settings, name: str) -> str:
-    definition = settings.definitions()[name]
-    is_curve = isinstance(definition, CurveParameter)
-    return settings.curve_units(name)[1] if is_curve else about(definition).unit
-
-
-def _allowed(definition: Parameter, refusal: RefusedError) -> str:
-    """What a setting takes, as its widget offers it."""
-    if refusal.allowed == allowed(definition) and isinstance(definition, CurveParameter):
-        points = f"a table of {definition.abscissa} and {definition.ordinate}"
-        return f"{', '.join(definition.presets)}, or {points}"
-    return refusal.allowed
+        units = settings.curve_units(name)
+        return units[1], units_of_points(settings.scene, name, units)[1]
+    return about(definition).unit, unit_of(definition)
 
 
 def _in_unit(text: str, si: str, unit: Unit) -> str:
@@ -107,20 +91,21 @@ def _written(value: object, unit: Unit | None = None) -> str:
 
 
 def nearest_allowed(settings: Settings, name: str, value: float) -> float:
-    """The value that holds nearest to one that is refused, on the way there from what is set."""
-    definition = settings.definitions()[name]
-    start = float(getattr(settings, name))
-    is_whole = isinstance(definition, param.Integer)
-    is_log = about(definition).logarithmic and min(start, value) > 0.0
-    good, bad = (math.log10(end) if is_log else end for end in (start, value))
-    allowed_value = getattr(settings, name)
+    """The value, or the one that holds nearest to it, on the way there from what is set."""
+    definition, nearest = settings.definitions()[name], getattr(settings, name)
+    is_log = about(definition).logarithmic and min(nearest, value) > 0.0
+    good, bad = (math.log10(end) if is_log else float(end) for end in (nearest, value))
+    place, candidate = bad, value
     for _ in range(HALVINGS):
-        middle = 0.5 * (good + bad)
-        candidate = 10.0**middle if is_log else middle
-        candidate = round(candidate) if is_whole else float(f"{candidate:.3g}")
         try:
             settings.with_change(name, candidate)
-            good, allowed_value = middle, candidate
+            good, nearest = place, candidate
         except RefusedError:
-            bad = middle
-    return allowed_value
+            bad = place
+        if nearest == value:
+            break
+        place = 0.5 * (good + bad)
+        candidate = 10.0**place if is_log else place
+        is_whole = isinstance(definition, param.Integer)
+        candidate = round(candidate) if is_whole else float(f"{candidate:.3g}")
+    return nearest

@@ -1,9 +1,11 @@
-"""The server that pages come from: compressed files, refused addresses, a short log."""
+"""The server that pages come from: their number, compressed files, refused addresses, the log."""
 
 from __future__ import annotations
 
 import logging
+import os
 import time
+from pathlib import Path
 from typing import Any
 
 from tornado.httpserver import HTTPServer
@@ -12,12 +14,53 @@ from tornado.routing import Matcher, Rule
 from tornado.web import Application, ErrorHandler, GZipContentEncoding
 from tornado.websocket import WebSocketClosedError
 
+VARIABLE = "SLIPFRONT_PAGES"
+"""Environment variable with the most pages that may be open."""
+OF_A_PAGE = 150_000_000
+"""Bytes that a page may need, most of them in its worker and its history."""
+SHARE = 0.8
+"""Of the machine's memory, or the container's, that pages may take together."""
+FULL = (
+    "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
+    "This page tries again by itself.</p><meta http-equiv=refresh content=20>"
+)
 LONGEST = 16_000
 """Characters of an address; what is longer is refused (414)."""
 RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
 QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
+
+
+class Pages:
+    """A count of the pages that are open."""
+
+    def __init__(self) -> None:
+        self._open = 0
+
+    def enter(self) -> bool:
+        """Count a page, if there is room for it."""
+        has_room = self._open < most_pages()
+        self._open += has_room
+        return has_room
+
+    def leave(self) -> None:
+        """Count a page no more."""
+        self._open -= 1
+
+
+PAGES = Pages()
+
+
+def most_pages() -> int:
+    """The most pages that may be open, as set, or as the machine's or container's memory allows."""
+    if text := os.environ.get(VARIABLE):
+        return max(int(text), 1)
+    memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    limit = Path("/sys/fs/cgroup/memory.max")
+    if limit.exists() and (text := limit.read_text(encoding="ascii").strip()) != "max":
+        memory = min(memory, float(text))
+    return max(int(SHARE * memory / OF_A_PAGE), 1)
 
 
 def configure() -> None:
@@ -35,9 +78,7 @@ class PageServer(HTTPServer):
         """Set the application up, as `HTTPServer.initialize` does."""
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
-            refused = [(TooLong(), 414), (NoText(), 404)]
-            rules: Any = [Rule(m, ErrorHandler, {"status_code": code}) for m, code in refused]
-            request_callback.wildcard_router.rules[:0] = rules
+            request_callback.wildcard_router.rules.insert(0, Rule(Refused(), ErrorHandler))
         super().initialize(request_callback, **{"max_header_size": RECEIVED, **options})
 
 
@@ -47,20 +88,14 @@ class Compressed(GZipContentEncoding):
     GZIP_LEVEL = 1
 
 
-class TooLong(Matcher):
-    """Addresses that are too long."""
+class Refused(Matcher):
+    """Addresses that are too long (414), and paths that no file can have (404)."""
 
     def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
-        """Whether it is one."""
-        return {} if len(request.uri or "") > LONGEST else None
-
-
-class NoText(Matcher):
-    """Paths that no file can have."""
-
-    def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
-        """Whether it is one."""
-        return {} if "%00" in request.path else None
+        """With which status an address is refused, if it is."""
+        if len(request.uri or "") > LONGEST:
+            return {"target_kwargs": {"status_code": 414}}
+        return {"target_kwargs": {"status_code": 404}} if "%00" in request.path else None
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import param
 
 from app.frame import Frame, Selection
-from app.history import History
 from app.messages import (
     WHOLE,
     Began,
@@ -26,13 +26,14 @@ from app.messages import (
     Start,
     Step,
 )
-from app.poll import Poll
 from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 from solver.study.other_programs.brought import Brought
 
+LIMIT = 24_000_000
+"""Bytes that the frames of a run may take; beyond, every other one is dropped."""
 SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings with which one sees the search from nothing, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
@@ -50,16 +51,67 @@ VIEWS = ["page", "present", "embed"]
 """With controls, for a projector, for a frame in another page."""
 
 
+@dataclass(frozen=True)
+class Poll:
+    """The predictions of a class as one of its pages sees them; nobody is named.
+
+    `counts`, of each choice, are empty until the leader opens them.
+    """
+
+    leads: bool
+    predicted: int
+    present: int
+    counts: tuple[int, ...] = ()
+    is_answered: bool = False
+
+
+class History:
+    """The frames of a run that were shown, by iteration, thinned under a memory limit."""
+
+    def __init__(self) -> None:
+        self._frames: list[Frame] = []
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    @property
+    def newest(self) -> Frame | None:
+        """The last frame, the answer where the run has one."""
+        return self._frames[-1] if self._frames else None
+
+    def add(self, frame: Frame) -> None:
+        """Keep a frame; another one of the same iterate takes its place."""
+        last = self.newest
+        if last is not None and (last.iteration, last.is_answer) == (
+            frame.iteration,
+            frame.is_answer,
+        ):
+            self._frames.pop()
+        self._frames.append(frame)
+        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self) > 2:
+            self._frames = [*self._frames[:-1:2], self._frames[-1]]
+
+    def at(self, iteration: int) -> Frame:
+        """The last kept frame of the search up to an iteration, or the first one."""
+        return self._frames[max(bisect_right(self._search(), iteration) - 1, 0)]
+
+    def after(self, iteration: int) -> int:
+        """Number of the next iterate of the search that is kept; behind the last, of the answer."""
+        numbers = self._search()
+        place = bisect_right(numbers, iteration)
+        return numbers[place] if place < len(numbers) else self._frames[-1].iteration + 1
+
+    def _search(self) -> list[int]:
+        return [kept.iteration for kept in self._frames if not kept.is_answer]
+
+
 def default_settings(scene: str) -> Settings:
     """Settings with which a page begins a scene."""
     return CATALOGUE[scene].settings.checked(SEARCH)
 
 
 class PageState(param.Parameterized):
-    """The state of a page, and what changes it.
-
-    Widgets set it, views and widgets watch it; `send` hands orders to the worker.
-    """
+    """The state of a page: widgets set it, views watch it; `send` hands orders to the worker."""
 
     settings = param.ClassSelector(class_=Settings, allow_None=False, doc="Of the run, checked.")
     selection = param.ClassSelector(class_=Selection, default=Selection(), doc="What is seen.")
@@ -91,15 +143,13 @@ class PageState(param.Parameterized):
         self.history = History()
         self._left: dict[str, Settings] = {}
         self.number = 0
-        self.began = self.failed_in = 0
+        self.began = 0
         self._sent: Needs | None = None
         self._last_run: Frame | None = None
         self._waiting: list[Callable[[Any], None]] = []
         self.param.watch(lambda event: self.param.update(prediction=None), "lesson")
-        self.param.watch(
-            lambda *events: self.send_needs(is_news=False),
-            ["selection", "needs", "readings", "brought"],
-        )
+        needed = ["selection", "needs", "readings", "brought"]
+        self.param.watch(lambda *events: self.send_needs(is_news=False), needed)
         self.param.watch(lambda event: self.send(Pace(PACES[event.new])), "pace")
 
     def change(self, **values: object) -> bool:
@@ -116,11 +166,8 @@ class PageState(param.Parameterized):
 
     def drag(self, name: str, value: float) -> None:
         """Follow a slider as far as is allowed; the answer alone is shown until it is let go."""
-        try:
-            settings = self.settings.with_change(name, value)
-        except RefusedError:
-            allowed = nearest_allowed(self.settings, name, value)
-            settings = self.settings.with_change(name, allowed)
+        allowed = nearest_allowed(self.settings, name, value)
+        settings = self.settings.with_change(name, allowed)
         self.param.update(refusal="", settings=settings, is_dragged=True)
         self._start(answer(settings), is_dragged=True)
 
@@ -142,7 +189,7 @@ class PageState(param.Parameterized):
     def open(self) -> None:
         """Run the settings; a search waits after its first iteration until there is a browser."""
         is_search = self.settings.finish == SEARCH["finish"]
-        self._start(self.settings, pace=0.0 if is_search else None)
+        self._start(self.settings, 0.0 if is_search else None)
 
     @property
     def is_over(self) -> bool:
@@ -153,9 +200,8 @@ class PageState(param.Parameterized):
     @property
     def is_asked(self) -> bool:
         """Whether a lesson's question is open: in a class until its leader goes on."""
-        is_answered = self.prediction is not None
-        if self.poll is not None:
-            is_answered = self.poll.is_answered
+        poll = self.poll
+        is_answered = poll.is_answered if poll is not None else self.prediction is not None
         return bool(self.lesson) and not is_answered
 
     def pause(self) -> None:
@@ -183,37 +229,30 @@ class PageState(param.Parameterized):
     def reset(self) -> None:
         """Begin anew, and wait after the first iteration."""
         self.running = False
-        self._start(self.settings, pace=0.0)
+        self._start(self.settings, 0.0)
 
     def seek(self, iteration: int) -> None:
         """Show an earlier iterate of the run; beyond the last the newest."""
         newest = self.newest
         if newest is None:
             return
-        if iteration > newest.iteration or (iteration == newest.iteration and not newest.is_answer):
-            self.param.update(iteration=None, frame=newest, ghost=self._ghost_at(newest))
-        else:
-            frame = self.history.at(max(iteration, 1))
-            assert frame is not None
-            self.param.update(iteration=frame.iteration, frame=frame, ghost=self._ghost_at(frame))
+        # The answer has the number of the last iterate before it.
+        is_newest = iteration >= newest.iteration + newest.is_answer
+        frame = newest if is_newest else self.history.at(iteration)
+        place = None if is_newest else frame.iteration
+        self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))
 
-    def _start(
-        self,
-        settings: Settings,
-        *,
-        pace: float | None = None,
-        is_dragged: bool = False,
-        is_agreed: bool = False,
-    ) -> None:
+    def _start(self, settings: Settings, pace: float | None = None, **how: bool) -> None:
+        """Order a run; `how` is that of `Start`."""
         self.number += 1
+        is_dragged = how.get("is_dragged", False)
         self.param.update(is_costly=False, message="", iteration=None, is_dragged=is_dragged)
-        pace = PACES[self.pace] if pace is None else pace
-        self.send(Start(self.number, settings, pace, is_dragged, is_agreed))
+        self.send(Start(self.number, settings, PACES[self.pace] if pace is None else pace, **how))
 
     def pin(self) -> None:
         """Keep the present run beside what follows; or let it go."""
-        self.pinned = None if self.pinned is not None else self.history
         if self.frame is not None:
+            self.pinned = None if self.pinned is not None else self.history
             self.ghost = self._ghost_at(self.frame)
 
     def _ghost_at(self, frame: Frame) -> Frame | None:
@@ -239,15 +278,12 @@ class PageState(param.Parameterized):
                 self.message = text
             case Computed(result) if self._waiting:
                 self._waiting.pop(0)(result)
-            case _:
-                pass
 
     def _show(self, frame: Frame) -> None:
         if frame.run.number != self.number:
             self.send(Ready())
             return
-        first = not len(self.history) or self.history.newest.run.number != self.number
-        if first:
+        if self.history.newest is None or self.history.newest.run.number != self.number:
             if self.pinned is not self.history:
                 self._last_run = self.history.newest
             self.history = History()
@@ -265,17 +301,10 @@ class PageState(param.Parameterized):
         self.send(order)
 
     def send_needs(self, *, is_news: bool = True) -> None:
-        """Tell the worker what frames shall carry."""
-        chosen = self.selection
-        needs = Needs(
-            self.needs,
-            chosen.interface,
-            chosen.substructure,
-            chosen.place,
-            chosen.stress,
-            tuple(self.readings),
-            self.brought,
-        )
+        """Have frames carry what is seen; a worker that is new is told in any case."""
+        seen = self.selection
+        needs = Needs(self.needs, seen.interface, seen.substructure, seen.place, seen.stress)
+        needs = replace(needs, readings=tuple(self.readings), brought=self.brought)
         if is_news or needs != self._sent:
             self._sent = needs
             self.send(needs)

@@ -35,16 +35,14 @@ def _progress(state: PageState, frame: Frame, newest: Frame) -> str:
     if frame is not newest:
         return f"<b>iteration {frame.iteration}</b> of {newest.iteration} · {wrong} wrong"
     if newest.status is None:
-        verb = "" if state.running else " · paused"
-        return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{verb}"
+        paused = "" if state.running else " · paused"
+        return f"<b>iteration {newest.iteration}</b> · {wrong} wrong{paused}"
     counted = f"{newest.iteration} iteration{'s' * (newest.iteration != 1)}"
     if frame.run.is_idle:
         return f"<b>at rest</b> · {counted}: nothing acts here; give a load, or move a side"
-    ending = ENDINGS[newest.status.ending]
-    if newest.residual is not None:
-        what = "answer" if not newest.is_answer else "search"
-        return f"<b>{ending}</b> · {what}: {counted} · certified"
-    return f"<b>{ending}</b> · search: {counted} · {wrong} wrong"
+    search = "search" if newest.residual is None or newest.is_answer else "answer"
+    end = f"{wrong} wrong" if newest.residual is None else "certified"
+    return f"<b>{ENDINGS[newest.status.ending]}</b> · {search}: {counted} · {end}"
 
 
 def _details(frame: Frame) -> str:
@@ -78,27 +76,18 @@ def _more(state: PageState) -> str:
     return "".join(f'<div class="said">{word}</div>' for word in words)
 
 
-def key_figures(frame: Frame, selection: Selection) -> dict[str, str]:
-    """What became of the thing at the selected instant, by name."""
+def figures_line(frame: Frame, selection: Selection) -> str:
+    """What became of the thing at the selected instant, as key figures in a line (HTML)."""
     run, column = frame.run, frame.run.column(selection.phase)
-    along, force = frame.loop
     figures = {}
-    for (title, unit), values in zip((run.across, run.up), (along, force), strict=True):
-        largest = float(np.abs(values).max())
-        value = float(values[column])
-        value = 0.0 if abs(value) <= ZERO * largest else value
-        figures[title] = unit_for(largest, unit)(value)
+    for (title, unit), values in zip((run.across, run.up), frame.loop, strict=True):
+        largest, value = float(np.abs(values).max()), float(values[column])
+        figures[title] = unit_for(largest, unit)(value if abs(value) > ZERO * largest else 0.0)
     status = frame.deformed.status[:, column] if frame.deformed.status.size else np.zeros(1)
     figures["Slips"] = percent(float(np.mean((status != 0) & (status != OPEN))))
     figures["Energy lost"] = unit_for(abs(frame.energy), "J")(frame.energy)
     beside = frame.extras.get("beside")
     if beside is not None:
         figures[f"Distance to {beside['name']}"] = percent(beside["distance"])
-    return figures
-
-
-def figures_line(frame: Frame, selection: Selection) -> str:
-    """The key figures in a line (HTML)."""
-    figures = key_figures(frame, selection).items()
-    words = (f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures)
-    return "".join(words)
+    spans = (f"<span>{escape(name)} <b>{value}</b></span>" for name, value in figures.items())
+    return "".join(spans)

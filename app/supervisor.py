@@ -23,29 +23,22 @@ GIVEN_UP = (
 
 
 class Supervisor:
-    """Passes orders to the worker of a page and its reports to the state.
-
-    Parameters
-    ----------
-    state, document
-        Of the page.
-    """
+    """Passes orders to the worker of a page and its reports to the state."""
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
         self._worker: Worker | None = None
         self._asked = time.monotonic()
-        self._failed = 0
-        self._callback: Any = None
+        self._failed = self._failed_in = 0
         self._reports: deque[tuple[Worker, Report | None]] = deque()
         self._is_open = False
+        document.add_periodic_callback(self._look, LOOK)
 
     def begin(self) -> None:
         """Start the worker."""
-        if self._callback is None:
-            self._callback = self._document.add_periodic_callback(self._look, LOOK)
-        self._state.send = self.send
-        self._start()
+        self._state.send = self._send
+        self._worker = Worker(self._on_report)
+        self._state.send_needs()
 
     def open(self) -> None:
         """Take reports as they come, now that a browser is there to see them."""
@@ -58,24 +51,6 @@ class Supervisor:
             self._worker.end()
             self._worker = None
 
-    def send(self, order: Order) -> None:
-        """Give the worker an order."""
-        if isinstance(order, Start):
-            self._asked = time.monotonic()
-        if self._worker is not None:
-            self._worker.send(order)
-
-    def _start(self) -> None:
-        self._worker = Worker(self._hear)
-        self._state.send_needs()
-
-    def _hear(self, worker: Worker, report: Report | None) -> None:
-        """Bring a report to the document's own thread, once what is said there is heard."""
-        if not isinstance(report, Alive):
-            self._reports.append((worker, report))
-            if self._is_open:
-                self._document.add_next_tick_callback(self.take)
-
     def take(self) -> None:
         """Take what has been reported."""
         while self._reports:
@@ -86,6 +61,20 @@ class Supervisor:
                 self._restart(ENDED)
             else:
                 self._state.take(report)
+
+    def _send(self, order: Order) -> None:
+        if isinstance(order, Start):
+            self._asked = time.monotonic()
+        if self._worker is not None:
+            self._worker.send(order)
+
+    def _on_report(self, worker: Worker, report: Report | None) -> None:
+        """Bring a report to the document's own thread, once the page has loaded."""
+        if not isinstance(report, Alive):
+            self._reports.append((worker, report))
+            if self._is_open:
+                # A callback that is added while a session is created gets lost.
+                self._document.add_next_tick_callback(self.take)
 
     def _look(self) -> None:
         """Start a worker anew that hangs, or that is too busy with a run to begin the next one."""
@@ -99,14 +88,13 @@ class Supervisor:
 
     def _restart(self, message: str) -> None:
         """Run the settings in a new process, unless that has failed before."""
+        state = self._state
         self.end()
-        self._failed = (
-            self._failed + 1 if message and self._state.number == self._state.failed_in else 1
-        )
-        self._start()
+        self._failed = self._failed + 1 if message and state.number == self._failed_in else 1
+        self.begin()
         if self._failed > 2:
-            self._state.message = GIVEN_UP
+            state.message = GIVEN_UP
             return
-        self._state.run()
-        self._state.failed_in = self._state.number if message else 0
-        self._state.message = message
+        state.run()
+        self._failed_in = state.number if message else 0
+        state.message = message

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from typing import Any
 
 import panel as pn
 import panel_material_ui as pmui
 
-from app.echoes import Echoes
+from app.browser import Echoes
 from app.state import ANSWER, PACES, SEARCH, PageState, known
 
 PLAYED_IN = 6.0
@@ -29,51 +30,31 @@ WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 class Transport:
     """The buttons and sliders that move through a run.
 
-    Parameters
-    ----------
-    state, document
-        Of the page.
-
-    Attributes
-    ----------
-    view, play_button
-        What stands in the row above the scene, and beside the time line.
+    `view` stands in the row above the scene, `play_button` beside the time line.
     """
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
         self._playing: tuple[Any, float, float, float] | None = None
-        self._is_updating = False
         self._moved_at = -math.inf
         self._echoes = Echoes()
-        self.view = pn.Row(*self._buttons(), *self._choices(), margin=0)
-        self.play_button.on_click(lambda event: self.play())
-        state.param.watch(
-            lambda *events: self._show(),
-            ["settings", "frame", "newest", "running", "is_costly", "pinned"],
+        # Not IconButtons, which keep their first icon.
+        self._run = _button("pause", "Run or pause (space)", self._toggle, changes=True)
+        self.play_button = _button("play_circle", "Play through time (t)", self.play, changes=True)
+        self.play_button.margin = (10, 2)
+        self._pin = _button("push_pin", PIN, state.pin)
+        self.view = pn.Row(
+            self._run,
+            _button("skip_next", "One iteration (s)", state.step),
+            _button("replay", "From the start (r)", state.reset),
+            self._pin,
+            *self._choices(),
+            margin=0,
         )
+        shown = ["settings", "frame", "newest", "running", "is_costly", "pinned"]
+        state.param.watch(lambda *events: self._show(), shown)
         document.add_periodic_callback(self._follow, FOLLOWS)
         self._show()
-
-    def _buttons(self) -> list[Any]:
-        """Buttons that start, stop and pin a run; and one beside the time line."""
-        small: dict[str, Any] = {"size": "small", "margin": (2, 2)}
-        # Not an IconButton, which keeps its first icon.
-        changing: dict[str, Any] = {"label": "", "variant": "text", "color": "default", "sx": ROUND}
-        self._run = pmui.Button(
-            icon="pause", description="Run or pause (space)", **changing, **small
-        )
-        self.play_button = pmui.Button(
-            icon="play_circle", description="Play through time (t)", margin=(10, 2), **changing
-        )
-        step = pmui.IconButton(icon="skip_next", description="One iteration (s)", **small)
-        reset = pmui.IconButton(icon="replay", description="From the start (r)", **small)
-        self._pin = pmui.IconButton(icon="push_pin", description=PIN, **small)
-        self._run.on_click(lambda event: self.toggle())
-        step.on_click(lambda event: self._state.step())
-        reset.on_click(lambda event: self._state.reset())
-        self._pin.on_click(lambda event: self._state.pin())
-        return [self._run, step, reset, self._pin]
 
     def _choices(self) -> list[Any]:
         """What is watched, how fast, and which iteration."""
@@ -86,9 +67,8 @@ class Transport:
             sx={"& button": {"textTransform": "none", "padding": "3px 9px"}},
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
-        more: dict[str, Any] = {"size": "small", "width": 118, "margin": (6, 4)}
         pace = pmui.Select.from_param(
-            self._state.param.pace, label="Pace", options=list(PACES), **more
+            self._state.param.pace, options=list(PACES), size="small", width=118, margin=(6, 4)
         )
         self._iteration = pmui.IntSlider(
             label="Iteration",
@@ -106,7 +86,7 @@ class Transport:
     def keys(self) -> dict[str, Any]:
         """What keys do, by their names."""
         return {
-            " ": self.toggle,
+            " ": self._toggle,
             "s": self._state.step,
             "r": self._state.reset,
             "t": self.play,
@@ -117,13 +97,14 @@ class Transport:
         }
 
     @property
-    def goes_on(self) -> bool:
+    def _goes_on(self) -> bool:
         """Whether the run goes on until it is paused."""
-        return self._state.running and not self._state.is_over
+        state = self._state
+        return state.running and not state.is_over and not state.is_costly
 
-    def toggle(self) -> None:
+    def _toggle(self) -> None:
         """Run, pause, or run anew what has ended."""
-        if self.goes_on and not self._state.is_costly:
+        if self._goes_on:
             self._state.pause()
         else:
             self._state.go_on()
@@ -169,33 +150,23 @@ class Transport:
 
     def _seek(self, iteration: int) -> None:
         """Show the iteration to which the slider was moved."""
-        if not self._is_updating and not self._echoes.has(iteration):
+        if not self._echoes.has(iteration):
             self._moved_at = time.monotonic()
             self._state.seek(iteration)
 
     def _choose_way(self, finish: str) -> None:
-        if not self._is_updating and finish != self._state.settings.finish:
+        if finish != self._state.settings.finish:
             values = SEARCH if finish == SEARCH["finish"] else ANSWER
             self._state.change(**known(self._state.settings, values))
 
     def _show(self) -> None:
         """Show how the run goes."""
         state = self._state
-        self._is_updating = True
-        try:
-            icon = "play_arrow"
-            if state.is_costly:
-                icon = "warning"
-            elif self.goes_on:
-                icon = "pause"
-            elif state.is_over:
-                icon = "replay"
-            self._run.icon = icon
-            self._pin.color = "default" if state.pinned is None else "primary"
-            if state.settings.finish in WATCH.values():
-                self._way.value = state.settings.finish
-        finally:
-            self._is_updating = False
+        waiting = "warning" if state.is_costly else "replay" if state.is_over else "play_arrow"
+        self._run.icon = "pause" if self._goes_on else waiting
+        self._pin.color = "default" if state.pinned is None else "primary"
+        if state.settings.finish in WATCH.values():
+            self._way.value = state.settings.finish
 
     def _follow(self) -> None:
         """Show which iteration is shown."""
@@ -204,8 +175,14 @@ class Transport:
             return
         last = max(newest.iteration + newest.is_answer, 2)
         at = last if frame is newest else min(frame.iteration, last)
-        self._is_updating = True
-        try:
-            slider.param.update(end=last, value=self._echoes.give(at, slider.value))
-        finally:
-            self._is_updating = False
+        slider.param.update(end=last, value=self._echoes.give(at, slider.value))
+
+
+def _button(icon: str, description: str, act: Callable[[], None], *, changes: bool = False) -> Any:
+    """A round button; one whose icon changes is a plain one without a label."""
+    kind, style = pmui.IconButton, {}
+    if changes:
+        kind, style = pmui.Button, {"label": "", "variant": "text", "color": "default", "sx": ROUND}
+    button = kind(icon=icon, description=description, size="small", margin=(2, 2), **style)
+    button.on_click(lambda event: act())
+    return button

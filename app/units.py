@@ -51,12 +51,10 @@ def sizes_of(unit: str) -> dict[str, float]:
 
 def unit_for(size: float, unit: str) -> Unit:
     """The unit in which values up to a size, in SI, are read."""
-    steps = sizes_of(unit)
-    if not (math.isfinite(size) and size > 0.0):
-        size = 1.0
-    rounded = float(f"{size:.3g}") * (1.0 + 1e-9)
-    fitting = [Unit(n, f) for n, f in steps.items() if f * LATER.get(n, 1.0) <= rounded]
-    return fitting[-1] if fitting else Unit(*next(iter(steps.items())))
+    units = [Unit(name, factor) for name, factor in sizes_of(unit).items()]
+    size = float(f"{size:.3g}") * (1.0 + 1e-9) if math.isfinite(size) and size > 0.0 else 1.0
+    fitting = [unit for unit in units if unit.factor * LATER.get(unit.name, 1.0) <= size]
+    return fitting[-1] if fitting else units[0]
 
 
 def unit_of(definition: Parameter) -> Unit:
@@ -72,29 +70,20 @@ def unit_of(definition: Parameter) -> Unit:
 def units_of_points(scene: str, name: str, units: tuple[str, str]) -> tuple[Unit, Unit]:
     """The units in which the points of a path are read, by the scene's defaults.
 
-    Parameters
-    ----------
-    scene, name
-        The path.
-    units
-        Those of SI, as the other settings have them (`Settings.curve_units`).
+    Those of SI are as the other settings have them (`Settings.curve_units`).
     """
     default = CATALOGUE[scene].settings.checked({})
     columns = zip(*points_of(default, name), strict=True)
     sizes = [max(map(abs, column)) for column in columns]
     if default.curve_units(name) != units:
         sizes[1] = OTHER_SIZES.get(units[1], 1.0)
-    across, up = (unit_for(size, unit) for size, unit in zip(sizes, units, strict=True))
-    return across, up
+    return unit_for(sizes[0], units[0]), unit_for(sizes[1], units[1])
 
 
 def typed(text: str, unit: Unit, si: str) -> float:
     """The value in SI of a number as it is typed: in a unit, or in the one that stands behind it.
 
-    Raises
-    ------
-    ValueError
-        For what is no number, or another unit.
+    A ValueError says what to write in place of what is no number, or in another unit.
     """
     match = TYPED.fullmatch(text.strip().replace("−", "-").replace("μ", "µ"))
     if match is None:

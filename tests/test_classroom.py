@@ -9,11 +9,10 @@ from typing import Any
 import pytest
 
 from app import classroom
-from app.classroom import CLASSROOMS, Member
+from app.classroom import Member, find
 from app.frame import Frame
-from app.history import History
 from app.messages import Needs, Order, Ready, Start
-from app.state import PageState, default_settings
+from app.state import History, PageState, default_settings
 from app.worker.sampling import Sampler
 from solver.scenes import discretise
 from solver.study.quantities.finished import finished_run
@@ -213,9 +212,9 @@ def test_a_class_waits_five_minutes_for_its_leader(
     tick(follower)
     assert "away" in follower.member.message
     monkeypatch.setattr(classroom.time, "monotonic", lambda: now + 299.0)
-    assert CLASSROOMS.find(follower.state.room) is not None
+    assert find(follower.state.room) is not None
     monkeypatch.setattr(classroom.time, "monotonic", lambda: now + 301.0)
-    assert CLASSROOMS.find(follower.state.room) is None
+    assert find(follower.state.room) is None
     follower.member.notify()
     tick(follower)
     assert "has ended" in follower.member.message

@@ -7,12 +7,11 @@ from dataclasses import replace
 
 import pytest
 
-import app.display
-from app.display import Display
+import app.browser
+from app.browser import Display
 from app.frame import Frame
-from app.history import History
 from app.messages import Needs, Ready, Start
-from app.state import PageState, default_settings
+from app.state import History, PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 
@@ -61,7 +60,7 @@ def test_a_picture_whose_answer_got_lost_is_asked_for_again(
     sent = display.pulse.sent
     display.catch_up()
     assert display.pulse.sent == sent
-    monkeypatch.setattr(app.display, "LOST", 0.0)
+    monkeypatch.setattr(app.browser, "LOST", 0.0)
     display.catch_up()
     assert display.pulse.sent == sent + 1
     display.pulse.painted = display.pulse.sent

@@ -92,7 +92,7 @@ def imports(path):
 FLOORS = [
     ["units", "frame", "messages"],
     ["worker"],
-    ["refusals", "history", "poll", "state"],
+    ["refusals", "state"],
     ["views"],
 ]
 """Parts of the page; each may import itself, what stands beside it and before it. All others are

@@ -10,13 +10,20 @@ import panel as pn
 import pytest
 
 from app.frame import Frame
-from app.lessons.catalogue import LESSONS, kinds_of, readings_of, settings_of
+from app.lessons.catalogue import (
+    LESSONS,
+    PENDING,
+    filled,
+    kinds_of,
+    parts_of,
+    readings_of,
+    settings_of,
+    without_controls,
+)
 from app.lessons.handout import handout
 from app.lessons.panel import WITHOUT, LessonPanel
-from app.lessons.text import PENDING, filled, parts_of, without_controls
 from app.messages import Needs
-from app.poll import Poll
-from app.state import PageState, default_settings
+from app.state import PageState, Poll, default_settings
 from app.worker.sampling import Sampler
 from solver.lessons.lesson import Control, Lesson
 from solver.scenes import discretise

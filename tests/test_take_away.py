@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.display import Display
+from app.browser import Display
 from app.export import TakeAway, history_table, plot_table, program
 from app.frame import Frame
 from app.messages import Needs, Start

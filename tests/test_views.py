@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
-from app.cards import Card
 from app.frame import Frame, Selection
+from app.live import Card
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.axial_force import AxialForce
@@ -252,14 +252,14 @@ def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -
 def test_a_card_shows_the_view_that_was_chosen_last_wherever_it_is_offered() -> None:
     state = PageState(default_settings("strand"))
     card = Card(CARDS[0], state, lambda: None)
-    card.fit(state)
+    card.fit()
     assert isinstance(card.seen, ContactForce)
     card.tabs.active = 1
     state.settings = default_settings("bar")
-    card.fit(state)
+    card.fit()
     assert isinstance(card.seen, ContactForce)
     state.settings = default_settings("strand")
-    card.fit(state)
+    card.fit()
     assert isinstance(card.seen, AxialForce)
 
 
@@ -267,7 +267,7 @@ def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     frame = frames_of("bar")[1]
     state = PageState(frame.run.settings, frame=frame, newest=frame)
     card = Card((ContactForce, HysteresisLoop), state, lambda: None)
-    card.fit(state)
+    card.fit()
     card.tabs.active = 1
     assert isinstance(card.seen, HysteresisLoop)
     assert len(card.seen.sources["latin"].data["x"]) == len(frame.run.instants)

@@ -1,15 +1,20 @@
-"""All lessons, and the settings, plots and quantities that a page has of one."""
+"""All lessons: what a page has of one, and what it says with the quantities of a frame."""
 
 from __future__ import annotations
 
+import math
+import re
 from pathlib import Path
 
+from app.frame import Frame
 from app.state import SEARCH
+from app.units import number, percent, unit_for
 from app.views.catalogue import CARDS
 from app.views.view import View
-from solver.lessons.lesson import SUBJECTS, Lesson, Value, pieces
+from solver.lessons.lesson import SUBJECTS, Control, Lesson, Value, pieces
 from solver.lessons.reading import lesson_from_file
 from solver.settings import Settings
+from solver.study.quantities.quantities import reading
 
 _READ = map(lesson_from_file, Path(__file__).parent.glob("*.toml"))
 LESSONS = {
@@ -17,6 +22,8 @@ LESSONS = {
     for lesson in sorted(_READ, key=lambda lesson: (SUBJECTS.index(lesson.subject), lesson.order))
 }
 """By name, in order, those of one subject together."""
+PENDING = "…"
+"""What only the rest of the run will tell."""
 _KINDS = {kind.name: kind for card in CARDS for kind in card}
 
 
@@ -31,8 +38,12 @@ def settings_of(lesson: Lesson) -> Settings:
 
 def kinds_of(lesson: Lesson, *, is_answered: bool) -> tuple[type[View], ...]:
     """The plots that stand beside a lesson; before the choice only those that leave it open."""
-    names = lesson.views if is_answered else lesson.beside
-    return tuple(_KINDS[name] for name in names)
+    return tuple(_KINDS[name] for name in (lesson.views if is_answered else lesson.beside))
+
+
+def place_of(lesson: Lesson) -> str:
+    """Which of all lessons it is."""
+    return f"Lesson {list(LESSONS).index(lesson.name) + 1} of {len(LESSONS)}"
 
 
 def readings_of(lesson: Lesson) -> list[str]:
@@ -41,8 +52,45 @@ def readings_of(lesson: Lesson) -> list[str]:
     return list(dict.fromkeys(piece.reading.name for piece in every if isinstance(piece, Value)))
 
 
-def lesson_after(lesson: Lesson) -> Lesson | None:
-    """The next one, if there is one."""
-    names = list(LESSONS)
-    place = names.index(lesson.name) + 1
-    return LESSONS[names[place]] if place < len(names) else None
+def parts_of(paragraph: str) -> list[str | Control]:
+    """A paragraph, split where a control stands; the rest is Markdown with `{value:NAME}` in it."""
+    parts: list[str | Control] = [""]
+    for piece in pieces(paragraph):
+        if isinstance(piece, Control):
+            parts += [piece, ""]
+        else:
+            parts[-1] += f"{{value:{piece.reading.name}}}" if isinstance(piece, Value) else piece
+    # A sentence ends with its control: its full stop would stand alone.
+    return [
+        part.lstrip(" .:") if isinstance(part, str) and place else part
+        for place, part in enumerate(parts)
+    ]
+
+
+def without_controls(paragraph: str) -> str:
+    """A paragraph without the sentences that ask to move a control, for paper."""
+    sentences = re.split(r"(?<=[.?!]) +", paragraph)
+    return " ".join(sentence for sentence in sentences if "{control:" not in sentence)
+
+
+def filled(text: str, frame: Frame | None) -> str:
+    """Markdown in which every quantity is that of a frame."""
+    text = re.sub(r"\{value:(.*?)\}", lambda match: f"**{_value(frame, match[1])}**", text)
+    return re.sub(r"\^(\d+)", r"<sup>\1</sup>", text)
+
+
+def _value(frame: Frame | None, name: str) -> str:
+    """A quantity of a frame's run with its unit, as far as the run has come."""
+    if frame is None or name not in frame.readings:
+        return PENDING
+    value, quantity = frame.readings[name], reading(name).quantity
+    if not math.isfinite(value) and frame.status is None:
+        return PENDING
+    if math.isnan(value):
+        return "–"
+    if math.isinf(value):
+        # All that is counted and may never come are iterations.
+        return "not reached" if quantity.unit else f"more than {frame.iteration}"
+    if quantity.is_share:
+        return percent(value)
+    return unit_for(abs(value), quantity.unit)(value) if quantity.unit else number(value)

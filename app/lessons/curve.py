@@ -14,14 +14,10 @@ from solver.lessons.lesson import Lesson
 
 
 class DrawnCurve:
-    """Axes over a setting on which the expected curve is drawn, and then the measured one.
+    """A figure over a setting on which the expected curve is drawn, and then the measured one.
 
-    Attributes
-    ----------
-    figure
-        What stands in the lesson, and on its handout.
-    drawn, measured
-        Sources of what was drawn by hand, and of what the lesson's checkpoints measure.
+    `drawn` and `measured` are the sources of what was drawn by hand, and of what the lesson's
+    checkpoints measure.
     """
 
     def __init__(self, lesson: Lesson) -> None:
@@ -50,9 +46,9 @@ class DrawnCurve:
         made.text("x", "y", "text", source=self.measured, y_offset=20, text_font_size="12px",
                   text_align="center", text_color=LATIN)  # fmt: skip
         legend(made, {"drawn by hand": [line], "measured": [points]})
-        self._tool = FreehandDrawTool(renderers=[line], num_objects=1)
-        made.add_tools(self._tool)
-        made.toolbar.active_drag = self._tool
+        tool = FreehandDrawTool(renderers=[line], num_objects=1)
+        made.add_tools(tool)
+        made.toolbar.active_drag = tool
         self.figure = made
 
     def reveal(self) -> None:

@@ -13,9 +13,8 @@ from jinja2 import Template
 from markdown_it import MarkdownIt
 
 from app.addresses import address_for_others
-from app.lessons.catalogue import LESSONS, kinds_of
+from app.lessons.catalogue import filled, kinds_of, place_of, without_controls
 from app.lessons.curve import DrawnCurve
-from app.lessons.text import filled, without_controls
 from app.state import PageState
 from app.views.scene import Scene
 from app.views.view import View
@@ -39,7 +38,7 @@ h1 { font-size: 18pt; margin: 0; } h2 { font-size: 14pt; }
 .overleaf { break-before: page; }
 .plots { display: grid; grid-template-columns: 1fr 1fr; gap: 4mm; }
 </style></head><body>
-<small>Slipfront, {{ place }}</small><h1>{{ title }}</h1>
+<small>Slipfront. {{ place }}</small><h1>{{ title }}</h1>
 {{ text|safe }}
 {{ plot("picture") }}
 <p class="question">{{ question }}</p>
@@ -56,15 +55,9 @@ h1 { font-size: 18pt; margin: 0; } h2 { font-size: 14pt; }
 def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> BytesIO:
     """A page to print (HTML, UTF-8), of the frame that is shown; it needs no network.
 
-    Parameters
-    ----------
-    state
-        Of the page, in the lesson.
-    lesson
-        The one that is open.
-    curve
-        What was drawn by hand and measured, of a lesson that has one drawn.
+    The curve is the one drawn by hand, of a lesson that asks for one.
     """
+    address = address_for_others()
     picture = _drawn(Scene(state), state, lesson, WIDTH, HEIGHT)
     kinds = [kind for kind in kinds_of(lesson, is_answered=True) if kind.applies(state.settings)]
     figures = {"picture": picture}
@@ -85,7 +78,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> Bytes
         title=lesson.title,
         template=Template(PAGE, autoescape=True),
         template_variables={
-            "place": f"lesson {list(LESSONS).index(lesson.name) + 1} of {len(LESSONS)}",
+            "place": place_of(lesson),
             # Without what Panel adds to it, some of it by a link to the server.
             "library": LIBRARY.js_raw,
             "text": _html(lesson.text, state),
@@ -96,7 +89,7 @@ def handout(state: PageState, lesson: Lesson, curve: DrawnCurve | None) -> Bytes
             "explanation": _html(tuple(map(without_controls, lesson.explanation)), state),
             "plots": [figures[name].name for name in plots],
             "has_curve": curve is not None,
-            "address": _address(lesson),
+            "address": f"{address}?lesson={lesson.name}" if address else "",
         },
         suppress_callback_warning=True,
     )
@@ -116,8 +109,3 @@ def _drawn(view: View, state: PageState, lesson: Lesson, width: int, height: int
 def _html(paragraphs: tuple[str, ...], state: PageState) -> str:
     texts = (filled(text, state.frame) for text in paragraphs)
     return str(MarkdownIt("commonmark", {"html": True}).render("\n\n".join(texts)))
-
-
-def _address(lesson: Lesson) -> str:
-    address = address_for_others()
-    return f"{address}?lesson={lesson.name}" if address else ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import panel as pn
@@ -11,12 +12,18 @@ import param
 
 from app.controls import Control
 from app.frame import Selection
-from app.lessons.catalogue import LESSONS, kinds_of, lesson_after, readings_of, settings_of
+from app.lessons.catalogue import (
+    LESSONS,
+    filled,
+    kinds_of,
+    parts_of,
+    place_of,
+    readings_of,
+    settings_of,
+)
 from app.lessons.curve import DrawnCurve
 from app.lessons.handout import handout
-from app.lessons.text import filled, parts_of
-from app.poll import Poll
-from app.state import PageState
+from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
 from solver.lessons.lesson import SUBJECTS, Lesson
@@ -32,21 +39,9 @@ LEFT = {**SENTENCE, "&.MuiButton-root": {"justifyContent": "flex-start", "textAl
 class LessonPanel:
     """The lesson that a page is in, if it is in one.
 
-    Parameters
-    ----------
-    state, transport
-        Of the page; the transport plays the picture while the question is open.
-    changed
-        Called when other plots shall stand beside it.
-    open_counts
-        Has a class see how many predicted what.
-
-    Attributes
-    ----------
-    view
-        What stands beside the plots.
-    dialog
-        The list of all lessons.
+    The transport plays the picture while the question is open; `changed` is called when another
+    lesson, or its answer, is shown; `open_counts` has a class see how many predicted what. `view`
+    stands beside the plots, `dialog` is the list of all lessons.
     """
 
     def __init__(
@@ -62,7 +57,7 @@ class LessonPanel:
         self._controls: list[Control] = []
         self._curve: DrawnCurve | None = None
         self._choices, self._class = pn.Column(margin=0), pn.Column(margin=0)
-        self._shown: tuple[str, bool] = ("", False)
+        self._shown: tuple[str, bool] | None = None
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
         self.dialog = pmui.Dialog(
             title="Lessons", width_option="md", show_close_button=True, close_on_click=True
@@ -79,9 +74,7 @@ class LessonPanel:
     def kinds(self) -> tuple[type[View], ...] | None:
         """The plots that stand beside it; None without a lesson."""
         lesson = self.lesson
-        if lesson is None:
-            return None
-        return kinds_of(lesson, is_answered=not self._state.is_asked)
+        return kinds_of(lesson, is_answered=not self._state.is_asked) if lesson else None
 
     def open(self, name: str) -> None:
         """Begin a lesson, with its scene and settings."""
@@ -109,17 +102,25 @@ class LessonPanel:
         for pane, text in self._texts:
             pane.object = filled(text, self._state.frame)
 
+    def show(self) -> None:
+        """Show the question, or the answer, of the lesson, and what a class predicts."""
+        state, lesson = self._state, self.lesson
+        shown = state.lesson, state.is_asked
+        if shown != self._shown:
+            if self._shown is None or state.lesson != self._shown[0]:
+                self._curve = None
+            self._shown = shown
+            self._build(lesson)
+        if lesson is not None:
+            self._choices[:] = self._choices_of(lesson, state.poll)
+            self._class[:] = self._of_class(state.poll)
+
     def _offers(self, subject: str) -> pn.Column:
-        lessons = [lesson for lesson in LESSONS.values() if lesson.subject == subject]
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
         buttons = [
-            _button(
-                lesson.title,
-                lambda event, name=lesson.name: self.open(name),
-                sx=LEFT,
-                variant="text",
-            )
-            for lesson in lessons
+            _button(lesson.title, lambda name=name: self.open(name), sx=LEFT, variant="text")
+            for name, lesson in LESSONS.items()
+            if lesson.subject == subject
         ]
         return pn.Column(pn.pane.Markdown(title, margin=(0, 8)), *buttons, width=380, margin=0)
 
@@ -127,45 +128,28 @@ class LessonPanel:
         """Leave a lesson for another scene; show its controls as settings are."""
         lesson = self.lesson
         if lesson is not None and self._state.settings.scene != lesson.settings.scene:
-            self._state.lesson = ""
+            self._end()
         for control in self._controls:
             control.update()
 
-    def show(self) -> None:
-        """Show the question, or the answer, of the lesson, and what a class predicts."""
-        shown = self._state.lesson, not self._state.is_asked
-        if shown != self._shown or self._curve_is_of_another:
-            self._shown = shown
-            self._build()
-        if self.lesson is not None:
-            self._show_choices(self.lesson, self._state.poll)
-            self._class[:] = self._of_class(self._state.poll)
-
-    @property
-    def _curve_is_of_another(self) -> bool:
-        lesson = self.lesson
-        return lesson is not None and bool(lesson.draw) and self._curve is None
-
-    def _build(self) -> None:
-        state, lesson = self._state, self.lesson
+    def _build(self, lesson: Lesson | None) -> None:
+        state = self._state
         self._texts, self._controls = [], []
         self._transport.stop()
         if lesson is None:
-            self._curve = None
             self.view.param.update(objects=[], visible=False)
             state.readings = []
             self._changed()
             return
-        if state.is_asked:
-            self._curve = DrawnCurve(lesson) if lesson.draw else None
-            state.readings = readings_of(lesson)
-        elif lesson.draw:
-            self._curve = self._curve or DrawnCurve(lesson)
+        state.readings = readings_of(lesson)
+        if lesson.draw and (state.is_asked or self._curve is None):
+            self._curve = DrawnCurve(lesson)
+        if lesson.draw and not state.is_asked:
             # A figure's own models change under the document's lock, which a click does not have.
             pn.state.execute(self._curve.reveal, schedule=True)
         parts = self._question(lesson) if state.is_asked else self._answer(lesson)
-        self.view.param.update(objects=[*self._head(lesson), *parts], visible=True)
-        self.update()
+        title = f"<small>{place_of(lesson)}</small>\n\n### {lesson.title}"
+        self.view.param.update(objects=[self._markdown(title), *parts], visible=True)
         self._changed()
         self._look(lesson)
 
@@ -179,47 +163,47 @@ class LessonPanel:
             state.select(phase=Selection.phase if lesson.until == 1.0 else 0.0)
             self._transport.play(lesson.until)
 
-    def _head(self, lesson: Lesson) -> list[Any]:
-        place = list(LESSONS).index(lesson.name) + 1
-        title = f"<small>Lesson {place} of {len(LESSONS)}</small>\n\n### {lesson.title}"
+    def _question(self, lesson: Lesson) -> list[Any]:
+        """What is shown before the choice."""
         return [
-            pn.pane.Markdown(title, margin=0, sizing_mode="stretch_width", stylesheets=PARAGRAPH)
+            *self._paragraphs(lesson.text),
+            *self._figures(),
+            self._markdown(f"**{lesson.question}**"),
+            self._choices,
+            self._class,
+            _button("Explore freely", self._end, variant="text"),
         ]
 
-    def _question(self, lesson: Lesson) -> list[Any]:
-        """What stands before the choice."""
-        curve = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
-        question = self._markdown(f"**{lesson.question}**")
-        return [
-            *self._paragraphs(lesson.text), *curve, question, self._choices, self._class,
-            _button("Explore freely", lambda event: self._end(), variant="text"),
-        ]  # fmt: skip
-
     def _answer(self, lesson: Lesson) -> list[Any]:
-        """What stands after the choice."""
+        """What is shown after the choice."""
         prediction, choice = self._state.prediction, lesson.choices[lesson.right]
         is_right, is_open = prediction == lesson.right, prediction in (None, WITHOUT)
         text = f"{'Right: ' if is_right else ''}{choice}. {lesson.why}"
         severity = "info" if is_open else "success" if is_right else "warning"
-        curve = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
-        following = lesson_after(lesson)
-        paper = pmui.FileDownload(
-            callback=lambda: handout(self._state, lesson, self._curve),
-            filename=f"{lesson.name}.html",
-            label="Handout",
-            size="small",
-        )
-        buttons = [paper, _button("Explore freely", lambda event: self._end(), variant="text")]
+        buttons = [
+            pmui.FileDownload(
+                callback=lambda: handout(self._state, lesson, self._curve),
+                filename=f"{lesson.name}.html",
+                label="Handout",
+                size="small",
+            ),
+            _button("Explore freely", self._end, variant="text"),
+        ]
+        following = dict(pairwise(LESSONS)).get(lesson.name)
         if following is not None:
-            go_on = _button("Next lesson", lambda event: self.open(following.name))
-            buttons.insert(0, go_on)
-        question = self._markdown(f"**{lesson.question}**")
+            buttons.insert(0, _button("Next lesson", lambda: self.open(following)))
         return [
-            question, self._choices, self._class,
+            self._markdown(f"**{lesson.question}**"),
+            self._choices,
+            self._class,
             pmui.Alert(object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"),
-            *curve, *self._paragraphs(lesson.explanation),
+            *self._figures(),
+            *self._paragraphs(lesson.explanation),
             pn.FlexBox(*buttons, margin=(8, 0)),
-        ]  # fmt: skip
+        ]
+
+    def _figures(self) -> list[Any]:
+        return [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
         """Panes of text, with controls where they are named."""
@@ -243,46 +227,44 @@ class LessonPanel:
             self._texts.append((pane, text))
         return pane
 
-    def _show_choices(self, lesson: Lesson, poll: Poll | None) -> None:
+    def _choices_of(self, lesson: Lesson, poll: Poll | None) -> list[pmui.Button]:
         """Buttons of the choices; with what a class predicts of each once that is open."""
         counts = poll.counts if poll is not None else ()
-        is_asked, buttons = self._state.is_asked, []
-        for number, choice in enumerate(lesson.choices):
-            is_right = not is_asked and number == lesson.right
-            buttons.append(
-                _button(
-                    f"{choice}: {counts[number]}" if counts else choice,
-                    lambda event, number=number: self.predict(number),
-                    variant="contained" if number == self._state.prediction else "outlined",
-                    color="success" if is_right else "primary",
-                    disabled=not is_asked,
-                    sx=LEFT,
-                )
+        is_asked = self._state.is_asked
+        if not (is_asked or counts):
+            # Whoever is right or wrong reads it below.
+            return []
+        return [
+            _button(
+                f"{choice}: {counts[number]}" if counts else choice,
+                lambda number=number: self.predict(number),
+                variant="contained" if number == self._state.prediction else "outlined",
+                color="success" if not is_asked and number == lesson.right else "primary",
+                disabled=not is_asked,
+                sx=LEFT,
             )
-        # Whoever is right or wrong reads it below; of a class the counts stay.
-        self._choices[:] = buttons if is_asked or counts else []
+            for number, choice in enumerate(lesson.choices)
+        ]
 
     def _of_class(self, poll: Poll | None) -> list[Any]:
         """What follows the choices: who has predicted, and the way to the answer."""
         is_asked = self._state.is_asked
-        show = [_button("Show me", lambda event: self.predict(WITHOUT), variant="text")]
         if poll is None:
-            return show if is_asked else []
-        told = pn.pane.Markdown(
-            f"{poll.predicted} of {poll.present} have predicted."
-            f"{'' if poll.leads or not is_asked else ' The answer comes with the class.'}"
-        )
-        if not poll.leads:
-            return [told]
-        counts = _button("Open the counts", lambda event: self._open_counts(), variant="outlined")
-        on = [_button("Go on to the answer", lambda event: self.predict(WITHOUT))]
-        return [told, *([] if poll.counts else [counts]), *(on if is_asked else [])]
+            show = _button("Show me", lambda: self.predict(WITHOUT), variant="text")
+            return [show] if is_asked else []
+        waits = " The answer comes with the class." if is_asked and not poll.leads else ""
+        parts = [pn.pane.Markdown(f"{poll.predicted} of {poll.present} have predicted.{waits}")]
+        if poll.leads and not poll.counts:
+            parts.append(_button("Open the counts", self._open_counts, variant="outlined"))
+        if poll.leads and is_asked:
+            parts.append(_button("Go on to the answer", lambda: self.predict(WITHOUT)))
+        return parts
 
     def _end(self) -> None:
         """Leave the lesson; the run stays."""
         self._state.lesson = ""
 
 
-def _button(label: str, does: Callable[[Any], None], **more: Any) -> pmui.Button:
-    look = {"variant": "contained", "size": "small", "margin": (3, 0), "sx": SENTENCE, **more}
-    return pmui.Button(label=label, on_click=does, **look)
+def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
+    style = {"variant": "contained", "size": "small", "margin": (3, 0), "sx": SENTENCE, **more}
+    return pmui.Button(label=label, on_click=lambda event: act(), **style)

@@ -1,0 +1,168 @@
+"""What the browser says: that a picture is painted, a key pressed, a widget's value come back."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import panel as pn
+from bokeh.core.properties import Int, String
+from bokeh.events import DocumentReady
+from bokeh.model import DataModel
+from bokeh.models import CustomJS
+
+from app.messages import Ready
+from app.state import PageState
+from app.views.view import View
+
+log = logging.getLogger(__name__)
+LOST = 5.0
+"""Seconds after which a picture counts as lost, as when the network broke."""
+PAINTED = "requestAnimationFrame(() => requestAnimationFrame(() => { pulse.painted = pulse.sent }))"
+LASTS = 1.0
+"""Seconds after which a value that was shown no longer comes back."""
+HELP = {
+    "Space": "run, pause, or run anew",
+    "s": "one iteration; of a run that has ended, show the next",
+    "r": "start again, and wait after the first iteration",
+    "t": "play through time, or stop",
+    "← →": "the instant before, the next instant",
+    "Shift ← →": "the iteration before, the next iteration",
+    "p": "presenter view, for a projector, and back",
+    "?": "this list, and what the words of the page mean",
+}
+TAKEN = "input, textarea, select, [role=slider], [role=tab], [role=dialog]"
+"""Elements that take keys for themselves."""
+LISTEN = """
+document.addEventListener("keydown", (event) => {
+  const target = event.composedPath()[0]
+  const takes = target.closest?.(taken) || (event.key == " " && target.closest?.("button"))
+  const name = (event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key
+  if (takes || event.ctrlKey || event.metaKey || event.altKey || !names.includes(name)) { return }
+  event.preventDefault()
+  keys.pressed = name
+  keys.count += 1
+})
+"""
+
+
+class Pulse(DataModel):
+    """Number of the newest picture, and of the last one that is on the screen."""
+
+    sent: int = Int(default=0)  # type: ignore[assignment]
+    painted: int = Int(default=0)  # type: ignore[assignment]
+
+
+class Display:
+    """Paints the views in sight: the next picture follows once the browser has painted the last.
+
+    `also` is called with each picture, inside its hold: for what is not a view, as the status line.
+    """
+
+    def __init__(self, state: PageState, also: Callable[[], None]) -> None:
+        self._state, self._also = state, also
+        self._views: Sequence[View] = ()
+        self._is_due = False
+        self._sent_at = 0.0
+        self.pulse = Pulse(name="pulse")
+        self.pulse.js_on_change("sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED))
+        self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
+        state.param.watch(lambda *events: self._update(), ["frame", "selection", "ghost"])
+
+    @property
+    def views(self) -> Sequence[View]:
+        """The views in sight."""
+        return self._views
+
+    @views.setter
+    def views(self, views: Sequence[View]) -> None:
+        self._views = views
+        self._state.needs = frozenset(need for view in views for need in view.needs)
+        self._update()
+
+    def catch_up(self) -> None:
+        """Ask again whether the last picture is on the screen, once its answer counts as lost."""
+        if self.pulse.painted == self.pulse.sent or self._is_waiting():
+            return
+        if self._is_due:
+            self._paint()
+        else:
+            self._count()
+
+    def _is_waiting(self) -> bool:
+        is_sent = self.pulse.painted < self.pulse.sent
+        return is_sent and time.monotonic() < self._sent_at + LOST
+
+    def _update(self) -> None:
+        """Paint what there is, now or once the last picture is on the screen."""
+        self._is_due = True
+        if not self._is_waiting():
+            self._paint()
+
+    def _paint(self) -> None:
+        state, frame = self._state, self._state.frame
+        self._is_due = False
+        if frame is None:
+            return
+        with pn.io.hold():
+            for view in self._views:
+                try:
+                    view.update(frame, state.selection, state.ghost)
+                except Exception:
+                    # The other views, and the page, outlive it.
+                    log.exception("The view %s failed.", view.name)
+            self._also()
+            self._count()
+
+    def _count(self) -> None:
+        self._sent_at = time.monotonic()
+        self.pulse.sent += 1
+
+    def _on_painted(self) -> None:
+        if self._is_due:
+            self._paint()
+        self._state.send(Ready())
+
+
+class Keys(DataModel):
+    """The last key that was pressed, and a count of them."""
+
+    pressed: str = String(default="")  # type: ignore[assignment]
+    count: int = Int(default=0)  # type: ignore[assignment]
+
+
+def listen(document: Any, actions: Mapping[str, Callable[[], Any]]) -> None:
+    """Have keys do something, by their names in the browser, wherever nothing else takes them."""
+    keys = Keys(name="keys")
+    keys.on_change("count", lambda name, old, new: actions[keys.pressed]())
+    document.add_root(keys)
+    code = CustomJS(args={"keys": keys, "names": list(actions), "taken": TAKEN}, code=LISTEN)
+    document.js_on_event(DocumentReady, code)
+
+
+class Echoes:
+    """The values that a widget was given lately.
+
+    Panel's React wrapper sends a value back after it has shown it. Where the next one came
+    meanwhile, that looks like a choice of the last but one (panel/models/react_component.ts,
+    `useState`).
+    """
+
+    def __init__(self) -> None:
+        self._given: deque[tuple[float, Any]] = deque(maxlen=64)
+
+    def give(self, value: Any, before: Any) -> Any:
+        """Note a value and the one that it takes the place of, and return it for the widget."""
+        now = time.monotonic()
+        if value != before:
+            # What is empty was never shown.
+            self._given.extend((now, each) for each in (before, value) if each != "")
+        return value
+
+    def has(self, value: Any) -> bool:
+        """Whether a value that the widget reports was given to it just now."""
+        since = time.monotonic() - LASTS
+        return any(when > since and given == value for when, given in self._given)
