@@ -34,7 +34,10 @@ FIELD = {
     "& .MuiInputBase-input": {"fontWeight": 600, "paddingBottom": "3px"},
     "& .MuiInput-root::before": {"display": "none"},
 }
-ON_UNDERLINE = {"padding": "8px 0", "& .MuiFormLabel-root": {"display": "none"}}
+ON_UNDERLINE = {
+    "& .MuiSlider-root": {"padding": "8px 0 !important"},
+    "& .MuiFormLabel-root": {"display": "none"},
+}
 """A slider stands in place of the line under its field, whose label is its name too."""
 GROUP = {
     "& .MuiAccordionSummary-root": {"minHeight": "36px", "padding": "0 4px"},

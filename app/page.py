@@ -26,6 +26,7 @@ from solver.settings import Settings
 
 COMPACT = {"& .MuiToolbar-root": {"minHeight": "48px !important"}}
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
+WHITE = {"&.MuiIconButton-root, & .MuiIconButton-root": {"color": "#fff"}}
 IN_HEADER = {
     "& button": {
         "color": "#fff",
@@ -118,7 +119,7 @@ class Page:
         )
         buttons = []
         for title, (icon, action) in actions.items():
-            button = pmui.IconButton(icon=icon, description=title, color="light", margin=0)
+            button = pmui.IconButton(icon=icon, description=title, margin=0, sx=WHITE)
             button.on_click(lambda event, action=action: action())
             buttons.append(button)
         space = pn.layout.HSpacer()
@@ -183,6 +184,9 @@ def open_page() -> pmui.Page:
     state = PageState(place.settings, refusal=refusal)
     show(state, replace(place, iteration=0))
     page = Page(state, place.iteration)
+    if "Mobi" in pn.state.headers.get("User-Agent", ""):
+        # There the controls would lie over all else.
+        page.template.sidebar_open = False
     if place.theme:
         page.template.dark_theme = place.theme == "dark"
     pn.state.onload(page.loaded)

@@ -22,7 +22,12 @@ FOLLOWS = 400
 other more quickly the browser sends the older one back (see `Echoes`)."""
 HELD = 1.0
 """Seconds after a move of it for which it stays where the hand has left it."""
-ROUND = {"minWidth": "30px", "padding": "4px", "& .MuiButton-startIcon": {"margin": 0}}
+ROUND = {
+    "minWidth": "30px",
+    "padding": "4px",
+    "& .MuiButton-startIcon": {"margin": 0},
+    "& .MuiButton-startIcon > *": {"fontSize": "24px !important"},
+}
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
@@ -68,7 +73,7 @@ class Transport:
         )
         self._way.param.watch(lambda event: self._choose_way(event.new), "value")
         pace = pmui.Select.from_param(
-            self._state.param.pace, options=list(PACES), size="small", width=118, margin=(6, 4)
+            self._state.param.pace, options=list(PACES), size="small", width=150, margin=(6, 4)
         )
         self._iteration = pmui.IntSlider(
             label="Iteration",

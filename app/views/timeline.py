@@ -36,7 +36,7 @@ class Timeline(View):
         """A new figure."""
         made = figure(
             sizing_mode="stretch_both", min_height=40, tools="", toolbar_location=None,
-            x_range=Range1d(-0.01, 1.01, bounds=(-0.01, 1.01)), y_range=Range1d(LOW, TITLE + 0.35),
+            x_range=Range1d(-0.01, 1.01, bounds=(-0.01, 1.01)), y_range=Range1d(LOW, TITLE + 0.6),
             min_border=0,
         )  # fmt: skip
         made.outline_line_color = None
