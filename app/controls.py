@@ -12,9 +12,8 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.curves import CurveDialog
 from app.echoes import Echoes
-from app.files import FilesPanel
+from app.files import CurveDialog, FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
 from solver.definitions import CurveParameter, Parameter, about
