@@ -27,7 +27,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-SHARED = "lesson", "tab", "pace", "plots", "view", "room"
+SHARED = "lesson", "tab", "question", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
@@ -51,7 +51,7 @@ class Place:
     ----------
     settings
         Of the run.
-    lesson, tab, pace, plots, view, room
+    lesson, tab, question, pace, plots, view, room
         As in `PageState`; the room is "class" in an address.
     instant
         As a share of the interval; None leaves it.
@@ -64,6 +64,7 @@ class Place:
     settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))
     lesson: str = ""
     tab: str = TABS[0]
+    question: str = ""
     instant: float | None = None
     iteration: int = 0
     pace: str = next(iter(PACES))
@@ -86,7 +87,7 @@ _PLACE: dict[str, Any] = {
     "view": _choice(VIEWS),
     "theme": _choice(["light", "dark"]),
 }
-"""What an address may say beside settings, scene, lesson, class and plots."""
+"""What an address may say beside settings, scene, lesson, class, plots and question."""
 
 
 class Browser(DataModel):
@@ -219,7 +220,7 @@ def query_of(place: Place) -> str:
     }
     pairs |= {"file": ",".join(long)} if long else {}
     first = Place(place.settings, instant=lesson.instant if lesson else Selection().phase)
-    for name in ("tab", "instant", "iteration", "pace", "plots", "view", "theme"):
+    for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view", "theme"):
         value = getattr(place, name)
         if value != getattr(first, name) and value is not None:
             pairs[name] = str(value)
@@ -247,7 +248,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     given: dict[str, Any] = {}
     if lesson is not None:
         given = {"lesson": lesson.name, "instant": lesson.instant}
-    given["room"] = pairs.pop("class", "")
+    given |= {"room": pairs.pop("class", ""), "question": pairs.pop("question", "")}
     given["plots"] = _plots(pairs.pop("plots", ""), refused)
     for name in [name for name in _PLACE if name in pairs]:
         text = pairs.pop(name)
