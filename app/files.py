@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import panel as pn
 import panel_material_ui as pmui
 from bokeh.models import ColumnDataSource, PointDrawTool
@@ -14,7 +15,7 @@ from bokeh.plotting import figure
 
 from app.refusals import message_of
 from app.state import PageState, default_settings
-from app.units import Unit, units_of_points
+from app.units import units_of_points
 from app.views.colors import LATIN
 from solver.checked import dump
 from solver.curves import curve_of
@@ -57,13 +58,6 @@ def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | Bro
     Returns
     -------
     What it was read as, and what was understood.
-
-    Parameters
-    ----------
-    source, data
-        Name of the file and what is in it.
-    settings
-        Those that hold.
 
     Raises
     ------
@@ -135,12 +129,8 @@ class FilesPanel:
 
     Parameters
     ----------
-    state
-        Takes over what is opened.
     copy
         Has the browser copy the link to what is shown; returns what it had to leave out.
-    width
-        In pixels.
     """
 
     def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
@@ -206,13 +196,6 @@ class FilesPanel:
 class CurveDialog:
     """A dialog that has the points of one path; what is done there holds at once.
 
-    Parameters
-    ----------
-    name
-        Of the setting, one of the present scene.
-    state
-        Is changed and shown.
-
     Attributes
     ----------
     source, text
@@ -224,7 +207,6 @@ class CurveDialog:
         definition = state.settings.definitions()[name]
         assert isinstance(definition, CurveParameter)
         self._columns = definition.abscissa, definition.ordinate
-        self._units = Unit(""), Unit("")
         self._is_updating = False
         self.source = ColumnDataSource({"x": [], "y": []})
         self.source.on_change("data", lambda attribute, old, new: self._on_drag())
@@ -273,7 +255,7 @@ class CurveDialog:
         self._figure.toolbar.active_tap = self._tool if is_short else None
         self._fit(x, y)
         self.text.param.update(
-            value=self._table(x, y) if is_short else "",
+            value=self._table(pd.DataFrame({"x": x, "y": y})) if is_short else "",
             placeholder="" if is_short else f"{len(x)} points, of a file",
             error_state=False,
             helper_text="",
@@ -281,14 +263,7 @@ class CurveDialog:
         self._is_updating = False
 
     def _plot(self) -> figure:
-        made = figure(
-            height=220,
-            sizing_mode="stretch_width",
-            tools="",
-            toolbar_location=None,
-            x_range=(0.0, 1.0),
-            y_range=(0.0, 1.0),
-        )
+        made = figure(height=220, tools="", toolbar_location=None, x_range=(0, 1), y_range=(0, 1))
         made.line("x", "y", source=self.source, color=LATIN, width=2)
         self._points = made.scatter("x", "y", source=self.source, color=LATIN, size=11)
         self._tool = PointDrawTool(renderers=[self._points])
@@ -304,20 +279,17 @@ class CurveDialog:
             room = (high - low or 1.0) * (0.05 if axis is self._figure.x_range else 0.2)
             axis.update(start=low - room, end=high + room)
 
-    def _table(self, x: Any, y: Any) -> str:
+    def _table(self, points: pd.DataFrame) -> str:
         columns = zip(self._columns, self._units, strict=True)
         heads = [f"{title} [{unit.name}]" if unit.name else title for title, unit in columns]
-        rows = [f"{a:.6g},{b:.6g}" for a, b in zip(x, y, strict=True)]
-        return "\n".join([",".join(heads), *rows])
+        return points.to_csv(header=heads, index=False, float_format="%.6g")
 
     def _on_drag(self) -> None:
-        if self._is_updating:
-            return
-        x, y = (np.asarray(self.source.data[name], dtype=float) for name in ("x", "y"))
-        order = np.argsort(x, kind="stable")
-        x, y = np.maximum(x[order], 0.0), y[order]
-        steps = np.concatenate([[True], np.diff(x) > 0.0])
-        self._take(self._table(x[steps], y[steps]), "the plot")
+        if not self._is_updating:
+            points = pd.DataFrame(dict(self.source.data), dtype=float)
+            points["x"] = points["x"].clip(lower=0.0)
+            points = points.sort_values("x", kind="stable").drop_duplicates("x")
+            self._take(self._table(points), "the plot")
 
     def _take(self, table: str | bytes, source: str) -> None:
         """Have a table be the path; one that is refused stays to be mended."""

@@ -27,7 +27,6 @@ LOOK = 500
 LIMIT = 60.0
 """Seconds that a run of a sweep may take: nobody waits longer for a point of a chart."""
 PROCESSES = "processes"
-STOPPED = "Its process stopped unexpectedly; start it again."
 SETTINGS = "settings.toml"
 OUT = "out"
 _lock = threading.Lock()
@@ -115,7 +114,7 @@ class Job:
         if not self.is_over:
             return ""
         if self._future.exception() is not None:
-            return STOPPED
+            return "Its process stopped unexpectedly; start it again."
         has_failed = self._future.result() not in (0, 1) or not (self.files or self.lines)
         return "\n".join(self.lines[-3:]) if has_failed else ""
 

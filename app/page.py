@@ -9,12 +9,11 @@ from typing import Any
 import panel as pn
 import panel_material_ui as pmui
 
-from app import glossary
 from app.class_dialog import ClassDialog
 from app.classroom import Member
 from app.controls import Controls
 from app.export import TakeAway
-from app.keys import listen
+from app.keys import dialog, listen
 from app.lessons.panel import LessonPanel
 from app.link import Link, read, show, wait_at
 from app.live import STYLE, Live, column
@@ -81,7 +80,7 @@ class Page:
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         classroom.view.param.watch(lambda event: self._place(), "visible")
-        take_away, self._words = TakeAway(state, self.live.display), glossary.dialog()
+        take_away, self._words = TakeAway(state, self.live.display), dialog()
         actions = {
             "Lessons": ("school", self.lesson.offer),
             "A class": ("groups", classroom.open),

@@ -222,16 +222,12 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
 
 
 class Span:
-    """The fields of one setting and its values.
+    """The fields of one setting, if there is one, and its values.
 
     Parameters
     ----------
-    label
-        Of the first field.
     changed
         Called when somebody has changed a field.
-    is_optional
-        Whether there may be no setting.
     """
 
     def __init__(self, label: str, changed: Callable[[], object], *, is_optional: bool) -> None:
@@ -262,15 +258,15 @@ class Span:
         definition = settings.definitions().get(name)
         is_number = isinstance(definition, param.Number)
         if is_number:
-            self._show_numbers(unit_of(settings.definitions()[name]), values)
+            self._show_numbers(unit_of(definition), values)
         elif definition is not None:
             self.chosen.param.update(options=names_of(definition), value=values.split(","))
         is_listed = self.spacing.value == LISTED
         self.spacing.visible = is_number
-        self.chosen.visible = definition is not None and not is_number
         self.listed.visible = is_number and is_listed
         for field in (self.low, self.high, self.count):
             field.visible = is_number and not is_listed
+        self.chosen.visible = definition is not None and not is_number
         self._is_updating = False
 
     def _show_numbers(self, unit: Unit, values: str) -> None:
@@ -300,12 +296,10 @@ class Span:
         definition = self._settings.definitions()[name]
         if not isinstance(definition, param.Number):
             return f"{name}={','.join(self.chosen.value)}"
-        unit, si = unit_of(definition), about(definition).unit
-        typed_in = [self.low.value, self.high.value]
-        if spacing == LISTED:
-            typed_in = self.listed.value.split(",")
-        values = [f"{typed(value, unit, si):.12g}" for value in typed_in]
-        if spacing == LISTED:
+        unit, si, is_listed = unit_of(definition), about(definition).unit, spacing == LISTED
+        texts = self.listed.value.split(",") if is_listed else [self.low.value, self.high.value]
+        values = [f"{typed(text, unit, si):.12g}" for text in texts]
+        if is_listed:
             return f"{name}={','.join(values)}"
         return f"{name}={':'.join([*values, str(self.count.value)])}{LOG * (spacing == DECADES)}"
 
@@ -320,15 +314,11 @@ class Span:
         if self._is_updating:
             return
         settings, name, spacing = self._settings, self.name.value, self.spacing.value
-        text = f"{name}={getattr(settings, name):g}"
-        if before == LISTED:
-            text = proposed(settings, name)
+        text = proposed(settings, name)
         with contextlib.suppress(ValueError, SettingError):
+            text = text if before == LISTED else self.text(before)
             if spacing == LISTED:
-                values = axis_of(settings, self.text(before)).values
-                text = f"{name}={','.join(f'{value:g}' for value in values)}"
-            elif before != LISTED:
-                text = self.text(before)
+                text = f"{name}={','.join(f'{v:g}' for v in axis_of(settings, text).values)}"
         self.show(settings, text.removesuffix(LOG) + LOG * (spacing == DECADES))
 
 

@@ -48,11 +48,6 @@ DONE: OrderedDict[tuple[tuple[str, ...], str], dict[str, bytes]] = OrderedDict()
 class Reports:
     """The tab.
 
-    Parameters
-    ----------
-    state
-        Of the page, whose settings a study has.
-
     Attributes
     ----------
     job, title

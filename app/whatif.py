@@ -21,10 +21,10 @@ from app.units import number, sizes_of, unit_for
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
-from solver.study.chart import Chart, Map, PanelAxis
+from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
 from solver.study.quantities.quantities import QUANTITIES, reading
-from solver.study.sweep import Plan, Varied
+from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of, is_map, ordered
 from solver.study.sweep.report import counts
 from solver.study.sweep.table import csv_of
@@ -43,13 +43,6 @@ class WhatIf:
         Of the page, with the question; all that does not vary is as there.
     open_run
         Opens the run of some settings on the live tab.
-
-    Attributes
-    ----------
-    sweep
-        The runs that answer the question.
-    spans, mesh
-        Fields of the settings that vary, and the button that asks of meshes.
     """
 
     def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
@@ -275,30 +268,23 @@ def _measured(value: float, unit: str) -> str:
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
     """Whether a plan fixes what settings say."""
-    varied = {axis.name for axis in plan.axes}
-    fixed = [
-        {name: value for name, value in each.values().items() if name not in varied}
-        for each in (plan.settings, settings)
-    ]
-    return settings.scene == plan.settings.scene and fixed[0] == fixed[1]
+    varied = {axis.name: None for axis in plan.axes}
+    is_same_scene = settings.scene == plan.settings.scene
+    return is_same_scene and settings.values() | varied == plan.settings.values() | varied
 
 
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
     """Where settings stand on a chart; NaN off its axes, and above a panel's."""
-    if settings.scene != plan.settings.scene:
-        return np.nan, np.nan
-    across, *up = ordered(plan)
-    x = _along(across, settings, plan.unit(across), chart.x)
-    return x, _along(up[0], settings, plan.unit(up[0]), chart.y) if is_map(plan) else np.nan
-
-
-def _along(axis: Varied, settings: Settings, unit: str, shown: PanelAxis) -> float:
-    """Where a value stands on an axis, in the unit that is shown; NaN off it."""
-    value = getattr(settings, axis.name)
-    if axis.is_numeric:
-        is_on = min(axis.values) <= value <= max(axis.values)
-        return float(value) / sizes_of(unit).get(shown.unit, 1.0) if is_on else np.nan
-    return float(axis.values.index(value)) if value in axis.values else np.nan
+    place = [np.nan, np.nan]
+    axes = ordered(plan) if settings.scene == plan.settings.scene else []
+    shown = [chart.x, chart.y] if is_map(plan) else [chart.x]
+    for i, (axis, across) in enumerate(zip(axes, shown, strict=False)):
+        value = getattr(settings, axis.name)
+        if not axis.is_numeric:
+            place[i] = axis.values.index(value) if value in axis.values else np.nan
+        elif min(axis.values) <= value <= max(axis.values):
+            place[i] = value / sizes_of(plan.unit(axis)).get(across.unit, 1.0)
+    return place[0], place[1]
 
 
 def _button(label: str, act: Callable[[], object], **more: Any) -> pmui.Button:
