@@ -122,6 +122,7 @@ class Reports:
         self.end()
         self._running, self.title = self.command, self.kind.value
         self.job = Job(*self._running)
+        self._show()
         self.look()
 
     def cancel(self) -> None:

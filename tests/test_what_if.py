@@ -228,6 +228,7 @@ def test_a_run_stands_still_while_a_study_is_timed(
     made.kind.value = reports.STUDY
     made.start()
     assert not made.state.running
+    assert made._cancel.visible
     monkeypatch.setattr(Done, "is_over", True)
     made.look()
     assert made.state.running
