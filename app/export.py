@@ -278,7 +278,7 @@ class TakeAway:
         self.view.open = True
 
     def _offers(self, frame: Frame) -> list[Any]:
-        state, settings, views = self._state, frame.run.settings, self.display.views
+        state, settings, views = self._state, frame.run.settings, list(self.display.views)
         page = partial(offline_page, frame, views, state.selection, state.ghost)
         offers = {
             "The run as one page (.html)": (".html", page),

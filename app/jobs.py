@@ -37,7 +37,8 @@ def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
     """Have this page look at its work from time to time, and end it when the page is closed."""
     document = pn.state.curdoc
     if document is not None and document.session_context is not None:
-        document.add_periodic_callback(look, LOOK)
+        # Not before the browser is there: what changes while it loads may not reach it.
+        pn.state.onload(lambda: document.add_periodic_callback(look, LOOK))
         document.on_session_destroyed(lambda context: end())
 
 
