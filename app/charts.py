@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from html import escape
-from typing import Any, TypeGuard
+from typing import Any
 
 import holoviews as hv
 import numpy as np
@@ -16,7 +16,7 @@ from bokeh.plotting import figure
 from bokeh.plotting.contour import contour_data
 from bokeh.resources import Resources
 
-from app.units import Unit, unit_for
+from app.units import unit_for
 from app.views.colors import FORCE, REFERENCE
 from solver.arrays import Array, Flags
 from solver.study.chart import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, Runs
@@ -33,14 +33,14 @@ LABEL = 34
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
 BY_HUE = {"color": "hue", "cmap": list(COLORS), "clim": (-0.5, len(COLORS) - 0.5)}
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
-DASHES = {"points": "solid", "faint": "solid"}
-MARKS = {"dashed": "dashed", "dotted": "dotted"}
+THIN = "points", "faint"
 STYLE = """<style>
 .panels { display: grid; gap: 0 1rem; grid-template-columns:
   repeat(auto-fit, minmax(min(26rem, 100%), 1fr)); }
 .key { margin-right: 1rem; white-space: nowrap; }
 </style>"""
 Point = tuple[float, float]
+Path = tuple[Array, Array]
 
 
 def draw(chart: Chart, height: int = 340) -> figure:
@@ -83,48 +83,44 @@ def keys(charts: Sequence[Chart]) -> str:
 
 
 def _key(curve: PanelCurve) -> str:
-    style = f"border-top: 3px {MARKS.get(curve.line, 'solid')} {COLORS[curve.hue]}"
+    dash = curve.line if curve.line in ("dashed", "dotted") else "solid"
+    style = f"border-top: 3px {dash} {COLORS[curve.hue]}"
     mark = f'<i style="display: inline-block; width: 1.2rem; vertical-align: middle; {style}"></i>'
     return f'<span class="key">{mark} {escape(curve.label)}</span>'
 
 
 def in_units(chart: Chart) -> Chart:
     """A chart in the units that one reads; the engine gives it in SI."""
+    runs = chart.runs
     if isinstance(chart, Map):
-        x, y = _unit(chart.x, chart.x_values), _unit(chart.y, chart.y_values)
-        z, runs = _unit(chart.scale, chart.z), chart.runs
+        x_axis, x = _in_unit(chart.x, [chart.x_values])
+        y_axis, y = _in_unit(chart.y, [chart.y_values])
+        scale, z = _in_unit(chart.scale, [chart.z.ravel()])
         return replace(
             chart,
-            x=_axis(chart.x, x),
-            y=_axis(chart.y, y),
-            scale=_axis(chart.scale, z),
-            x_values=chart.x_values / x.factor,
-            y_values=chart.y_values / y.factor,
-            z=chart.z / z.factor,
-            level=None if chart.level is None else chart.level / z.factor,
-            runs=_runs(runs, x, y, z),
+            x=x_axis,
+            y=y_axis,
+            scale=scale,
+            x_values=chart.x_values / x,
+            y_values=chart.y_values / y,
+            z=chart.z / z,
+            level=None if chart.level is None else chart.level / z,
+            runs=replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / z),
         )
-    all_x, all_y = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
-    if chart.runs is not None:
-        all_x, all_y = np.append(all_x, chart.runs.x), np.append(all_y, chart.runs.y)
-    x, y = _unit(chart.x, all_x), _unit(chart.y, all_y)
-    curves = tuple(replace(c, x=c.x / x.factor, y=c.y / y.factor) for c in chart.curves)
-    runs = None if chart.runs is None else _runs(chart.runs, x, y, y)
-    return replace(chart, x=_axis(chart.x, x), y=_axis(chart.y, y), curves=curves, runs=runs)
+    drawn = [*chart.curves, *([] if runs is None else [runs])]
+    x_axis, x = _in_unit(chart.x, [each.x for each in drawn])
+    y_axis, y = _in_unit(chart.y, [each.y for each in drawn])
+    curves = tuple(replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves)
+    runs = runs and replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / y)
+    return replace(chart, x=x_axis, y=y_axis, curves=curves, runs=runs)
 
 
-def _unit(axis: PanelAxis, values: Array) -> Unit:
-    known = np.abs(values[np.isfinite(values)])
-    return unit_for(float(known.max(initial=0.0)), axis.unit)
-
-
-def _axis(axis: PanelAxis, unit: Unit) -> PanelAxis:
+def _in_unit(axis: PanelAxis, values: Sequence[Array]) -> tuple[PanelAxis, float]:
+    """An axis in the unit in which such values are read, and the size of that unit."""
+    all_values = np.abs(np.concatenate(values)) if values else np.array([])
+    unit = unit_for(float(all_values[np.isfinite(all_values)].max(initial=0.0)), axis.unit)
     limits = axis.limits and (axis.limits[0] / unit.factor, axis.limits[1] / unit.factor)
-    return replace(axis, unit=unit.name, limits=limits)
-
-
-def _runs(runs: Runs, x: Unit, y: Unit, z: Unit) -> Runs:
-    return replace(runs, x=runs.x / x.factor, y=runs.y / y.factor, values=runs.values / z.factor)
+    return replace(axis, unit=unit.name, limits=limits), unit.factor
 
 
 def form(chart: Chart) -> tuple[Any, ...]:
@@ -136,21 +132,30 @@ def form(chart: Chart) -> tuple[Any, ...]:
 
 def overlay(chart: Chart, here: Point = (np.nan, np.nan), height: int = 360) -> hv.Overlay:
     """A chart, and a place on its axes that is marked, as HoloViews' elements."""
-    made = _of_map(chart) if isinstance(chart, Map) else _of_panel(chart, here)
-    known = np.isfinite(here).all()
-    ring = hv.Points([here] if known else [], ["x", "y"])
+    title, is_each = chart.title, False
+    if isinstance(chart, Map):
+        made, is_each = _of_map(chart), chart.level is not None
+        xs, ys = chart.x_values, chart.y_values
+        title += f" ({chart.scale.unit})" if chart.scale.unit else ""
+        x_limits, y_limits = (
+            tuple(edges(v, a)[[0, -1]]) for v, a in ((xs, chart.x), (ys, chart.y))
+        )
+    else:
+        made = _of_panel(chart, here)
+        xs, ys = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
+        x_limits, y_limits = (axis.limits or (None, None) for axis in (chart.x, chart.y))
+    ring = hv.Points([here] if np.isfinite(here).all() else [], ["x", "y"])
     look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5}
-    x, y = limits(chart)
     return hv.Overlay([*made, ring.opts(**look)]).opts(
-        title=_title(chart),
+        title=title,
         logx=chart.x.logarithmic,
         logy=chart.y.logarithmic,
-        xlim=x,
-        ylim=y,
+        xlim=x_limits,
+        ylim=y_limits,
         xlabel=textwrap.fill(chart.x.label, 2 * LABEL),
         ylabel=textwrap.fill(chart.y.label, LABEL),
-        xticks=_ticks(chart),
-        yticks=_steps(chart.y_values) if _has_values(chart) else None,
+        xticks=_ticks(chart.x, xs, is_each),
+        yticks=_ticks(chart.y, ys, is_each),
         padding=(0.03, 0.1),
         responsive=True,
         height=height,
@@ -165,46 +170,23 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan), height: int = 360) -> 
     )
 
 
-def limits(chart: Chart) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
-    """Ends of both axes; None for whatever fits."""
-    if isinstance(chart, Panel):
-        return chart.x.limits or (None, None), chart.y.limits or (None, None)
-    x = edges(chart.x_values, is_logarithmic=chart.x.logarithmic)
-    y = edges(chart.y_values, is_logarithmic=chart.y.logarithmic)
-    return (float(x[0]), float(x[-1])), (float(y[0]), float(y[-1]))
-
-
-def edges(values: Array, *, is_logarithmic: bool) -> Array:
+def edges(values: Array, axis: PanelAxis) -> Array:
     """Where cells about n ascending values end, shape (n + 1,)."""
-    v = np.log(values) if is_logarithmic else values
+    v = np.log(values) if axis.logarithmic else values
     steps = np.diff(v) if len(v) > 1 else np.ones(1)
     inner = (v[:-1] + v[1:]) / 2.0
     ends: Array = np.concatenate([[v[0] - steps[0] / 2.0], inner, [v[-1] + steps[-1] / 2.0]])
-    return np.exp(ends) if is_logarithmic else ends
+    return np.exp(ends) if axis.logarithmic else ends
 
 
-def _title(chart: Chart) -> str:
-    unit = chart.scale.unit if isinstance(chart, Map) else ""
-    return f"{chart.title} ({unit})" if unit else chart.title
-
-
-def _has_values(chart: Chart) -> TypeGuard[Map]:
-    """Whether a map has each of its values written on it."""
-    return isinstance(chart, Map) and chart.level is not None
-
-
-def _steps(values: Array) -> list[tuple[float, str]]:
-    return [(float(value), f"{value:g}") for value in values]
-
-
-def _ticks(chart: Chart) -> list[Any] | None:
-    """Names of an axis, its few whole numbers, or the values of a map that has each written."""
-    if chart.x.names:
-        return list(enumerate(chart.x.names))
-    if isinstance(chart, Map):
-        return _steps(chart.x_values) if _has_values(chart) else None
-    whole = {int(x) for curve in chart.curves for x in curve.x} if chart.x.whole else set()
-    return sorted(whole) if 0 < len(whole) <= 7 else None
+def _ticks(axis: PanelAxis, values: Iterable[float], is_each: bool) -> list[Any] | None:
+    """Names of an axis, its few whole numbers, or each of its values; None for round numbers."""
+    if axis.names:
+        return list(enumerate(axis.names))
+    if is_each:
+        return [(value, f"{value:g}") for value in values]
+    whole = sorted({int(value) for value in values}) if axis.whole else []
+    return whole if 0 < len(whole) <= 7 else None
 
 
 def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
@@ -226,10 +208,10 @@ def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
     y = np.where(curve.y > 0.0, curve.y, np.nan) if panel.y.logarithmic else curve.y
-    is_thin = curve.line in DASHES
+    is_thin = curve.line in THIN
     looks: dict[str, Any] = {
         "color": COLORS[curve.hue],
-        "line_dash": DASHES.get(curve.line, curve.line),
+        "line_dash": "solid" if is_thin else curve.line,
         "line_width": 1.0 if is_thin else 2.2,
         "alpha": 0.35 if curve.line == "faint" else 1.0,
     }
@@ -270,9 +252,7 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
         yield _cells(chart, _told(runs, ~holds)).opts(**hollow, **HOVER)
     paths, labels = contours(chart)
-    yield hv.Contours([{"x": x, "y": y} for x, y in paths], ["x", "y"]).opts(
-        color="#000", alpha=0.75, line_width=1.2
-    )
+    yield hv.Contours(paths, ["x", "y"]).opts(color="#000", alpha=0.75, line_width=1.2)
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
@@ -294,17 +274,13 @@ def span(chart: Map) -> tuple[float, float]:
     return (low, high) if low < high else (low - by, high + by)
 
 
-def _cells(chart: Map, told: dict[str, Any]) -> hv.Rectangles:
-    sides: dict[str, Any] = {}
-    for axis, scale, values, first, last in (
-        ("x", chart.x, chart.x_values, "left", "right"),
-        ("y", chart.y, chart.y_values, "bottom", "top"),
-    ):
-        ends = edges(values, is_logarithmic=scale.logarithmic)
-        number = np.searchsorted(values, told[axis])
-        sides |= {first: ends[:-1][number], last: ends[1:][number]}
-    rest = [name for name in told if name not in ("x", "y")]
-    return hv.Rectangles({**sides, **told}, ["left", "bottom", "right", "top"], [*rest, "x", "y"])
+def _cells(chart: Map, data: dict[str, Any]) -> hv.Rectangles:
+    """Cells about runs, whose places and more are columns of the data."""
+    columns = np.searchsorted(chart.x_values, data["x"])
+    rows = np.searchsorted(chart.y_values, data["y"])
+    x, y = edges(chart.x_values, chart.x), edges(chart.y_values, chart.y)
+    sides = {"left": x[columns], "bottom": y[rows], "right": x[columns + 1], "top": y[rows + 1]}
+    return hv.Rectangles({**sides, **data}, list(sides), list(data))
 
 
 def levels(low: float, high: float, *, is_logarithmic: bool) -> Array:
@@ -320,39 +296,32 @@ def levels(low: float, high: float, *, is_logarithmic: bool) -> Array:
     return np.asarray(several[(several > low) & (several < high)])
 
 
-def contours(chart: Map) -> tuple[list[tuple[Array, Array]], dict[str, Any]]:
-    """Lines of equal value, straight between runs on the page, and the values on them."""
+def contours(chart: Map) -> tuple[list[Path], list[tuple[float, float, str]]]:
+    """Lines of equal value, straight between runs on the page, and values with their places."""
     low, high = span(chart)
     at = levels(low, high, is_logarithmic=chart.scale.logarithmic)
     at = at if chart.level is None else np.array([chart.level])
-    paths: list[tuple[Array, Array]] = []
+    paths: list[Path] = []
     labels: list[tuple[float, float, str]] = []
     if min(chart.z.shape) > 1 and at.size:
-        axes = (chart.x, chart.y)
-        to = [np.log if axis.logarithmic else np.asarray for axis in axes]
-        back = [np.exp if axis.logarithmic else np.asarray for axis in axes]
-        of = np.log if chart.scale.logarithmic else np.asarray
-        x, y = to[0](chart.x_values), to[1](chart.y_values)
-        lines: Any = contour_data(x, y, of(chart.z), of(at), want_fill=False).line_data
-        for number, (level, across, up) in enumerate(zip(at, lines.xs, lines.ys, strict=True)):
-            parts = _parts(back[0](across), back[1](up))
-            paths += parts
-            longest = max(parts, key=lambda part: len(part[0]), default=None)
-            if longest is not None and len(longest[0]) >= 4:
+        axes = chart.x, chart.y, chart.scale
+        x, y, z = (np.log if axis.logarithmic else np.asarray for axis in axes)
+        lines: Any = contour_data(
+            x(chart.x_values), y(chart.y_values), z(chart.z), z(at), want_fill=False
+        ).line_data
+        for number, (level, *path) in enumerate(zip(at, lines.xs, lines.ys, strict=True)):
+            across, up = (
+                np.exp(v) if a.logarithmic else v for v, a in zip(path, axes, strict=False)
+            )
+            known = np.flatnonzero(np.isfinite(across))
+            if known.size:
+                paths.append((across, up))
+            if len(known) >= 4:
                 # Not all in the same place, where lines are close.
-                place = len(longest[0]) * (1 + number % 3) // 4
-                labels.append((longest[0][place], longest[1][place], f"{level:.4g}"))
+                place = known[len(known) * (1 + number % 3) // 4]
+                labels.append((across[place], up[place], f"{level:.4g}"))
     if chart.level is not None:
         rows, columns = np.nonzero(np.isfinite(chart.z))
         texts = [f"{value:.2g}" for value in chart.z[rows, columns]]
-        return paths, {"x": chart.x_values[columns], "y": chart.y_values[rows], "text": texts}
-    x, y, text = zip(*labels, strict=True) if labels else ((), (), ())
-    return paths, {"x": list(x), "y": list(y), "text": list(text)}
-
-
-def _parts(x: Array, y: Array) -> list[tuple[Array, Array]]:
-    """Parts of a line that is interrupted by NaN."""
-    known = np.isfinite(x)
-    ends = np.flatnonzero(~known)
-    parts = zip(*(np.split(v[known], ends - np.arange(len(ends))) for v in (x, y)), strict=True)
-    return [part for part in parts if len(part[0])]
+        labels = list(zip(chart.x_values[columns], chart.y_values[rows], texts, strict=True))
+    return paths, labels

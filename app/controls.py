@@ -13,8 +13,7 @@ import panel_material_ui as pmui
 import param
 
 from app.browser import Echoes
-from app.curves import CurveDialog
-from app.files import FilesPanel
+from app.files import CurveDialog, FilesPanel
 from app.state import PageState
 from app.units import typed, unit_of
 from solver.definitions import CurveParameter, Parameter, about

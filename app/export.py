@@ -2,40 +2,62 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-from collections.abc import Iterator
+import pickle
+from base64 import b64encode
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import partial
+from html import escape
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import panel as pn
 import panel_material_ui as pmui
-from bokeh.models import GlyphRenderer
+from bokeh.embed import file_html
+from bokeh.layouts import column, grid
+from bokeh.model import Model
+from bokeh.models import (
+    ColumnDataSource,
+    CustomJS,
+    Div,
+    GlyphRenderer,
+    PointDrawTool,
+    Range1d,
+    Renderer,
+    SaveTool,
+    Slider,
+    Span,
+)
+from bokeh.models.annotations import TextAnnotation
+from bokeh.resources import INLINE
+from jinja2 import Template
 
 from app.browser import Display
-from app.frame import Frame
+from app.charts import library
+from app.files import download
+from app.frame import Frame, Selection
 from app.messages import Compute
-from app.offline import offline_page
 from app.refusals import message_of
 from app.state import PageState
+from app.units import unit_for
 from app.views.view import View
 from app.worker.fclib import fclib_file
+from app.worker.geometry import thinned
 from app.worker.references import has_reference
 from solver.checked import dump
 from solver.refusal import RefusedError
 from solver.settings import Settings
 from solver.study.other_programs.fclib import can_write
 
-WIDTH = 340
-SVG = "The same, to save plots from as SVG (.html)"
+LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
 from solver.files import scene_settings
 from solver.latin import solve
-{imports}from solver.scenes import discretise
+from solver.scenes import discretise
 from solver.scenes.method import method_of
-
+{imports}
 settings = scene_settings({scene}).checked(
     {{
 {values}    }}
@@ -46,195 +68,257 @@ for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
-COMPARED = """\
+ALONE = "", "solution = solve(problem, method_of(settings))"
+COMPARED = (
+    """\
 from solver.reference.choice import reference_of
 from solver.reference.distance import distance_to
-"""
-ALONE = "solution = solve(problem, method_of(settings))"
-BESIDE = """\
+""",
+    """\
 distance = distance_to(reference_of(problem), problem)
-solution = solve(problem, method_of(settings), distance=distance)"""
+solution = solve(problem, method_of(settings), distance=distance)""",
+)
+MOST_INSTANTS = 60
+HEIGHTS = {"Scene": 260, "Load path": 70}
+HEIGHT = 300
+"""Pixels of a figure."""
+MOVING: dict[type[Model], list[str]] = {
+    ColumnDataSource: ["data"],
+    Range1d: ["start", "end"],
+    Span: ["location"],
+    TextAnnotation: ["text"],
+    Div: ["text"],
+    Renderer: ["visible"],
+}
+"""What an instant may change in a figure."""
+PAGE = """<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{{ title }}</title>
+{{ library }}
+<body>{% from macros import embed %}{{ embed(docs[0].roots[0]) }}{{ plot_script }}</body>
+</html>
+"""
+"""As `file_html` takes it, whose own has what Panel would have a page load."""
+SHOW = """
+const i = cb_obj.value
+models.forEach((model, n) => { model[names[n]] = values[n][i] })
+"""
+Values = dict[tuple[Model, str], Any]
 
 
 def program(settings: Settings) -> str:
     """A Python program that gives the numbers of a run again, with all its settings."""
-    is_compared = has_reference(settings)
+    imports, solved = COMPARED if has_reference(settings) else ALONE
     values = settings.values().items()
     return PROGRAM.format(
-        imports=COMPARED if is_compared else "",
+        imports=imports,
         scene=json.dumps(settings.scene),
         values="".join(f"        {json.dumps(name)}: {value!r},\n" for name, value in values),
-        solved=BESIDE if is_compared else ALONE,
+        solved=solved,
     )
 
 
 def history_table(frame: Frame) -> str:
     """Scalars of every iteration of a run (CSV, with comments that begin with #)."""
-    rows = zip(*(values.tolist() for values in frame.history.values()), strict=True)
-    return _csv(frame, ["one line an iteration; seconds of run time"], [[*frame.history], *rows])
+    head = ["one line an iteration; seconds of run time"]
+    return _csv(frame, head, pd.DataFrame(dict(frame.history)))
 
 
 def plot_table(view: View, frame: Frame) -> str:
     """What a plot shows (CSV, with comments that begin with #): a line for each point of a curve.
 
-    Columns are those of the plot's sources, in the units of its axes.
+    Columns are those of the plot's sources, in the units of its axes; paths are numbered.
     """
     axes = [*view.figure.xaxis[:1], *view.figure.yaxis[:1]]
     names = [f"{n}: {axis.axis_label}" for n, axis in zip("xy", axes, strict=False)]
-    tables = list(_sources(view))
-    columns = list(dict.fromkeys(name for _, data in tables for name in data))
-    rows = [
-        [label, *(data[name][place] if name in data else "" for name in columns)]
-        for label, data in tables
-        for place in range(len(next(iter(data.values()), [])))
-    ]
-    return _csv(frame, [view.name, *names], [["curve", *columns], *rows])
-
-
-def _sources(view: View) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Legend entry and columns of every source that is shown; paths are taken apart."""
-    labels: dict[str, list[str]] = {}
-    for item in (item for legend in view.figure.legend for item in legend.items):
-        for renderer in item.renderers:
-            text = getattr(item.label, "value", None)
-            labels.setdefault(renderer.data_source.id, []).append(str(text))
-    seen: set[str] = set()
+    items = [item for legend in view.figure.legend for item in legend.items]
+    tables: dict[str, pd.DataFrame] = {}
     for renderer in view.figure.renderers:
-        if isinstance(renderer, GlyphRenderer) and renderer.data_source.id not in seen:
-            source = renderer.data_source
-            seen.add(source.id)
-            data = {name: list(column) for name, column in source.data.items()}
-            for label, flat in _flat(data):
-                yield " / ".join([*labels.get(source.id, [source.name or ""]), *label]), flat
+        if not isinstance(renderer, GlyphRenderer) or renderer.data_source.id in tables:
+            continue
+        source = renderer.data_source
+        labels = [
+            str(getattr(item.label, "value", None))
+            for item in items
+            for other in item.renderers
+            if other.data_source is source
+        ]
+        table = pd.DataFrame({name: list(column) for name, column in source.data.items()})
+        paths = [name for name in table if any(np.ndim(cell) for cell in table[name])]
+        if paths:
+            table[paths] = table[paths].map(np.ravel)
+            table = table.explode(paths).rename_axis("path").reset_index()
+        table.insert(0, "curve", " / ".join(labels) or source.name or "")
+        tables[source.id] = table
+    return _csv(frame, [view.name, *names], pd.concat(tables.values()))
 
 
-def _flat(data: dict[str, list[Any]]) -> Iterator[tuple[list[str], dict[str, list[Any]]]]:
-    """Columns of numbers as they are; a table for each path or image."""
-    nested = {n for n, column in data.items() if any(np.ndim(cell) for cell in column)}
-    if not nested:
-        yield [], data
-        return
-    for place in range(len(next(iter(data.values())))):
-        flat = {name: np.ravel(np.asarray(data[name][place])).tolist() for name in nested}
-        size = max(map(len, flat.values()))
-        if all(len(column) == size for column in flat.values()):
-            rest = {n: [column[place]] * size for n, column in data.items() if n not in nested}
-            yield [str(place + 1)], {**flat, **rest}
-
-
-def _csv(frame: Frame, head: list[str], rows: list[list[Any]]) -> str:
-    written = io.StringIO()
-    settings = dump(frame.run.settings).splitlines()
+def _csv(frame: Frame, head: list[str], table: pd.DataFrame) -> str:
+    settings = frame.run.settings
     at = "answer" if frame.is_answer else f"iteration {frame.iteration}"
-    for line in [f"Slipfront, {frame.run.settings.scene}, {at}", *head, "settings:", *settings]:
-        written.write(f"# {line}\n")
-    csv.writer(written, lineterminator="\n").writerows(rows)
-    return written.getvalue()
+    first = [f"Slipfront, {settings.scene}, {at}", *head, "settings:", *dump(settings).splitlines()]
+    return "".join(f"# {line}\n" for line in first) + table.to_csv(index=False)
+
+
+def offline_page(
+    frame: Frame,
+    views: Sequence[View],
+    selection: Selection,
+    ghost: Frame | None,
+    backend: str = "canvas",
+) -> str:
+    """A run as one page that needs nothing beside it (HTML): its plots at all instants, its tables.
+
+    Views and ghost are those in sight, which are not touched. The save buttons of the plots write
+    PNG, or SVG with the backend "svg".
+    """
+    copies = _copies(views, backend)
+    instants, end = frame.run.instants, float(frame.run.instants[-1])
+    columns = thinned(len(instants), MOST_INSTANTS).tolist()
+    at = int(np.argmin(np.abs(np.array(columns) - frame.run.column(selection.phase))))
+    caption = Div(text="", sizing_mode="stretch_width")
+    models = {model for view in copies for model in view.figure.references()} | {caption}
+    values: list[Values] = []
+    # The one that is looked at comes last, so that the page begins with it.
+    for column_of_instant in [*columns, columns[at]]:
+        time, unit = float(instants[column_of_instant]), unit_for(end, "s")
+        caption.text = f"{escape(frame.run.sentence)} At {unit(time)} of {unit(end)}."
+        for view in copies:
+            view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
+        values.append(_values(models))
+    wide = [view.figure for view in copies if view.name in HEIGHTS]
+    rest = [view.figure for view in copies if view.name not in HEIGHTS]
+    page = column(
+        _slider(values[:-1], at),
+        caption,
+        *wide,
+        grid(rest, ncols=2, sizing_mode="stretch_width"),
+        Div(text=_below(frame, views), sizing_mode="stretch_width"),
+        sizing_mode="stretch_width",
+    )
+    return file_html(
+        page,
+        INLINE,
+        f"Slipfront: {frame.run.settings.scene}",
+        template=Template(PAGE),
+        template_variables={"library": library("bokeh-widgets")},
+        # What is dragged or tapped there does nothing.
+        suppress_callback_warning=True,
+    )
+
+
+def _copies(views: Sequence[View], backend: str) -> list[View]:
+    """Views of the same kinds, with figures of their own, in which nothing is dragged."""
+    copies = [type(view)(view.state) for view in views]
+    for view in copies:
+        made = view.figure
+        made.output_backend = backend
+        made.sizing_mode, made.height = "stretch_width", HEIGHTS.get(view.name, HEIGHT)
+        made.tools = [tool for tool in made.tools if not isinstance(tool, PointDrawTool)]
+        for tool in made.select({"type": SaveTool}):
+            tool.filename = view.name
+    return copies
+
+
+def _values(models: Iterable[Model]) -> Values:
+    """All that an instant changes in them."""
+    return {
+        (model, name): dict(model.data) if name == "data" else getattr(model, name)
+        for model in models
+        for kind, names in MOVING.items()
+        if isinstance(model, kind)
+        for name in names
+    }
+
+
+def _slider(instants: Sequence[Values], at: int) -> Slider:
+    """What moves through the instants, and begins with one of them."""
+    last = len(instants) - 1
+    slider = Slider(start=0, end=last, value=at, title="Instant", sizing_mode="stretch_width")
+    moving = [
+        key for key in instants[0] if len({pickle.dumps(values[key]) for values in instants}) > 1
+    ]
+    arguments = {
+        "models": [model for model, _ in moving],
+        "names": [name for _, name in moving],
+        "values": [[values[key] for values in instants] for key in moving],
+    }
+    slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
+    return slider
+
+
+def _below(frame: Frame, views: Sequence[View]) -> str:
+    """Tables and settings (HTML)."""
+    tables = {f"{slug(view)}.csv": plot_table(view, frame) for view in views}
+    tables["iterations.csv"] = history_table(frame)
+    links = ", ".join(
+        f'<a download="{name}" href="data:text/csv;base64,'
+        f'{b64encode(text.encode()).decode()}">{name}</a>'
+        for name, text in tables.items()
+    )
+    settings = escape(dump(frame.run.settings))
+    below = f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
+    return f"<p>Numbers: {links}.</p>{below}"
 
 
 class TakeAway:
-    """A dialog with what can be saved of what is seen.
-
-    Parameters
-    ----------
-    state, display
-        Of the page.
-
-    Attributes
-    ----------
-    view
-        The dialog, which stands in the page's header.
-    """
+    """A dialog with what can be saved of what is seen."""
 
     def __init__(self, state: PageState, display: Display) -> None:
-        self._state, self._display = state, display
-        self._content = pn.Column(margin=0)
-        self.view = pmui.Dialog(
-            self._content, title="Take away", show_close_button=True, close_on_click=True
-        )
-
-    @property
-    def views(self) -> list[View]:
-        """The views in sight."""
-        return list(self._display.views)
-
-    @property
-    def offers(self) -> list[Any]:
-        """What can be saved."""
-        return list(self._content)
+        self._state, self.display = state, display
+        self.view = pmui.Dialog(title="Take away", show_close_button=True, close_on_click=True)
 
     def open(self) -> None:
         """Offer what there is of what is seen."""
-        frame, views = self._state.frame, self.views
-        if frame is None:
-            self._content[:] = [pmui.Typography("There is no run yet.")]
-        else:
-            self._content[:] = self._offers(frame, views)
+        frame = self._state.frame
+        nothing = [pmui.Typography("There is no run yet.")]
+        self.view[:] = nothing if frame is None else self._offers(frame)
         self.view.open = True
 
-    def _offers(self, frame: Frame, views: list[View]) -> list[Any]:
-        name = f"slipfront-{frame.run.settings.scene}"
-        texts = [
-            ("The run as one page (.html)", f"{name}.html", partial(self.page, frame, views)),
-            (SVG, f"{name}-svg.html", partial(self.page, frame, views, "svg")),
-            ("The run as a program (.py)", f"{name}.py", partial(program, frame.run.settings)),
-            ("All iterations (.csv)", f"{name}-iterations.csv", partial(history_table, frame)),
-        ]
-        texts += [
-            (f"{view.name} (.csv)", f"{name}-{slug(view)}.csv", partial(plot_table, view, frame))
+    def _offers(self, frame: Frame) -> list[Any]:
+        state, settings, views = self._state, frame.run.settings, list(self.display.views)
+        page = partial(offline_page, frame, views, state.selection, state.ghost)
+        offers = {
+            "The run as one page (.html)": (".html", page),
+            "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
+            "The run as a program (.py)": (".py", partial(program, settings)),
+            "All iterations (.csv)": ("-iterations.csv", partial(history_table, frame)),
+        }
+        offers |= {
+            f"{view.name} (.csv)": (f"-{slug(view)}.csv", partial(plot_table, view, frame))
             for view in views
+        }
+        name = f"slipfront-{settings.scene}"
+        buttons: list[Any] = [
+            download(label, name + end, make, **LOOK) for label, (end, make) in offers.items()
         ]
-        offers: list[Any] = [_download(label, file, make) for label, file, make in texts]
-        return [*offers, *([self._fclib(name)] if can_write() else [])]
+        return [*buttons, *([self._fclib(f"{name}.hdf5")] if can_write() else [])]
 
-    def page(self, frame: Frame, views: list[View], backend: str = "canvas") -> str:
-        """The run as one page that needs nothing beside it.
-
-        The save buttons of its plots write PNG, or SVG with the backend "svg".
-        """
-        tables = {f"{slug(view)}.csv": plot_table(view, frame) for view in views}
-        tables["iterations.csv"] = history_table(frame)
-        state = self._state
-        return offline_page(frame, views, state.selection, state.ghost, tables, backend)
-
-    def _fclib(self, name: str) -> pn.Column:
+    def _fclib(self, filename: str) -> pn.Column:
         """A button that has the worker make the file, which is there to be saved then."""
-        column, state = pn.Column(margin=0), self._state
-
-        def make(_event: Any) -> None:
-            state.compute(Compute(fclib_file, state.selection.phase), take)
+        state = self._state
 
         def take(result: Any) -> None:
             if isinstance(result, bytes):
-                column[1:] = [_download("Save it", f"{name}.hdf5", lambda: result)]
+                made = download("Save it", filename, lambda: result, **LOOK)
             elif isinstance(result, RefusedError):
-                column[1:] = [pmui.Typography(message_of(result, state.settings))]
+                made = pmui.Typography(message_of(result, state.settings))
             else:
-                column[1:] = [pmui.Typography(f"It cannot be written: {result}")]
+                made = pmui.Typography(f"It cannot be written: {result}")
+            column[1:] = [made]
 
         button = pmui.Button(
-            label="Contact problem of this instant (FCLIB)", variant="outlined", **_look()
+            label="Contact problem of this instant (FCLIB)",
+            variant="outlined",
+            on_click=lambda event: state.compute(Compute(fclib_file, state.selection.phase), take),
+            **LOOK,
         )
-        button.on_click(make)
-        column[:] = [button]
+        column = pn.Column(button, margin=0)
         return column
 
 
 def slug(view: View) -> str:
     """The name of a view in the name of a file."""
     return view.name.lower().replace(" ", "-").replace("/", "-")
-
-
-def _look() -> dict[str, Any]:
-    return {"size": "small", "width": WIDTH, "margin": (4, 8)}
-
-
-def _download(label: str, file: str, make: Any) -> pmui.FileDownload:
-    def data() -> io.BytesIO:
-        content = make()
-        return io.BytesIO(content if isinstance(content, bytes) else content.encode())
-
-    made = pmui.FileDownload(label=label, filename=file, callback=data, **_look())
-    # Its constructor warns of a variant, whatever it is.
-    made.variant = "outlined"
-    return made

@@ -1,21 +1,28 @@
-"""Files of a user: settings, load paths, and results of another program."""
+"""Files of a user: settings, load paths and their points, and results of another program."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any
 
+import numpy as np
+import pandas as pd
 import panel as pn
 import panel_material_ui as pmui
+from bokeh.models import ColumnDataSource, PointDrawTool
+from bokeh.plotting import figure
 
 from app.refusals import message_of
 from app.state import PageState, default_settings
+from app.units import units_of_points
+from app.views.colors import LATIN
 from solver.checked import dump
 from solver.curves import curve_of
 from solver.definitions import CurveParameter, SettingError, about
 from solver.files import ends_of_tables, settings_from_toml
 from solver.refusal import RefusedError
+from solver.scenes import points_of
 from solver.settings import Settings
 from solver.study.other_programs.brought import Brought, read_brought
 from solver.tables import Table, read_table
@@ -28,22 +35,29 @@ HELP = (
 )
 
 
-class Opened(NamedTuple):
-    """What a file was read as, and what was understood."""
-
-    content: Settings | Brought
-    message: str
+MOST_DRAGGED = 200
+"""Points up to which they are dragged and typed; longer tables come from files."""
 
 
-def opened(source: str, data: bytes, settings: Settings) -> Opened:
-    """Read a file: settings (.toml), else a table of results if it has places, else a load path.
+def download(label: str, filename: str, make: Callable[[], str | bytes], **look: Any) -> Any:
+    """A button that saves what a function makes once it is pressed."""
 
-    Parameters
-    ----------
-    source, data
-        Name of the file and what is in it.
-    settings
-        Those that hold.
+    def data() -> io.BytesIO:
+        content = make()
+        return io.BytesIO(content if isinstance(content, bytes) else content.encode())
+
+    button = pmui.FileDownload(label=label, filename=filename, callback=data, **look)
+    # Its constructor warns of a variant, whatever it is.
+    button.variant = "outlined"
+    return button
+
+
+def opened(source: str, data: bytes, settings: Settings) -> tuple[Settings | Brought, str]:
+    """Read a file: settings (.toml), else results if it has places, else a load path.
+
+    Returns
+    -------
+    What it was read as, and what was understood.
 
     Raises
     ------
@@ -51,38 +65,25 @@ def opened(source: str, data: bytes, settings: Settings) -> Opened:
         For what is none of these, or is refused.
     """
     if source.lower().endswith(".toml"):
-        read = settings_from_toml(text_of(source, data), source=source)
-        return Opened(read, f"{source}: settings of the scene {read.scene}.")
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            remedy = "it is no text in UTF-8: save it as TOML"
+            raise SettingError("the file", source, "a text", remedy) from None
+        read = settings_from_toml(text, source=source)
+        return read, f"{source}: settings of the scene {read.scene}."
     table = _table(data, source)
     if {"x", "position"} & {column.key for column in table.columns}:
         brought = read_brought(data, source, settings)
-        return Opened(brought, f"{source}: {brought.message}.")
-    return Opened(*_with_path(settings, _path_of(table, source, settings), table))
+        return brought, f"{source}: {brought.message}."
+    return with_path(settings, _path_of(table, source, settings), table)
 
 
-def with_points(
-    settings: Settings, name: str, table: str | bytes, source: str
-) -> tuple[Settings, str]:
-    """Settings with a table of points for a path, and what was understood.
+def with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
+    """Settings with a table for a path, and what was understood.
 
     A run then lasts until the last of its tables ends.
-
-    Parameters
-    ----------
-    settings, name
-        What is changed, and its path.
-    table, source
-        Two columns, with units in their heads or in SI; and what a message calls them.
-
-    Raises
-    ------
-    SettingError
-        If the table is refused.
     """
-    return _with_path(settings, name, _table(table, source))
-
-
-def _with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, str]:
     definition = settings.definitions()[name]
     assert isinstance(definition, CurveParameter)
     curve = curve_of(table, definition, name, settings.curve_units(name))
@@ -93,21 +94,6 @@ def _with_path(settings: Settings, name: str, table: Table) -> tuple[Settings, s
         changed = changed.replace(duration=ends) if ends > 0.0 else changed
         message += f" The run lasts {changed.duration:g} s."
     return changed, message
-
-
-def text_of(source: str, data: bytes) -> str:
-    """The text of a file.
-
-    Raises
-    ------
-    SettingError
-        For what is no text.
-    """
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        remedy = "it is no text in UTF-8: save it as CSV or TOML"
-        raise SettingError("the file", source, "a text", remedy) from None
 
 
 def _table(data: bytes | str, source: str) -> Table:
@@ -143,52 +129,40 @@ class FilesPanel:
 
     Parameters
     ----------
-    state
-        Takes over what is opened.
     copy
         Has the browser copy the link to what is shown; returns what it had to leave out.
-    width
-        In pixels.
-
-    Attributes
-    ----------
-    file
-        The widget that takes a file.
-    message
-        What was understood.
-    view
-        What stands on the page.
     """
 
     def __init__(self, state: PageState, copy: Callable[[], str], width: int) -> None:
         self._state, self._copy = state, copy
-        more = {"width": width, "margin": (4, 0), "size": "small"}
-        save = pmui.FileDownload(
-            label="Save settings (.toml)", callback=self._saved, filename="settings.toml", **more
-        )
-        # Its constructor warns of a variant, whatever it is.
-        save.variant = more["variant"] = "outlined"
-        default = pmui.Button(
-            label="All settings to default",
-            icon="restart_alt",
-            on_click=lambda event: state.adopt(default_settings(state.settings.scene)),
-            **more,
-        )
+        look: dict[str, Any] = {"width": width, "margin": (4, 0), "size": "small"}
+        outlined = {**look, "variant": "outlined"}
         self.file = pmui.FileInput(
-            label="Open settings or a table", accept=f".toml,{TABLES}", description=HELP, **more
+            label="Open settings or a table", accept=f".toml,{TABLES}", description=HELP, **outlined
         )
         self.file.param.watch(lambda event: self._open(), "value")
         self.message = pmui.Typography("", variant="body2", width=width, margin=0)
-        self._remove = pmui.Button(icon="close", on_click=lambda event: self._forget(), **more)
-        link = pmui.Button(
-            label="Copy link", icon="link", on_click=lambda event: self._copy_link(), **more
+        self._remove = pmui.Button(icon="close", on_click=lambda event: self._forget(), **outlined)
+        self.view = pn.Column(
+            pmui.Button(
+                label="Copy link", icon="link", on_click=lambda event: self._copy_link(), **outlined
+            ),
+            download(
+                "Save settings (.toml)", "settings.toml", lambda: dump(state.settings), **look
+            ),
+            self.file,
+            self.message,
+            self._remove,
+            pmui.Button(
+                label="All settings to default",
+                icon="restart_alt",
+                on_click=lambda event: state.adopt(default_settings(state.settings.scene)),
+                **outlined,
+            ),
+            margin=0,
         )
-        self.view = pn.Column(link, save, self.file, self.message, self._remove, default, margin=0)
         state.param.watch(lambda event: self._show(), "brought")
         self._show()
-
-    def _saved(self) -> io.StringIO:
-        return io.StringIO(dump(self._state.settings))
 
     def _copy_link(self) -> None:
         self.message.object = f"The link to what is shown is copied. {self._copy()}"
@@ -199,7 +173,7 @@ class FilesPanel:
             return
         try:
             content, self.message.object = opened(
-                self.file.filename or "the file", self.file.value, state.settings
+                self.file.filename, self.file.value, state.settings
             )
         except RefusedError as refused:
             state.refusal = self.message.object = message_of(refused, state.settings)
@@ -217,3 +191,117 @@ class FilesPanel:
         brought = self._state.brought
         self._remove.visible = brought is not None
         self._remove.label = f"Remove {brought.source}" if brought is not None else "Remove"
+
+
+class CurveDialog:
+    """A dialog that has the points of one path; what is done there holds at once.
+
+    Attributes
+    ----------
+    source, text
+        The points in their units, as they are dragged, and the same as a table.
+    """
+
+    def __init__(self, name: str, state: PageState) -> None:
+        self._name, self._state = name, state
+        definition = state.settings.definitions()[name]
+        assert isinstance(definition, CurveParameter)
+        self._columns = definition.abscissa, definition.ordinate
+        self._is_updating = False
+        self.source = ColumnDataSource({"x": [], "y": []})
+        self.source.on_change("data", lambda attribute, old, new: self._on_drag())
+        self.text = pmui.TextAreaInput(
+            label="Points, or a table pasted here",
+            rows=8,
+            max_length=1_000_000,
+            sizing_mode="stretch_width",
+            margin=(10, 5),
+        )
+        self.text.param.watch(lambda event: self._take(event.new, "the text"), "value")
+        self._file = pmui.FileInput(label="Open a table (.csv)", accept=TABLES)
+        self._file.param.watch(lambda event: self._take(event.new, self._file.filename), "value")
+        self._message = pn.pane.Markdown("", margin=(0, 5))
+        self._figure = self._plot()
+        self.view = pmui.Dialog(
+            pn.pane.Bokeh(self._figure, sizing_mode="stretch_width", height=220, margin=5),
+            "Drag a point; tap to add one, tap it and press Backspace to take it away.",
+            self.text,
+            self._file,
+            self._message,
+            title=f"{about(definition).title}: points",
+            show_close_button=True,
+            close_on_click=True,
+            width_option="sm",
+        )
+        self.update()
+
+    def open(self) -> None:
+        """Show the points, those of the preset where there are none yet."""
+        self.update()
+        self.view.open = True
+
+    def update(self) -> None:
+        """Show the points that hold."""
+        settings = self._state.settings
+        value = getattr(settings, self._name)
+        points = points_of(settings, self._name) if isinstance(value, str) else value
+        units = settings.curve_units(self._name)
+        self._units = units_of_points(settings.scene, self._name, units)
+        x, y = np.array(points).T / np.array([[unit.factor] for unit in self._units])
+        is_short = len(x) <= MOST_DRAGGED
+        self._is_updating = True
+        self.source.data = {"x": x, "y": y}
+        self._points.visible = is_short
+        self._figure.toolbar.active_tap = self._tool if is_short else None
+        self._fit(x, y)
+        self.text.param.update(
+            value=self._table(pd.DataFrame({"x": x, "y": y})) if is_short else "",
+            placeholder="" if is_short else f"{len(x)} points, of a file",
+            error_state=False,
+            helper_text="",
+        )
+        self._is_updating = False
+
+    def _plot(self) -> figure:
+        made = figure(height=220, tools="", toolbar_location=None, x_range=(0, 1), y_range=(0, 1))
+        made.line("x", "y", source=self.source, color=LATIN, width=2)
+        self._points = made.scatter("x", "y", source=self.source, color=LATIN, size=11)
+        self._tool = PointDrawTool(renderers=[self._points])
+        made.add_tools(self._tool)
+        return made
+
+    def _fit(self, x: Any, y: Any) -> None:
+        """Leave room around the points, and title the axes."""
+        titles = [u.titled(c) for c, u in zip(self._columns, self._units, strict=True)]
+        self._figure.xaxis.axis_label, self._figure.yaxis.axis_label = titles
+        for axis, values in ((self._figure.x_range, x), (self._figure.y_range, [0.0, *y])):
+            low, high = float(np.min(values)), float(np.max(values))
+            room = (high - low or 1.0) * (0.05 if axis is self._figure.x_range else 0.2)
+            axis.update(start=low - room, end=high + room)
+
+    def _table(self, points: pd.DataFrame) -> str:
+        columns = zip(self._columns, self._units, strict=True)
+        heads = [f"{title} [{unit.name}]" if unit.name else title for title, unit in columns]
+        return points.to_csv(header=heads, index=False, float_format="%.6g")
+
+    def _on_drag(self) -> None:
+        if not self._is_updating:
+            points = pd.DataFrame(dict(self.source.data), dtype=float)
+            points["x"] = points["x"].clip(lower=0.0)
+            points = points.sort_values("x", kind="stable").drop_duplicates("x")
+            self._take(self._table(points), "the plot")
+
+    def _take(self, table: str | bytes, source: str) -> None:
+        """Have a table be the path; one that is refused stays to be mended."""
+        if self._is_updating or not table:
+            return
+        settings = self._state.settings
+        try:
+            changed, message = with_path(settings, self._name, _table(table, source))
+        except RefusedError as refused:
+            self._state.refusal = text = message_of(refused, settings, self._name)
+            self.text.param.update(error_state=True, helper_text=text)
+            return
+        self._state.adopt(changed)
+        self._message.object = message
+        self.update()

@@ -1,38 +1,56 @@
-"""Commands of the command line that pages have run: in processes, one after the other."""
+"""Work that pages have a server do: commands, one after the other, and sweeps, side by side."""
 
 from __future__ import annotations
 
 import atexit
+import logging
+import threading
 import time
-from collections.abc import Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from app.worker.commands import LOG, command
-from solver.running.executors import executor_of_the_server, opened
-from solver.running.pool import Pool
+import panel as pn
 
-LOCAL = "processes:1"
-"""Two at a time would spoil each other's measurements, and thirty the server."""
-STOPPED = "Its process stopped unexpectedly; start it again."
+from app.worker.commands import LOG, command
+from solver.definitions import SettingError
+from solver.running.executors import executor_of_the_server, opened
+from solver.running.machine import processors
+from solver.running.pool import Pool
+from solver.study.sweep import Plan, Row, VersionsDifferError, patience, sweep
+
+log = logging.getLogger(__name__)
+LOOK = 500
+"""Milliseconds between two looks of a page at its work."""
+LIMIT = 60.0
+"""Seconds that a run of a sweep may take: nobody waits longer for a point of a chart."""
+PROCESSES = "processes"
 SETTINGS = "settings.toml"
 OUT = "out"
+_lock = threading.Lock()
+_users = 0
+
+
+def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
+    """Have this page look at its work from time to time, and end it when the page is closed."""
+    document = pn.state.curdoc
+    if document is not None and document.session_context is not None:
+        # Not before the browser is there: what changes while it loads may not reach it.
+        pn.state.onload(lambda: document.add_periodic_callback(look, LOOK))
+        document.on_session_destroyed(lambda context: end())
 
 
 @cache
 def executor() -> Pool:
-    """What all pages of this server share: a process a command, in turn; or the server's cluster.
+    """What runs the commands of all pages: a process at a time, or the server's cluster.
 
-    Raises
-    ------
-    SettingError
-        If the setting of the server names none.
+    Two at a time would spoil each other's measurements, and thirty the server.
     """
-    named = executor_of_the_server()
+    named = executor_of_the_server() or PROCESSES
     stack = ExitStack()
-    on = LOCAL if named.startswith("processes") or not named else named
+    on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
     pool = stack.enter_context(opened(on, lasting=False))
     atexit.register(stack.close)
     return pool
@@ -47,18 +65,13 @@ class Job:
         As after `python -m solver`; they may name the file `SETTINGS` and the folder `OUT`.
     settings
         Text of that file.
-
-    Attributes
-    ----------
-    folder
-        In which it runs.
     """
 
     def __init__(self, arguments: Sequence[str], settings: str = "") -> None:
         self._place = TemporaryDirectory(prefix="slipfront-", ignore_cleanup_errors=True)
         self.folder = Path(self._place.name)
         (self.folder / SETTINGS).write_text(settings, encoding="utf-8")
-        self._asked = time.monotonic()
+        self._began = time.monotonic()
         self._is_cancelled = False
         self._future = executor().submit(command, tuple(arguments), self.folder)
 
@@ -74,9 +87,10 @@ class Job:
 
     @property
     def lines(self) -> list[str]:
-        """What the command has printed so far."""
-        log = self.folder / LOG
-        return log.read_text(encoding="utf-8").splitlines() if log.exists() else []
+        """What the command has printed so far, without empty lines."""
+        file = self.folder / LOG
+        text = file.read_text(encoding="utf-8") if file.exists() else ""
+        return [line.strip() for line in text.splitlines() if line.strip()]
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -87,13 +101,11 @@ class Job:
     @property
     def progress(self) -> str:
         """How far it is, or why it came to nothing."""
-        seconds = time.monotonic() - self._asked
         if not self.is_begun:
             return "Waiting: another report is made first."
-        if not self.is_over:
-            last = next((line.strip() for line in reversed(self.lines) if line.strip()), "Working")
-            return f"{seconds:.0f} s: {last}"
-        return self.failure
+        if self.is_over:
+            return self.failure
+        return f"{time.monotonic() - self._began:.0f} s: {(self.lines or ['Working'])[-1]}"
 
     @property
     def failure(self) -> str:
@@ -103,7 +115,7 @@ class Job:
         if not self.is_over:
             return ""
         if self._future.exception() is not None:
-            return STOPPED
+            return "Its process stopped unexpectedly; start it again."
         has_failed = self._future.result() not in (0, 1) or not (self.files or self.lines)
         return "\n".join(self.lines[-3:]) if has_failed else ""
 
@@ -116,3 +128,83 @@ class Job:
         """End it and leave nothing behind."""
         self.cancel()
         self._place.cleanup()
+
+
+def share_of(named: str, users: int) -> str:
+    """What each of so many sweeps has of an executor: of a cluster, which has a queue, all.
+
+    A queue for all would have everybody wait for the longest run of anybody. Where no number is
+    named, one processor is left to the pages, but of two none: the processes are niced.
+    """
+    kind, _, count = named.partition(":")
+    if kind != PROCESSES or (count and not count.isdecimal()) or count == "0":
+        return named
+    width = int(count) if count else max(processors() - 1, min(processors(), 2))
+    return f"{PROCESSES}:{max(1, width // users)}"
+
+
+@contextmanager
+def shared() -> Iterator[Pool]:
+    """A share of the server's executor."""
+    global _users
+    with _lock:
+        _users += 1
+        share = share_of(executor_of_the_server() or PROCESSES, _users)
+    try:
+        with opened(share, patience(LIMIT)) as pool:
+            yield pool
+    finally:
+        with _lock:
+            _users -= 1
+
+
+class Sweep:
+    """Runs of a plan, on a thread of its own.
+
+    Attributes
+    ----------
+    rows
+        Those that have come.
+    message
+        Why it came to nothing, or empty.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.rows: list[Row] = []
+        self.message = ""
+        self._is_cancelled = threading.Event()
+        self._began = time.monotonic()
+        self.thread = threading.Thread(target=self._go, name="sweep", daemon=True)
+        self.thread.start()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing more comes."""
+        return not self.thread.is_alive()
+
+    @property
+    def progress(self) -> str:
+        """How many runs have come, and how long the others will take if it goes on so."""
+        done, size = len(self.rows), self.plan.size
+        left = (time.monotonic() - self._began) / max(done, 1) * (size - done)
+        return f"{done} of {size} runs" + (f", {left:.0f} s left" if done else "")
+
+    def cancel(self) -> None:
+        """End it; what has come so far stays."""
+        self._is_cancelled.set()
+
+    def _go(self) -> None:
+        try:
+            with shared() as pool:
+                self.rows.extend(
+                    sweep(self.plan, pool, limit=LIMIT, cancelled=self._is_cancelled.is_set)
+                )
+        except (SettingError, VersionsDifferError) as refusal:
+            self.message = str(refusal)
+        except Exception as trouble:
+            log.exception("A sweep broke.")
+            text = f"{type(trouble).__name__}: {trouble}"
+            self.message = f"The executor broke ({text}); start again."
+        if self._is_cancelled.is_set():
+            self.message = "Cancelled."

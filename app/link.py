@@ -26,7 +26,7 @@ from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
-SHARED = "lesson", "tab", "pace", "plots", "view", "room"
+SHARED = "lesson", "tab", "question", "pace", "plots", "view", "room"
 """What an address has of a page's state beside settings."""
 LONGEST = 1500
 """Characters of a value in an address; mail, chat and proxies cut what is much longer."""
@@ -53,6 +53,7 @@ class Place:
     settings: Settings = field(default_factory=lambda: default_settings(next(iter(CATALOGUE))))
     lesson: str = ""
     tab: str = TABS[0]
+    question: str = ""
     instant: float | None = None
     iteration: int = 0
     pace: str = next(iter(PACES))
@@ -71,7 +72,7 @@ _CHOICES = {"tab": TABS, "pace": list(PACES), "view": VIEWS, "theme": ["light", 
 _PLACE: dict[str, Any] = _NUMBERS | {
     name: choice(options[0], options, "", group="", title="") for name, options in _CHOICES.items()
 }
-"""What an address may say beside settings, scene, lesson, class and plots."""
+"""What an address may say beside settings, scene, lesson, class, plots and question."""
 
 
 class Browser(DataModel):
@@ -190,7 +191,7 @@ def query_of(place: Place) -> str:
     if long:
         pairs["file"] = ",".join(long)
     first = Place(place.settings, instant=lesson.instant if lesson else Selection().phase)
-    for name in ("tab", "instant", "iteration", "pace", "plots", "view", "theme"):
+    for name in ("tab", "question", "instant", "iteration", "pace", "plots", "view", "theme"):
         value = getattr(place, name)
         if value != getattr(first, name) and value is not None:
             pairs[name] = str(value)
@@ -209,6 +210,7 @@ def read(query: str, present: Settings | None = None) -> tuple[Place, str]:
     if lesson is not None:
         given |= {"lesson": lesson.name, "instant": lesson.instant}
     base = _base(pairs.pop("lesson", ""), pairs.pop("scene", ""), refused)
+    given["question"] = pairs.pop("question", "")
     plots = [name.strip() for name in pairs.pop("plots", "").split(",") if name.strip()]
     given["plots"] = ",".join(name for name in plots if name in _PLOTS)
     refused += [f"there is no plot {name[:40]}" for name in plots if name not in _PLOTS]

@@ -1,16 +1,20 @@
-"""What the tab What if asks: a quantity over one or two settings, as the command line takes it."""
+"""What the tab What if asks: a quantity over one or two settings, and the fields of a setting."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from urllib.parse import parse_qsl
+from functools import partial
+from typing import Any
 
+import panel as pn
+import panel_material_ui as pmui
 import param
 
 from app.refusals import message_of
-from app.state import ANSWER, SEARCH, answer
+from app.state import SEARCH, answer
+from app.units import Unit, typed, unit_of
 from app.worker.references import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import behind, kind_of, loads_of
@@ -19,9 +23,12 @@ from solver.study.quantities.cycle_measures import has_a_limit, has_cycles
 from solver.study.quantities.quantities import QUANTITIES, reading
 from solver.study.quantities.quantity import Quantity
 from solver.study.sweep import Plan, plan_of
+from solver.study.sweep.plan import axis_of
 
-VARY, OF = "vary", "of"
-"""Names in an address: settings with their values, and the quantity."""
+FIELD: dict[str, Any] = {"size": "small", "margin": (5, 6)}
+PLAIN = {"& button": {"textTransform": "none", "whiteSpace": "nowrap", "padding": "4px 14px"}}
+EVEN, DECADES, LISTED = "even steps", "even ratios", "a list"
+LOG = ":log"
 VALUES, COARSE = 13, 10
 """Values of a range, and along each side of a map."""
 TENTH = 0.1
@@ -46,14 +53,8 @@ class Question:
     vary: tuple[str, ...]
     of: str
 
-    @property
-    def names(self) -> list[str]:
-        """Names of the settings."""
-        return [text.partition("=")[0] for text in self.vary]
-
-    def pairs(self) -> list[tuple[str, str]]:
-        """What an address has of it."""
-        return [*((VARY, text) for text in self.vary), (OF, self.of)]
+    def __str__(self) -> str:
+        return " ".join((*self.vary, self.of))
 
     def plan(self, settings: Settings) -> Plan:
         """The runs that answer it, everything else as in some settings.
@@ -94,18 +95,13 @@ class Question:
         return ""
 
 
-def question_from_query(query: str) -> Question | None:
-    """What an address asks, if it does; nothing of it is refused yet."""
-    pairs = parse_qsl(query.lstrip("?"))
-    vary = tuple(text for name, text in pairs if name == VARY)[:2]
-    of = dict(pairs).get(OF, "")
-    return Question(vary, of) if vary and of else None
-
-
-def as_watched(settings: Settings, page: Settings, varied: Sequence[str]) -> Settings:
-    """Settings of a point as a page shows its run, which starts and ends as its own do."""
-    ends = {"accuracy"} if settings.finish == "none" else {"accuracy", *ANSWER}
-    return settings.replace(**{name: getattr(page, name) for name in ends - set(varied)})
+def question_of(text: str, settings: Settings) -> Question:
+    """The question that a text asks, or the bathtub where settings do not have it."""
+    *vary, of = text.split() or [""]
+    question = Question(tuple(vary), of)
+    names = {setting.partition("=")[0] for setting in vary}
+    is_known = names <= variable(settings).keys() and of.partition("@")[0] in quantities(settings)
+    return question if is_known and not question.refusal(settings) else bathtub(settings)
 
 
 def variable(settings: Settings) -> dict[str, Parameter]:
@@ -136,49 +132,30 @@ def names_of(definition: Parameter) -> list[str]:
     return list(definition.objects) if isinstance(definition, param.Selector) else []
 
 
-def proposed(definition: Parameter, name: str) -> str:
+def proposed(settings: Settings, name: str) -> str:
     """Values that are proposed for a setting: what its slider shows, or all its names."""
+    definition = settings.definitions()[name]
     if not isinstance(definition, param.Number):
         return f"{name}={','.join(names_of(definition))}"
     low, high = definition.softbounds
     is_log = about(definition).logarithmic and low > 0
-    return f"{name}={low:g}:{high:g}:{VALUES}{':log' if is_log else ''}"
+    return f"{name}={low:g}:{high:g}:{VALUES}{LOG * is_log}"
 
 
-def quantity_with(name: str, at: str) -> str:
-    """A quantity with its number; one that needs one has a tenth."""
-    parameter = QUANTITIES[name].parameter if name in QUANTITIES else None
-    if parameter is None:
-        return name
-    at = at.strip() or (str(TENTH) if parameter.needed else "")
-    return f"{name}@{at}" if at else name
-
-
-def over_k(settings: Settings) -> Question:
-    """Iterations until the force is as near as a page asks, over k."""
-    k = proposed(settings.definitions()["k_scale"], "k_scale")
-    return Question((k,), f"iterations_to_force@{settings.accuracy:g}")
-
-
-def bathtub(settings: Settings) -> Question:
-    """Iterations over the search direction, with and without acceleration."""
-    return _iterations(settings, "acceleration")
-
-
-def _iterations(settings: Settings, name: str) -> Question:
-    vary = [proposed(settings.definitions()["k_scale"], "k_scale")]
+def bathtub(settings: Settings, name: str = "acceleration") -> Question:
+    """Iterations over the search direction, for the values of another setting."""
+    vary = [proposed(settings, "k_scale")]
     if name == "substructures":
-        vary.append(f"{name}={','.join(_possible(settings, name))}")
+        cuts = []
+        for cut in CUTS:
+            with contextlib.suppress(SettingError):
+                settings.replace(substructures=cut)
+                cuts.append(str(cut))
+        vary.append(f"{name}={','.join(cuts)}")
     elif name in variable(settings):
-        vary.append(proposed(settings.definitions()[name], name))
-    of = quantity_with("iterations_to_force", "") if has_reference(settings) else "iterations"
+        vary.append(proposed(settings, name))
+    of = f"iterations_to_force@{TENTH}" if has_reference(settings) else "iterations"
     return Question(tuple(vary), of)
-
-
-def _possible(settings: Settings, name: str) -> Iterator[str]:
-    for value in CUTS:
-        with contextlib.suppress(SettingError):
-            yield str(getattr(settings.replace(**{name: value}), name))
 
 
 def _design(settings: Settings) -> Question | None:
@@ -227,7 +204,7 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
     ),
     "The bathtub over substructures": (
         "Iterations over the factor on k, for several numbers of substructures.",
-        lambda settings: _iterations(settings, "substructures"),
+        partial(bathtub, name="substructures"),
     ),
     "The design chart": ("Energy dissipated over friction and load.", _design),
     "The fretting map": (
@@ -242,3 +219,111 @@ READY: dict[str, tuple[str, Callable[[Settings], Question | None]]] = {
     ),
 }
 """Questions that are ready, by what their buttons say, with a word on each."""
+
+
+class Span:
+    """The fields of one setting, if there is one, and its values.
+
+    Parameters
+    ----------
+    changed
+        Called when somebody has changed a field.
+    """
+
+    def __init__(self, label: str, changed: Callable[[], object], *, is_optional: bool) -> None:
+        self._nothing = {"–": ""} if is_optional else {}
+        self._is_updating = False
+        self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
+        spacings = [EVEN, DECADES, LISTED]
+        self.spacing = pmui.Select(label="Values in", options=spacings, width=140, **FIELD)
+        self.low = pmui.TextInput(label="from", width=110, **FIELD)
+        self.high = pmui.TextInput(label="to", width=110, **FIELD)
+        self.count = pmui.IntInput(label="Values", value=2, start=2, width=110, **FIELD)
+        self.listed = pmui.TextInput(label="Values", width=330, **FIELD)
+        self.chosen = pmui.CheckButtonGroup(label="", size="small", margin=(4, 6), sx=PLAIN)
+        self.view = pn.FlexBox(
+            self.name, self.spacing, self.low, self.high, self.count, self.listed, self.chosen
+        )
+        self.name.param.watch(lambda event: self._propose(), "value")
+        self.spacing.param.watch(lambda event: self._respace(event.old), "value")
+        for field in self.view:
+            field.param.watch(lambda event: self._is_updating or changed(), "value")
+
+    def show(self, settings: Settings, text: str) -> None:
+        """Show a setting and its values, in the unit of its control; "" is none."""
+        self._settings, self._is_updating = settings, True
+        name, _, values = text.partition("=")
+        titles = {_titled(known, settings): key for key, known in variable(settings).items()}
+        self.name.param.update(options={**self._nothing, **titles}, value=name)
+        definition = settings.definitions().get(name)
+        is_number = isinstance(definition, param.Number)
+        if is_number:
+            self._show_numbers(unit_of(definition), values)
+        elif definition is not None:
+            self.chosen.param.update(options=names_of(definition), value=values.split(","))
+        is_listed = self.spacing.value == LISTED
+        self.spacing.visible = is_number
+        self.listed.visible = is_number and is_listed
+        for field in (self.low, self.high, self.count):
+            field.visible = is_number and not is_listed
+        self.chosen.visible = definition is not None and not is_number
+        self._is_updating = False
+
+    def _show_numbers(self, unit: Unit, values: str) -> None:
+        self.low.label = unit.titled("from")
+        self.listed.label = unit.titled("Values, separated by commas")
+        if ":" not in values:
+            shown = ", ".join(f"{float(value) / unit.factor:.10g}" for value in values.split(","))
+            self.spacing.value, self.listed.value = LISTED, shown
+            return
+        low, high, count, *log = values.split(":")
+        self.spacing.value = DECADES if log else EVEN
+        for field, end in ((self.low, low), (self.high, high)):
+            field.value = f"{float(end) / unit.factor:.10g}"
+        self.count.value = int(float(count))
+
+    def text(self, spacing: str) -> str:
+        """The setting and its values as the command line takes them, in SI; "" for none.
+
+        Raises
+        ------
+        ValueError
+            For what is no number.
+        """
+        name = self.name.value
+        if not name:
+            return ""
+        definition = self._settings.definitions()[name]
+        if not isinstance(definition, param.Number):
+            return f"{name}={','.join(self.chosen.value)}"
+        unit, si, is_listed = unit_of(definition), about(definition).unit, spacing == LISTED
+        texts = self.listed.value.split(",") if is_listed else [self.low.value, self.high.value]
+        values = [f"{typed(text, unit, si):.12g}" for text in texts]
+        if is_listed:
+            return f"{name}={','.join(values)}"
+        return f"{name}={':'.join([*values, str(self.count.value)])}{LOG * (spacing == DECADES)}"
+
+    def _propose(self) -> None:
+        """Another setting brings its own values."""
+        if not self._is_updating:
+            name = self.name.value
+            self.show(self._settings, proposed(self._settings, name) if name else "")
+
+    def _respace(self, before: str) -> None:
+        """Show the same values in another way, where that can be."""
+        if self._is_updating:
+            return
+        settings, name, spacing = self._settings, self.name.value, self.spacing.value
+        text = proposed(settings, name)
+        with contextlib.suppress(ValueError, SettingError):
+            text = text if before == LISTED else self.text(before)
+            if spacing == LISTED:
+                text = f"{name}={','.join(f'{v:g}' for v in axis_of(settings, text).values)}"
+        self.show(settings, text.removesuffix(LOG) + LOG * (spacing == DECADES))
+
+
+def _titled(definition: Parameter, settings: Settings) -> str:
+    """Title of a setting, with its group where another has the same."""
+    titles = [about(other).title for other in settings.definitions().values()]
+    kind = about(definition)
+    return f"{kind.title} ({kind.group})" if titles.count(kind.title) > 1 else kind.title

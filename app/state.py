@@ -129,6 +129,7 @@ class PageState(param.Parameterized):
     prediction = param.Integer(default=None, doc="The choice predicted; -1 did without.")
     poll = param.ClassSelector(class_=Poll, default=None, doc="What the class predicts.")
     tab = param.Selector(default="Live", objects=TABS, doc="What is looked at.")
+    question = param.String(doc="What the tab What if asks, as `Question` writes it.")
     view = param.Selector(default="page", objects=VIEWS, doc="How much stands around plots.")
     plots = param.String(doc="Names of the views on top of their cards, between commas.")
     room = param.String(doc="Code of the class that is followed.")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from typing import Any
 
@@ -10,122 +9,83 @@ import holoviews as hv
 import numpy as np
 import panel as pn
 import panel_material_ui as pmui
-import param
 from bokeh.events import Tap
 
 from app.charts import form, in_units, keys, overlay
-from app.jobs import SETTINGS, Job
-from app.questions import (
-    READY,
-    Question,
-    as_watched,
-    bathtub,
-    quantities,
-    quantity_with,
-    variable,
-)
+from app.files import download
+from app.jobs import SETTINGS, Job, Sweep, follow
+from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
 from app.refusals import message_of
-from app.spans import FIELD, Span
-from app.state import PageState, answer
-from app.sweeps import Sweep
+from app.state import ANSWER, PageState, answer
 from app.units import number, sizes_of, unit_for
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
-from solver.study.chart import Chart, Map, PanelAxis
+from solver.study.chart import Chart, Map
 from solver.study.mesh import decides
 from solver.study.quantities.quantities import QUANTITIES, reading
-from solver.study.sweep import Plan, Varied
+from solver.study.sweep import Plan
 from solver.study.sweep.chart import chart_of, is_map, ordered
 from solver.study.sweep.report import counts
 from solver.study.sweep.table import csv_of
 
-LOOK = 500
-"""Milliseconds between two looks at a job."""
 MESH = "Is the mesh fine enough?"
 NEAR = 0.04
 """Share of the axes up to which a tap hits a point."""
 
 
-class WhatIf(param.Parameterized):
+class WhatIf:
     """The tab.
 
     Parameters
     ----------
     state
-        Of the page: all that does not vary is as there.
+        Of the page, with the question; all that does not vary is as there.
     open_run
         Opens the run of some settings on the live tab.
-
-    Attributes
-    ----------
-    question
-        What is asked; an address says it by `Question.pairs`.
-    sweep
-        Its runs; None before there are any.
-    spans, mesh
-        Fields of the settings that vary, and the button that asks of meshes.
-    view
-        What stands on the page.
     """
 
-    question = param.ClassSelector(class_=Question, doc="What is asked.")
-
-    def __init__(
-        self,
-        state: PageState,
-        open_run: Callable[[Settings], None],
-        question: Question | None = None,
-    ) -> None:
-        super().__init__(question=question or bathtub(state.settings))
+    def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
         self.state, self._open_run = state, open_run
-        self._document = pn.state.curdoc
         self.sweep: Sweep | None = None
+        self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
-        self._looking: Any = None
         self._is_updating = False
         self._form: tuple[Any, ...] = ()
-        self._pipe = hv.streams.Pipe(data=None)
         self._make_fields()
         self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
+        table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
         self.view = pn.Column(
-            pn.FlexBox(*self._ready, self._help),
+            pn.FlexBox(*self._ready.values(), self._help),
             *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._start, self._cancel),
             self._message,
             self._keys,
             self._chart,
-            pn.FlexBox(self._table, self.mesh, self._meshed),
+            pn.FlexBox(table, self.mesh, self._meshed),
             sizing_mode="stretch_width",
             css_classes=["what-if"],
         )
-        self.param.watch(lambda event: self._show(), "question")
-        state.param.watch(lambda event: self._follow_page(), ["settings", "tab"])
-        if self._document is not None and self._document.session_context is not None:
-            self._document.on_session_destroyed(lambda context: self.end())
+        state.param.watch(lambda event: self._show(), ["settings", "tab", "question"])
+        follow(self.look, self.end)
         self._show()
         self.start()
 
     def _make_fields(self) -> None:
-        changed = self._change
         self.spans = (
-            Span("Vary", changed, is_optional=False),
-            Span("and", changed, is_optional=True),
+            Span("Vary", self._change, is_optional=False),
+            Span("and", self._change, is_optional=True),
         )
         self._of = pmui.Select(label="See what happens to", width=386, **FIELD)
         self._at = pmui.TextInput(label="at", width=110, **FIELD)
         for field in (self._of, self._at):
             field.param.watch(lambda event: self._change(), "value")
-        self._start = _button("Draw", "play_arrow", self.start, variant="contained")
-        self._cancel = _button("Cancel", "stop", self._on_cancel)
-        self.mesh = _button(MESH, "grid_on", self._on_mesh)
-        self._ready = [
-            _button(title, "", lambda title=title: self._on_ready(title)) for title in READY
-        ]
-        self._table = pmui.FileDownload(
-            label="Table (.csv)", callback=self.table, filename="what-if.csv", **FIELD
-        )
-        self._table.variant = "outlined"
+        self._start = _button("Draw", self.start, icon="play_arrow", variant="contained")
+        self._cancel = _button("Cancel", self.cancel, icon="stop")
+        self.mesh = _button(MESH, self._on_mesh, icon="grid_on")
+        self._ready = {
+            title: _button(title, lambda title=title: self._on_ready(title)) for title in READY
+        }
         self._help = pmui.Typography("", variant="body2", margin=(2, 8))
         self._message = pmui.Typography("", variant="body2", margin=(2, 8))
         self._meshed = pmui.Typography("", variant="body2", margin=(10, 8))
@@ -142,117 +102,125 @@ class WhatIf(param.Parameterized):
         if refusal:
             self._message.object = refusal
             return
-        self._on_cancel()
-        plan = self.question.plan(self.state.settings)
+        self.cancel()
+        self.sweep = Sweep(self.question.plan(self.state.settings))
         self._form = ()
-        self.sweep = Sweep(plan, self._soon)
-        self._follow()
+        self._draw()
+
+    def cancel(self) -> None:
+        """End the sweep; what has come so far stays."""
+        if self.sweep is not None:
+            self.sweep.cancel()
 
     def end(self) -> None:
-        """End what is under way."""
-        self._on_cancel()
+        """Leave nothing behind."""
+        self.cancel()
         if self._job is not None:
             self._job.close()
 
-    def table(self) -> io.StringIO:
-        """Rows of the sweep so far, as CSV in SI, with all settings."""
-        sweep = self.sweep
-        rows = sorted(sweep.rows, key=lambda row: row.number) if sweep is not None else []
-        return io.StringIO(csv_of(sweep.plan, rows) if sweep is not None else "")
+    def look(self) -> None:
+        """Show what is new of the runs and of the meshes."""
+        sweep, job = self.sweep, self._job
+        if sweep is not None and self._seen != (len(sweep.rows), sweep.is_over):
+            self._draw()
+        if job is not None:
+            self._meshed.object = job.progress or "  \n".join(job.lines)
+            self.mesh.label = MESH if job.is_over else "No more"
+            if job.is_over:
+                job.close()
+                self._job = None
 
-    def chart(self) -> Chart | None:
+    def table(self) -> str:
+        """Rows of the sweep so far, as CSV in SI, with all settings."""
+        if self.sweep is None:
+            return ""
+        return csv_of(self.sweep.plan, sorted(self.sweep.rows, key=lambda row: row.number))
+
+    def chart(self) -> Chart:
         """What has come so far, in the units that are read."""
-        sweep = self.sweep
-        if sweep is None:
-            return None
-        return in_units(chart_of(sweep.plan, list(sweep.rows), 0, _measured))
+        assert self.sweep is not None
+        return in_units(chart_of(self.sweep.plan, list(self.sweep.rows), 0, _measured))
 
     # Fields
 
     def _show(self) -> None:
-        """Show the question in the fields."""
-        settings, question = self.state.settings, self.question
-        self._is_updating = True
-        first, second, *_ = (*question.vary, "", "")
-        self.spans[0].show(settings, first)
-        self.spans[1].show(settings, second)
-        name, _, at = question.of.partition("@")
-        options = {quantity.title: key for key, quantity in quantities(settings).items()}
-        self._of.param.update(options=options, value=name)
-        parameter = QUANTITIES[name].parameter if name in QUANTITIES else None
-        self._at.param.update(value=at, visible=parameter is not None)
-        if parameter is not None:
-            self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
-        for button, (_, make) in zip(self._ready, READY.values(), strict=True):
-            button.visible = make(settings) is not None
-        self._tell_mesh()
-        self._is_updating = False
-
-    def _change(self) -> None:
-        """Take the question from the fields."""
-        if self._is_updating:
-            return
-        try:
-            vary = tuple(text for span in self.spans if (text := span.text))
-        except ValueError as problem:
-            self._message.object = f"{problem}."
-            return
-        at = self._at.value if self._at.visible else ""
-        self.question = Question(vary, quantity_with(self._of.value, at))
-        self._message.object = self.question.refusal(self.state.settings)
-        self._start.disabled, self._help.object = bool(self._message.object), ""
-
-    def _on_ready(self, title: str) -> None:
-        question = READY[title][1](self.state.settings)
-        if question is not None:
-            self.question, self._help.object = question, READY[title][0]
-            self.start()
-
-    def _on_cancel(self) -> None:
-        if self.sweep is not None:
-            self.sweep.cancel()
-
-    def _follow_page(self) -> None:
-        """Offer what the present settings have; another scene may know nothing of the question."""
+        """Show the question, of which another scene may know nothing."""
         if self.state.tab != "What if":
             return
         settings = self.state.settings
-        if not set(self.question.names) <= variable(settings).keys():
-            self.question = bathtub(settings)
-        self._show()
-        self._follow()
+        self.question = question_of(self.state.question, settings)
+        self._is_updating = True
+        for span, text in zip(self.spans, (*self.question.vary, ""), strict=False):
+            span.show(settings, text)
+        name, _, at = self.question.of.partition("@")
+        options = {quantity.title: key for key, quantity in quantities(settings).items()}
+        self._of.param.update(options=options, value=name)
+        parameter = QUANTITIES[name].parameter
+        self._at.param.update(value=at, visible=parameter is not None)
+        if parameter is not None:
+            self._at.label = parameter.words.replace("{:g}", "").strip() or "at"
+        for title, button in self._ready.items():
+            button.visible = READY[title][1](settings) is not None
+        self.mesh.visible = decides(settings, reading(self.question.of))
+        self._start.disabled = self._is_updating = False
+        if self.sweep is not None:
+            self._draw()
+
+    def _change(self) -> None:
+        """Take the question from the fields; one that is refused stays there to be mended."""
+        if self._is_updating:
+            return
+        settings, of = self.state.settings, self._of.value
+        parameter = QUANTITIES[of].parameter
+        if parameter is not None:
+            at = self._at.value.strip() or (str(TENTH) if parameter.needed else "")
+            of = f"{of}@{at}" if at else of
+        try:
+            texts = [span.text(span.spacing.value) for span in self.spans]
+            question = Question(tuple(filter(None, texts)), of)
+            refusal = question.refusal(settings)
+        except ValueError as problem:
+            refusal = f"{problem}."
+        self._start.disabled, self._help.object = bool(refusal), ""
+        self._message.object = refusal
+        if not refusal:
+            self.state.question = str(question)
+
+    def _on_ready(self, title: str) -> None:
+        self._help.object, make = READY[title]
+        self.state.question = str(make(self.state.settings))
+        self.start()
+
+    def _on_mesh(self) -> None:
+        """Have the quantity taken on three meshes and three numbers of instants, or no more."""
+        if self._job is not None:
+            self._job.cancel()
+        else:
+            settings = dump(answer(self.state.settings))
+            self._job = Job(["mesh", SETTINGS, "--of", self.question.of], settings)
+        self.look()
 
     # Chart
 
-    def _soon(self) -> None:
-        """Follow the sweep on the document's own thread."""
-        if self._document is None:
-            self._follow()
-        elif self._document.session_context is not None:
-            self._document.add_next_tick_callback(self._follow)
-
-    def _follow(self) -> None:
-        """Show what has come."""
-        sweep, chart = self.sweep, self.chart()
-        if sweep is None or chart is None:
-            return
+    def _draw(self) -> None:
+        """Show what has come, and where the page's settings stand."""
+        sweep, settings = self.sweep, self.state.settings
+        assert sweep is not None
+        self._seen = len(sweep.rows), sweep.is_over
         self._cancel.visible = not sweep.is_over
-        words = counts(sweep.plan, sweep.rows)
-        if not sweep.is_over:
-            rest = f", {sweep.left:.0f} s left" if sweep.rows else ""
-            words = f"{len(sweep.rows)} of {sweep.plan.size} runs{rest}"
-        elif not _is_of(sweep.plan, self.question.asked(self.state.settings)):
+        words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
+        if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
-        self._message.object = " ".join(filter(None, (sweep.message, words)))
-        here = _place_of(sweep.plan, chart, self.state.settings)
+        self._message.object = f"{sweep.message} {words}".strip()
+        chart = self.chart()
+        data = chart, _place_of(sweep.plan, chart, settings)
         if form(chart) == self._form:
-            self._pipe.send((chart, here))
+            self._pipe.send(data)
             return
         self._form, self._keys.object = form(chart), keys([chart])
-        self._pipe = hv.streams.Pipe(data=(chart, here))
-        look = {"hooks": [self._listen]}
+        self._pipe = hv.streams.Pipe(data=data)
         self._chart.object = hv.DynamicMap(
-            lambda data: overlay(*data).opts(**look), streams=[self._pipe]
+            lambda data: overlay(*data).opts(hooks=[self._listen]), streams=[self._pipe]
         )
 
     def _listen(self, plot: Any, _element: Any) -> None:
@@ -262,53 +230,20 @@ class WhatIf(param.Parameterized):
             plot.state.on_event(Tap, lambda event: self.open_at(event.x, event.y))
 
     def open_at(self, x: float, y: float) -> None:
-        """Open the run of the point at a place on the chart, if there is one."""
-        chart = self.chart()
-        place = nearest(chart, x, y) if chart is not None and chart.runs is not None else None
-        if place is None:
+        """Open the run of the point at a place on the chart, as the page shows runs."""
+        chart, page = self.chart(), self.state.settings
+        place = nearest(chart, x, y)
+        if self.sweep is None or chart.runs is None or place is None:
             return
         plan = self.sweep.plan
         try:
             settings = plan.settings_at(int(chart.runs.numbers[place]))
         except SettingError as refusal:
-            self.state.refusal = message_of(refusal, self.state.settings)
+            self.state.refusal = message_of(refusal, page)
             return
-        varied = [axis.name for axis in plan.axes]
-        self._open_run(as_watched(settings, self.state.settings, varied))
-
-    # Mesh
-
-    def _on_mesh(self) -> None:
-        """Have the quantity taken on three meshes and three numbers of instants, or no more."""
-        if self._job is not None and not self._job.is_over:
-            self._job.cancel()
-            return
-        if self._job is not None:
-            self._job.close()
-        settings = dump(answer(self.state.settings))
-        self._job = Job(["mesh", SETTINGS, "--of", self.question.of], settings)
-        self.mesh.label = "No more"
-        self._look()
-        if self._document is not None:
-            self._looking = self._document.add_periodic_callback(self._look, LOOK)
-
-    def _look(self) -> None:
-        job = self._job
-        if job is None:
-            return
-        self._meshed.object = job.progress or "  \n".join(map(str.strip, job.lines))
-        if job.is_over:
-            self.mesh.label = MESH
-            if self._looking is not None:
-                self._document.remove_periodic_callback(self._looking)
-                self._looking = None
-
-    def _tell_mesh(self) -> None:
-        try:
-            can = decides(self.state.settings, reading(self.question.of))
-        except SettingError:
-            can = False
-        self.mesh.visible = can
+        ends = {"accuracy", *(ANSWER if settings.finish != "none" else ())}
+        ends -= {axis.name for axis in plan.axes}
+        self._open_run(settings.replace(**{name: getattr(page, name) for name in ends}))
 
 
 def nearest(chart: Chart, x: float, y: float) -> int | None:
@@ -333,37 +268,25 @@ def _measured(value: float, unit: str) -> str:
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
     """Whether a plan fixes what settings say."""
-    if settings.scene != plan.settings.scene:
-        return False
-    varied = {axis.name for axis in plan.axes}
-    before, after = plan.settings.values(), settings.values()
-    return all(before[name] == after[name] for name in before if name not in varied)
+    varied = {axis.name: None for axis in plan.axes}
+    is_same_scene = settings.scene == plan.settings.scene
+    return is_same_scene and settings.values() | varied == plan.settings.values() | varied
 
 
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
-    """Where settings stand on a chart; NaN off its axes, and above where there is no run."""
-    if settings.scene != plan.settings.scene:
-        return np.nan, np.nan
-    across, *up = ordered(plan)
-    x = _along(across, settings, plan.unit(across), chart.x)
-    if is_map(plan):
-        return x, _along(up[0], settings, plan.unit(up[0]), chart.y)
-    y, runs = np.nan, chart.runs
-    point = {axis.name: getattr(settings, axis.name) for axis in plan.axes}
-    for run, value in zip(runs.numbers, runs.y, strict=True) if runs is not None else ():
-        y = value if plan.point(int(run)) == point else y
-    return x, y
+    """Where settings stand on a chart; NaN off its axes, and above a panel's."""
+    place = [np.nan, np.nan]
+    axes = ordered(plan) if settings.scene == plan.settings.scene else []
+    shown = [chart.x, chart.y] if is_map(plan) else [chart.x]
+    for i, (axis, across) in enumerate(zip(axes, shown, strict=False)):
+        value = getattr(settings, axis.name)
+        if not axis.is_numeric:
+            place[i] = axis.values.index(value) if value in axis.values else np.nan
+        elif min(axis.values) <= value <= max(axis.values):
+            place[i] = value / sizes_of(plan.unit(axis)).get(across.unit, 1.0)
+    return place[0], place[1]
 
 
-def _along(axis: Varied, settings: Settings, unit: str, shown: PanelAxis) -> float:
-    """Where a value stands on an axis, in the unit that is shown; NaN off it."""
-    value = getattr(settings, axis.name)
-    if axis.is_numeric:
-        is_on = min(axis.values) <= value <= max(axis.values)
-        return float(value) / sizes_of(unit).get(shown.unit, 1.0) if is_on else np.nan
-    return float(axis.values.index(value)) if value in axis.values else np.nan
-
-
-def _button(label: str, icon: str, act: Callable[[], object], **more: Any) -> pmui.Button:
-    look = {"variant": "outlined", **FIELD, **more, **({"icon": icon} if icon else {})}
+def _button(label: str, act: Callable[[], object], **more: Any) -> pmui.Button:
+    look = {"variant": "outlined", **FIELD, **more}
     return pmui.Button(label=label, on_click=lambda event: act(), **look)

@@ -78,7 +78,7 @@ class Visitor:
         if header["msgtype"] == "ACK":
             await self._send("PULL-DOC-REQ", {})
         elif header["msgtype"] == "PULL-DOC-REPLY":
-            found = re.search(r'"app.display.Pulse","id":"(\w+)"', content.replace(" ", ""))
+            found = re.search(r'"app.browser.Pulse","id":"(\w+)"', content.replace(" ", ""))
             assert found is not None
             self._pulse = found[1]
             await self._send("PATCH-DOC", {"events": [READY]})

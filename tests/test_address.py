@@ -18,6 +18,7 @@ from solver.study.other_programs.brought import read_brought
 
 PARTS: dict[str, Any] = {
     "tab": "What if",
+    "question": "friction=0.2:0.4:3 peak=600:900:2 dissipation",
     "instant": 0.25,
     "iteration": 12,
     "pace": "5 a second",

@@ -13,6 +13,7 @@ from app.files import FilesPanel
 from app.refusals import nearest_allowed
 from app.state import PageState, default_settings
 from app.units import Unit, typed, unit_of
+from solver.checked import dump
 from solver.definitions import CurveParameter
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE, ends_of
@@ -226,7 +227,7 @@ def test_points_that_stand_for_a_preset_are_taken_as_they_stand(scene: str) -> N
 def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> None:
     state = of_scene("bar")
     panel = FilesPanel(state, str, 280)
-    saved = panel._saved().getvalue()
+    saved = dump(state.settings)
 
     def open_file(name: str, text: str) -> str:
         panel.file.filename = name

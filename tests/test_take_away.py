@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 from app.browser import Display
-from app.export import TakeAway, history_table, plot_table, program
-from app.frame import Frame
+from app.export import TakeAway, history_table, offline_page, plot_table, program
+from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
 from app.views.catalogue import CARDS
@@ -87,7 +87,7 @@ def test_the_program_gives_the_records_of_the_run_again(
 
 def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
     _, frame = ended("bar")
-    view = next(view for view in page("bar").views if isinstance(view, ContactForce))
+    view = next(view for view in page("bar").display.views if isinstance(view, ContactForce))
     table = plot_table(view, frame)
     drawn = {float(row["latin"]) for row in rows_of(table) if row["latin"]}
     assert drawn >= {float(value) for value in view.friction.data["latin"]}
@@ -101,24 +101,24 @@ def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
 
 @pytest.mark.parametrize("scene", SMALL)
 def test_every_plot_of_every_kind_of_scene_is_a_table(scene: str) -> None:
-    for view in page(scene).views:
+    for view in page(scene).display.views:
         assert rows_of(plot_table(view, ended(scene)[1])), view.name
 
 
 def test_the_offline_page_holds_each_instant_and_loads_nothing() -> None:
     _, frame = ended("bar")
     away = page("bar")
-    text = away.page(frame, away.views, "svg")
+    text = offline_page(frame, away.display.views, Selection(), None, "svg")
     assert "<script src" not in text
     assert "<link" not in text
     match = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.S)
     assert match is not None
     kept = json.dumps(json.loads(match[1]))
-    assert kept.count('"svg"') >= len(away.views)
+    assert kept.count('"svg"') >= len(away.display.views)
     captions = set(re.findall(r" At ([\d.]+) s of 1 s\.", kept))
     assert captions == {f"{time:g}" for time in np.linspace(0, 1, 21).round(2)}
     # The page's own figures are as they were.
-    assert {view.figure.output_backend for view in away.views} == {"canvas"}
+    assert {view.figure.output_backend for view in away.display.views} == {"canvas"}
 
 
 def test_an_instant_is_taken_away_as_a_contact_problem() -> None:
@@ -142,8 +142,8 @@ def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
     away = page("bar")
     away.open()
     assert away.view.open
-    names = [getattr(offer, "filename", "") for offer in away.offers]
+    names = [getattr(offer, "filename", "") for offer in away.view]
     assert {"slipfront-bar.html", "slipfront-bar.py", "slipfront-bar-iterations.csv"} <= {*names}
-    assert sum(name.endswith(".csv") for name in names) == 1 + len(away.views)
-    for offer in away.offers[2:5]:
+    assert sum(name.endswith(".csv") for name in names) == 1 + len(away.display.views)
+    for offer in away.view[2:5]:
         assert offer.callback().getvalue()
