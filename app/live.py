@@ -53,8 +53,10 @@ class Live:
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.
         document.add_next_tick_callback(self.prepare)
+        wraps = {"css_classes": ["wraps"], "stylesheets": [STYLE]}
+        self.transport.view.param.update(**wraps)
         self._above = pn.Row(
-            self.transport.view, self._status, sizing_mode="stretch_width", margin=0
+            self.transport.view, self._status, sizing_mode="stretch_width", margin=0, **wraps
         )
         self._scene, self._plots = column("scene"), column("plots")
         self._timeline = pn.Row(

@@ -24,7 +24,14 @@ from app.supervisor import Supervisor
 from app.whatif import WhatIf
 from solver.settings import Settings
 
-COMPACT = {"& .MuiToolbar-root": {"minHeight": "48px !important"}}
+COMPACT = {
+    "& .MuiToolbar-root": {"minHeight": "48px !important"},
+    # On a phone the buttons are moved by a finger.
+    "@media (max-width: 600px)": {
+        "& header h3": {"display": "none"},
+        "& header": {"overflowX": "auto"},
+    },
+}
 BARE = {"& .header, & .main .MuiToolbar-root": {"display": "none"}}
 WHITE = {"&.MuiIconButton-root, & .MuiIconButton-root": {"color": "#fff"}}
 IN_HEADER = {

@@ -23,8 +23,10 @@ THIN = ("#7A7A7A", "#A0A0A0", "#56B4E9")
 """Colours of paths beside the first."""
 LOW, TITLE = -1.5, 1.62
 """Of the axis up: the paths lie between -1 and 1, their names above."""
-LETTER = 0.0085
-"""Width of a letter as a share of the axis, about."""
+LETTER = 7.9
+"""Pixels that a letter is wide, about."""
+WIDTH = 930
+"""Pixels of the axis until the browser tells."""
 
 
 class Timeline(View):
@@ -61,7 +63,8 @@ class Timeline(View):
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             made.on_event(event, self._select)
-        self._run = 0
+        self._width, self._shown = WIDTH, (0, WIDTH)
+        made.on_change("inner_width", self._resize)
         return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -69,8 +72,8 @@ class Timeline(View):
         run = frame.run
         unit = unit_for(float(run.instants[-1]), "s")
         times = run.instants / np.float32(unit.factor)
-        if run.number != self._run:
-            self._run = run.number
+        if self._shown != (run.number, self._width):
+            self._shown = run.number, self._width
             self._show_paths(run, times, unit.name)
         column = run.column(selection.phase)
         load = self.path.data["load"]
@@ -92,14 +95,18 @@ class Timeline(View):
             "color": colors[1:],
         }
         texts = [text for text, _, _ in paths[:count]] + [f"t, {unit}"]
-        ends = np.cumsum([(len(text) + 4) * LETTER for text in texts[:-1]])
-        x = [*np.concatenate([[0.0], ends[:-1]]), 1.0 - 4 * LETTER]
+        letter = LETTER / self._width
+        ends = np.cumsum([(len(text) + 4) * letter for text in texts[:-1]])
+        x = [*np.concatenate([[0.0], ends[:-1]]), 1.0 - 4 * letter]
         self.names.data = {
             "x": [end * share for share in x],
             "y": [TITLE] * (count + 1),
             "text": texts,
             "color": [*colors, THIN[0]],
         }
+
+    def _resize(self, _name: str, _old: int, new: int) -> None:
+        self._width = max(new, 1)
 
     def _select(self, event: Any) -> None:
         end = self.figure.x_range.end / 1.01
