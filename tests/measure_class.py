@@ -26,6 +26,7 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 PACES = {"20 a second": ENDLESS, "whole in 3 s": ENDLESS.rpartition("&pace")[0]}
 SECONDS = 20.0
+PATIENT = {"connect_timeout": 600.0, "request_timeout": 600.0}
 LEAVING = 30.0
 """Seconds in which the server ends what belongs to closed pages."""
 READY = {
@@ -55,11 +56,12 @@ class Visitor:
     async def open(self, address: str) -> None:
         """Open a page, and go on saying what is painted."""
         client = AsyncHTTPClient(force_instance=True)
-        answer = await client.fetch(address, request_timeout=600.0)
+        answer = await client.fetch(address, **PATIENT)
         token = re.search(r'"token":\s*"([^"]+)"', answer.body.decode())
         assert token is not None
         place = address.partition("?")[0].replace("http", "ws") + "/ws"
-        request = HTTPRequest(place, headers={"Sec-WebSocket-Protocol": f"bokeh, {token[1]}"})
+        headers = {"Sec-WebSocket-Protocol": f"bokeh, {token[1]}"}
+        request = HTTPRequest(place, headers=headers, **PATIENT)
         self._socket: WebSocketClientConnection = await websocket_connect(request)
         self._pulse: str | None = None
         while (header := await self._socket.read_message()) is not None:
@@ -113,6 +115,9 @@ async def measure(server: Server, number: int) -> None:
         tasks = [asyncio.create_task(visitor.open(address)) for visitor in visitors]
         while not all(visitor.pictures for visitor in visitors):
             await asyncio.sleep(0.1)
+            for task in tasks:
+                if task.done():
+                    await task
         last = max(visitor.pictures[0] for visitor in visitors) - began
         print(f"{pace}: the last opens after {last:.1f} s")
         before, began = [len(visitor.pictures) for visitor in visitors], time.perf_counter()
