@@ -90,7 +90,7 @@ def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
     view = next(view for view in page("bar").display.views if isinstance(view, ContactForce))
     table = plot_table(view, frame)
     drawn = {float(row["latin"]) for row in rows_of(table) if row["latin"]}
-    assert drawn >= {float(value) for value in view.friction.data["latin"]}
+    assert drawn >= {float(value) for value in view.sources["friction"].data["latin"]}
     head = "\n".join(line[2:] for line in table.splitlines() if line.startswith("# "))
     saved = settings_from_toml(head[head.index("scene = ") :])
     assert dump(saved) == dump(frame.run.settings)

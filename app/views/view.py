@@ -13,12 +13,11 @@ from bokeh.core.properties import value
 from bokeh.models import (
     ColumnDataSource,
     CrosshairTool,
-    FixedTicker,
     GlyphRenderer,
     HoverTool,
     Legend,
+    LegendItem,
     NumeralTickFormatter,
-    PrintfTickFormatter,
     Range1d,
     Title,
 )
@@ -174,36 +173,86 @@ class Axis:
             self._made.yaxis.axis_label = textwrap.fill(text, LONGEST)
 
 
-class Key:
-    """The legend of a plot, in one line above it, where it covers no curve.
+class Plot(View):
+    """Curves over two axes, below a legend that names those that are there.
 
-    A click on an entry hides its curve.
+    A click on an entry of the legend hides its curve.
 
-    Parameters
+    Attributes
     ----------
-    made
-        The figure.
-    entries
-        What each entry names.
+    x, y
+        The axes.
+    sources
+        What is drawn, by name.
     """
 
-    def __init__(self, made: figure, entries: Mapping[str, list[GlyphRenderer]]) -> None:
-        self._items = dict(zip(entries, legend(made, dict(entries)).items, strict=True))
+    def begin(self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any) -> figure:
+        """A new figure whose axes have a title and an SI unit; `add` fills it."""
+        made = self.start(plot(**more))
+        self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
+        return made
 
-    def show(self, entries: Mapping[str, bool | str]) -> None:
-        """Show or hide entries, or give them other names."""
-        for name, wanted in entries.items():
-            item = self._items[name]
+    def start(self, made: figure) -> figure:
+        """Have `add` fill a figure."""
+        self._made = made
+        self.sources: dict[str, ColumnDataSource] = {}
+        self._glyphs: dict[str, list[GlyphRenderer]] = {}
+        self._items: dict[str, LegendItem] = {}
+        return made
+
+    def add(
+        self,
+        name: str,
+        glyph: str = "line",
+        columns: str = "x y",
+        *,
+        also: str = "",
+        on: str = "",
+        **look: Any,
+    ) -> GlyphRenderer:
+        """A glyph whose columns are called as its properties, or one on another one's source.
+
+        Its source has also other columns, for whoever hovers.
+        """
+        if not on:
+            on, look = name, {column: column for column in columns.split()} | look
+            self.sources[name] = source(*columns.split(), *also.split())
+        renderer: GlyphRenderer = getattr(self._made, glyph)(source=self.sources[on], **look)
+        self._glyphs.setdefault(name, []).append(renderer)
+        return renderer
+
+    def mark(self, name: str, color: str, **look: Any) -> None:
+        """A square that stands in the legend only."""
+        look = {"marker": "square", "size": 10, "color": color} | look
+        self._glyphs[name] = [self._made.scatter([np.nan], [np.nan], **look)]
+
+    def legend(self, **titles: str) -> None:
+        """Name glyphs in a legend, in this order."""
+        box = legend(self._made, {title: self._glyphs[name] for name, title in titles.items()})
+        self._items = dict(zip(titles, box.items, strict=True))
+
+    def show(self, name: str, wanted: bool | str) -> None:
+        """Show or hide an entry of the legend, or give it another title."""
+        item = self._items.get(name)
+        if item is not None:
             item.visible = bool(wanted)
             if isinstance(wanted, str) and wanted and item.label != value(wanted):
                 item.label = value(wanted)
 
+    def fill(self, name: str, title: str = "", **columns: Any) -> None:
+        """Fill a source; the legend has it, by a title, if there is anything in it."""
+        put(self.sources[name], **columns)
+        self.show(name, any(map(len, columns.values())) and (title or True))
 
-def plot(x: str, y: str, **more: Any) -> figure:
-    """A figure with the look that all plots share; its ranges are set by whoever fills it."""
+    def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
+        """Draw a curve of values in SI."""
+        self.fill(name, title, x=self.x(x), y=self.y(y))
+
+
+def plot(**more: Any) -> figure:
+    """A figure with the look that all plots share; its ranges and titles are those of `Axis`."""
     more = {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more
     made = figure(
-        y_axis_label=y,
         sizing_mode="stretch_both",
         min_height=120,
         styles={"font-size": TEXT},
@@ -219,8 +268,20 @@ def plot(x: str, y: str, **more: Any) -> figure:
     made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
     made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
     # A title stands nearer than the label of an axis, which the theme moves away.
-    made.add_layout(Title(text=x, align="center", standoff=2), "below")
+    made.add_layout(Title(align="center", standoff=2), "below")
     made.grid.grid_line_alpha = 0.3
+    return made
+
+
+def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> figure:
+    """A figure without tools, frame and grid, at least so many pixels high, with ends of axes."""
+    made = figure(
+        sizing_mode="stretch_both", min_height=least, tools="", toolbar_location=None,
+        x_range=Range1d(*across), y_range=Range1d(*up), min_border=0,
+    )  # fmt: skip
+    made.grid.visible = False
+    made.outline_line_color = None
+    made.background_fill_alpha = made.border_fill_alpha = 0.0
     return made
 
 
@@ -242,28 +303,22 @@ def source(*columns: str) -> ColumnDataSource:
 
 def put(target: ColumnDataSource, **columns: Any) -> None:
     """Fill a source, where anything has changed: what is the same is not sent again."""
-    old = target.data
-    if any(not _equal(old.get(name), new) for name, new in columns.items()):
+    if not all(_equal(target.data[name], new) for name, new in columns.items()):
         target.data = columns
 
 
 def _equal(old: Any, new: Any) -> bool:
-    if isinstance(new, list) and new and isinstance(new[0], np.ndarray):
-        return len(old) == len(new) and all(map(np.array_equal, old, new))
-    return np.array_equal(old, new)
+    if isinstance(new, np.ndarray):
+        return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
+    if isinstance(new, list):
+        return len(old) == len(new) and all(map(_equal, old, new))
+    return bool(old == new)
 
 
-def mark(made: figure, color: str, alpha: float = 1.0) -> GlyphRenderer:
-    """A square that stands in a legend only."""
-    nowhere = {"x": [np.nan], "y": [np.nan]}
-    return made.scatter(**nowhere, marker="square", size=10, color=color, alpha=alpha)
-
-
-def curve(target: ColumnDataSource, x: ArrayLike, y: ArrayLike) -> None:
-    """Fill a source of x and y with a curve on logarithmic axes: what is positive and finite."""
-    x, y = np.asarray(x), np.asarray(y)
-    shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
-    put(target, x=x[shown], y=y[shown])
+def joined(curves: Iterable[ArrayLike]) -> Floats:
+    """Curves or parts of them one after the other, NaN between them, along the last axis."""
+    pieces = [np.append(curve, np.full((*np.shape(curve)[:-1], 1), np.nan), -1) for curve in curves]
+    return np.concatenate(pieces, -1)[..., :-1] if pieces else np.zeros((2, 0))
 
 
 def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
@@ -286,12 +341,6 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
 def key_of(run: Run) -> tuple[int, bool]:
     """What units and ends of axes are chosen for: a run, and anew once its reference is known."""
     return run.number, bool(run.reference)
-
-
-def few_ticks(axis: Any) -> None:
-    """Have a logarithmic axis of few decades say 1, 2, 5, 10, ... without overlaps."""
-    axis.ticker = FixedTicker(ticks=[f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)])
-    axis.formatter = PrintfTickFormatter(format="%g")
 
 
 def whole(axis: Any) -> None:

@@ -29,7 +29,7 @@ class Outlines:
     rims
         Sides of the bodies that nothing touches, two nodes each.
     broken
-        Sides at the break of the broken body, two nodes each.
+        Nodes of the sides at the break of the broken body, shape (n, 2).
     """
 
     geometry: Geometry
@@ -58,11 +58,12 @@ def outlines_of(geometry: Geometry) -> Outlines:
         own = _boundary(geometry.quads[geometry.parts == part])
         sides.append(own)
         loops += _loops(own)
+    rims = _untouched(np.concatenate(sides), geometry.nodes)
     return Outlines(
         geometry,
         np.concatenate([np.append(loop, BREAK) for loop in loops])[:-1],
-        _apart(_untouched(np.concatenate(sides), geometry.nodes)),
-        _apart(_at_break(np.concatenate(sides), geometry)),
+        np.append(rims, np.full((len(rims), 1), BREAK), axis=1).ravel(),
+        _at_break(np.concatenate(sides), geometry),
     )
 
 
@@ -119,10 +120,6 @@ def _at_break(sides: Indices, geometry: Geometry) -> Indices:
     x, y = ends[:, :, 0], ends[:, :, 1].mean(axis=1)
     at = np.abs(x - place).max(axis=1) < 1e-4 * description.length
     return np.asarray(sides[at & ((y / height).astype(np.intp) == body)])
-
-
-def _apart(sides: Indices) -> Indices:
-    return np.append(sides, np.full((len(sides), 1), BREAK), axis=1).ravel()
 
 
 def bands(

@@ -11,16 +11,17 @@ import numpy as np
 
 from app.frame import OPEN, Frame
 from app.units import number
-from app.views.colors import DISPLACEMENT, EDGE, FORCE, STATUS
-from app.views.scene.acts import Arrow, Word, arrows_of, beam_of, words_of
-from app.views.scene.holds import gap_of, strokes_of
-from app.views.scene.layout import BAND, FOOT, IMAGE, LETTER, NARROW, Layout, turned
-from app.views.scene.outlines import Outlines, bands, drawn
+from app.views.acts import Arrow, Word, arrows_of, beam_of, gap_of, strokes_of, words_of
+from app.views.colors import DISPLACEMENT, EDGE, ERROR, FORCE, STATUS
+from app.views.layout import BAND, FOOT, IMAGE, LETTER, NARROW, Layout, turned
+from app.views.outlines import Outlines, bands, drawn
+from app.views.view import joined
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 
 Columns = dict[str, Any]
-GAP = np.array([[np.nan, np.nan]])
+Stroke = tuple[Array, str, float]
+"""A line from the middle of the foot, its colour and its width."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +133,7 @@ class Picture:
                 Handle("radius", gap[-1], EDGE, lambda r, at: r * depth / max(-float(at[1]), 2.0))
             )
         if "break" in self._behind and self._described.broken is not None:
-            ends = self.nodes[self.outlines.broken[self.outlines.broken >= 0]]
+            ends = self.nodes[self.outlines.broken.ravel()]
             if len(ends):
                 place = ends.mean(axis=0)
                 handles.append(Handle(self._behind["break"], place, FORCE, self._to_place))
@@ -140,31 +141,33 @@ class Picture:
 
     def columns(self) -> dict[str, Columns]:
         """Columns of all sources, by their names."""
-        outlines = self.outlines
-        page = {
-            "parts": drawn(outlines.parts, self.nodes),
-            "rims": drawn(outlines.rims, self.nodes),
-            "broken": drawn(outlines.broken, self.nodes),
-            "holds": _joined(self._strokes()),
-            "image": self._image(),
-        }
-        found = {name: self._lines(lines) for name, lines in page.items()}
-        arrows, heads = self._arrows()
-        handles = self._page(np.array([handle.place for handle in self.handles]).reshape(-1, 2))
-        return found | {
-            "bands": self._bands(),
-            "arrows": arrows,
-            "heads": heads,
-            "handles": _xy(handles) | {"color": [handle.color for handle in self.handles]},
-            "words": self._words(),
-            **self._keys(),
+        marks, keys = self._keys()
+        for handle in self.handles:
+            marks.append((self._page(handle.place), "circle", "white", handle.color, 2.5))
+        places, markers, fills, lines, widths = zip(*marks, strict=True) if marks else [()] * 5
+        x, y = np.reshape(places, (-1, 2)).T
+        acts = [(act, arrow) for act, (_, arrows) in self.acts.items() for arrow in arrows]
+        return {
+            "bodies": self._bodies(),
+            "strokes": self._strokes(),
+            "heads": _many([self._page(arrow.head) for _, arrow in acts])
+            | {"color": [_color(act) for act, _ in acts]},
+            "marks": {
+                "x": x,
+                "y": y,
+                "marker": list(markers),
+                "fill_color": list(fills),
+                "line_color": list(lines),
+                "line_width": list(widths),
+            },
+            "words": _texts(keys, self._words(), self.layout),
         }
 
     def ghost(self, frame: Frame, column: int, outlines: Outlines) -> Array:
-        """Outline of another run's bodies at the same scale, on the page, px."""
+        """Outline of another run's bodies at the same scale, on the page, (2, n), px."""
         nodes = self.layout.local(frame.run.geometry.nodes)
         nodes = nodes + self.layout.shift(frame.deformed.nodes[:, :, column], self.factor)
-        return self._page(drawn(outlines.rims, nodes))
+        return self._page(drawn(outlines.rims, nodes)).T.astype(np.float32)
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""
@@ -172,9 +175,6 @@ class Picture:
 
     def _page(self, local: Array) -> Array:
         return self.layout.page(local, self.tilt)
-
-    def _lines(self, local: Array) -> Columns:
-        return _xy(self._page(local))
 
     def _follow(self, places: Array) -> Array:
         """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
@@ -186,7 +186,47 @@ class Picture:
     def _to_place(self, present: float, pointer: Array) -> float:
         return float(pointer[0]) / self.layout.scale[0] + 0.5 * self.layout.length
 
-    def _strokes(self) -> list[Array]:
+    def _to_place(self, present: float, pointer: Array) -> float:
+        return float(pointer[0]) / self.layout.scale[0] + 0.5 * self.layout.length
+
+    def _bodies(self) -> Columns:
+        """Substructures, and below them, as far as there is room, what goes on there: their image.
+
+        That is turned by half a turn.
+        """
+        parts = drawn(self.outlines.parts, self.nodes)
+        shown = [(parts, 0.5 if self._shows_status else 0.0, 0.55)]
+        if any(hold.kind == "image" for hold in self._described.holds):
+            image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
+            shown.insert(0, (image, 0.22, 0.0))
+        lines, fills, edges = zip(*shown, strict=True)
+        smooth = [self._page(line).T.astype(np.float32) for line in lines]
+        return {
+            "xs": [x for x, _ in smooth],
+            "ys": [y for _, y in smooth],
+            "fill_alpha": list(fills),
+            "line_alpha": list(edges),
+        }
+
+    def _strokes(self) -> Columns:
+        """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
+        rims = drawn(self.outlines.rims, self.nodes)
+        held = joined([line.T for line in self._holds()]).T
+        smooth = [(self._page(rims), EDGE, 1.4), (self._page(held), EDGE, 1.3)]
+        strokes = self._bands() if self._shows_status else []
+        strokes += [(self._page(side), ERROR, 3.0) for side in self.nodes[self.outlines.broken]]
+        strokes += [(self._page(line), color, width) for line, color, width in self._arrows()]
+        # Long lines go to the browser as binary arrays, the many short ones as lists.
+        both = _many([line for line, _, _ in strokes])
+        long = [line.T.astype(np.float32) for line, _, _ in smooth]
+        return {
+            "xs": [x for x, _ in long] + both["xs"],
+            "ys": [y for _, y in long] + both["ys"],
+            "line_color": [color for _, color, _ in smooth + strokes],
+            "line_width": [width for _, _, width in smooth + strokes],
+        }
+
+    def _holds(self) -> list[Array]:
         foot = self._follow(np.array([[self.layout.length, 0.0]]))[0]
         strokes = strokes_of(self._described, self.layout, self.factor, self._now, foot)
         if self._described.tilt is not None:
@@ -195,52 +235,40 @@ class Picture:
             strokes.append(np.array([corner, corner + level]))
         return strokes
 
-    def _image(self) -> Array:
-        """What goes on below, turned by half a turn, as far as there is room."""
-        if not any(hold.kind == "image" for hold in self._described.holds):
-            return np.zeros((0, 2))
-        lines = -drawn(self.outlines.parts, self.nodes)
-        return np.stack([lines[:, 0], np.maximum(lines[:, 1], -IMAGE)], axis=1)
-
-    def _bands(self) -> Columns:
+    def _bands(self) -> list[Stroke]:
+        """What rubs, with a rim below where there is contact, on the page."""
         status = self.frame.deformed.status[:, self.column]
         lines, kinds = bands(self.points, self._geometry.chains, status)
         width = min(BAND, 0.35 * self.layout.size[1] / self._described.bodies)
         if len(np.unique(self._geometry.chains)) > self._described.bodies:
             width = min(width, 5.0)
-        return _many(lines) | {
-            "color": [STATUS[kind] for kind in kinds],
-            "width": [0.5 * width if kind == OPEN else width for kind in kinds],
-            "edge": [0.0 if kind == OPEN else width + 2.0 for kind in kinds],
-        }
+        shown = list(zip(lines, kinds, strict=True))
+        rims = [(line, EDGE, width + 2.0) for line, kind in shown if kind != OPEN]
+        return rims + [
+            (line, STATUS[kind], 0.5 * width if kind == OPEN else width) for line, kind in shown
+        ]
 
-    def _arrows(self) -> tuple[Columns, Columns]:
-        lines, heads, colors, widths, head_colors = [], [], [], [], []
+    def _arrows(self) -> list[Stroke]:
+        strokes = []
         for act, (_, arrows) in self.acts.items():
-            beam = beam_of(arrows)
-            for arrow in arrows:
-                lines.append(self._page(_shortened(arrow.line)))
-                heads.append(self._page(arrow.head))
-                head_colors.append(_color(act))
-            if beam is not None:
-                lines.append(self._page(beam))
-            colors += [_color(act)] * (len(lines) - len(colors))
-            widths += [1.6 if len(arrows) > 3 else 3.2] * (len(lines) - len(widths))
-        return _many(lines) | {"color": colors, "width": widths}, _many(heads) | {
-            "color": head_colors
-        }
+            lines, beam = [_shortened(arrow.line) for arrow in arrows], beam_of(arrows)
+            width = 1.6 if len(arrows) > 3 else 3.2
+            lines += [] if beam is None else [beam]
+            strokes += [(line, _color(act), width) for line in lines]
+        return strokes
 
-    def _words(self) -> Columns:
+    def _words(self) -> list[tuple[Word, Array]]:
+        """What acts, and the slope, with their places on the page."""
         words = words_of(self._described, self.layout, self.acts, self._now)
         shown = [(word, self._page(word.place)) for word in words]
         if self._described.tilt is not None:
             corner = np.array([0.5 * self.layout.size[0] + 30.0, 4.0])
             angle = number(float(np.degrees(self.tilt)))
             shown.append((Word(f"slope {angle}°", corner, "left"), corner + self.layout.origin))
-        return _texts(shown, self.layout)
+        return shown
 
-    def _keys(self) -> dict[str, Columns]:
-        """What colours mean, and how much displacements are magnified."""
+    def _keys(self) -> tuple[list[Any], list[Word]]:
+        """What colours mean, squares and words; and how much displacements are magnified."""
         run, layout = self.frame.run, self.layout
         kinds = {0: "stick", 1: "slip →", -1: "slip ←"} if self._shows_status else {}
         if kinds and any(interface.bound is None for interface in run.interfaces.values()):
@@ -248,25 +276,20 @@ class Picture:
         note = f"displacement × {number(self.factor)}"
         if self._described.height is None:
             note += ", thickness not to scale"
-        count = len(kinds)
         if layout.keys_beside:
-            x, y = np.full(count, 14.0), 30.0 + 18.0 * np.arange(count)[::-1]
-            last = 8.0, 11.0, "left"
+            places = [(14.0, 30.0 + 18.0 * row) for row in reversed(range(len(kinds)))]
+            last = Word(note, np.array([8.0, 11.0]), "left")
         else:
             sizes = [26.0 + LETTER * len(text) for text in kinds.values()]
-            x, y = 14.0 + np.cumsum([0.0, *sizes])[:count], np.full(count, 0.5 * FOOT)
-            last = layout.width - 12.0, 0.5 * FOOT, "right"
+            places = [(14.0 + sum(sizes[:n]), 0.5 * FOOT) for n in range(len(kinds))]
+            last = Word(note, np.array([layout.width - 12.0, 0.5 * FOOT]), "right")
             if layout.width < NARROW:
-                last = 8.0, 1.5 * FOOT, "left"
-        return {
-            "keys": {"x": x, "y": y, "color": [STATUS[kind] for kind in kinds]},
-            "notes": {
-                "x": np.append(x + 11.0, last[0]),
-                "y": np.append(y, last[1]),
-                "text": [*kinds.values(), note],
-                "align": ["left"] * count + [last[2]],
-            },
-        }
+                last = Word(note, np.array([8.0, 1.5 * FOOT]), "left")
+        marks, words = [], []
+        for (kind, text), place in zip(kinds.items(), places, strict=True):
+            marks.append((np.array(place), "square", STATUS[kind], STATUS[kind], 1.0))
+            words.append(Word(text, np.array([place[0] + 11.0, place[1]]), "left"))
+        return marks, [*words, last]
 
 
 def _color(act: Act) -> str:
@@ -284,33 +307,27 @@ def _shortened(line: Array) -> Array:
     return np.concatenate([line[:-1], [line[-1] - min(5.0, 0.9 * size) / size * along]])
 
 
-def _joined(lines: Sequence[Array]) -> Array:
-    pieces = [piece for line in lines for piece in (line, GAP)]
-    return np.concatenate(pieces[:-1]) if pieces else np.zeros((0, 2))
-
-
-def _xy(lines: Array) -> Columns:
-    x, y = lines.T.astype(np.float32)
-    return {"x": x, "y": y}
-
-
 def _many(lines: Sequence[Array]) -> Columns:
     rounded = [np.round(line, 1).T.tolist() for line in lines]
     return {"xs": [line[0] for line in rounded], "ys": [line[1] for line in rounded]}
 
 
-def _texts(shown: Sequence[tuple[Word, Array]], layout: Layout) -> Columns:
-    """Texts that are whole: moved inwards where they would be cut."""
-    x, y = [], []
+def _texts(keys: list[Word], shown: list[tuple[Word, Array]], layout: Layout) -> Columns:
+    """Keys, and texts that are whole: moved inwards where they would be cut."""
+    x, y = ([float(key.place[axis]) for key in keys] for axis in (0, 1))
     for word, place in shown:
         width = LETTER * len(word.text) + 4.0
         left = {"left": 0.0, "center": 0.5, "right": 1.0}[word.align] * width
         x.append(float(np.clip(place[0], left, max(layout.width - width + left, left))))
         y.append(float(np.clip(place[1], 8.0, layout.height - 8.0)))
+    words = [word for word, _ in shown]
+    colors = [FORCE if word.act is None else _color(word.act) for word in words]
     return {
         "x": x,
         "y": y,
-        "text": [word.text for word, _ in shown],
-        "align": [word.align for word, _ in shown],
-        "color": [FORCE if word.act is None else _color(word.act) for word, _ in shown],
+        "text": [word.text for word in keys + words],
+        "text_align": [word.align for word in keys + words],
+        "text_color": ["#78858C"] * len(keys) + colors,
+        "text_font_size": ["12px"] * len(keys) + ["14px"] * len(words),
+        "text_font_style": ["normal"] * len(keys) + ["bold"] * len(words),
     }
