@@ -27,25 +27,17 @@ RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)]
 
 @dataclass(frozen=True, eq=False)
 class Arrow:
-    """An arrow, px from the middle of the bodies' foot.
-
-    Attributes
-    ----------
-    act
-        What it shows.
-    line
-        From its tail to its head, shape (n, 2).
-    base, handle
-        Where it would be at the value 0, and the end that moves with the value.
-    value
-        Now.
-    """
+    """An arrow, px from the middle of the bodies' foot."""
 
     act: Act
+    """What it shows."""
     line: Array
+    """From its tail to its head, shape (n, 2)."""
     base: Array
     handle: Array
+    """Where it would be at the value 0, and the end that moves with the value."""
     value: float
+    """Now."""
 
     @property
     def head(self) -> Array:

@@ -31,35 +31,24 @@ NARROW = 560.0
 
 @dataclass(frozen=True)
 class Layout:
-    """From metres to pixels.
-
-    Attributes
-    ----------
-    width, height
-        Of the figure, px.
-    length, top
-        Of the bodies as they are drawn, m.
-    scale
-        Pixels per metre, along x and y; these differ for rods alone.
-    origin
-        The middle of the foot of the bodies, px.
-    arrow
-        Length of an arrow at its largest value, px.
-    motion
-        Pixels that the largest displacement takes at most, along x and y.
-    keys_beside
-        Whether keys stand at the left of the bodies, and not below them.
-    """
+    """From metres to pixels."""
 
     width: float
     height: float
+    """Of the figure, px."""
     length: float
     top: float
+    """Of the bodies as they are drawn, m."""
     scale: tuple[float, float]
+    """Pixels per metre, along x and y; these differ for rods alone."""
     origin: tuple[float, float]
+    """The middle of the foot of the bodies, px."""
     arrow: float
+    """Length of an arrow at its largest value, px."""
     motion: tuple[float, float]
+    """Pixels that the largest displacement takes at most, along x and y."""
     keys_beside: bool
+    """Whether keys stand at the left of the bodies, and not below them."""
 
     @property
     def size(self) -> Array:

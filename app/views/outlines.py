@@ -18,24 +18,16 @@ BREAK = -1
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """Nodes of lines, `BREAK` between them.
-
-    Attributes
-    ----------
-    geometry
-        What they are of.
-    parts
-        Closed lines round substructures.
-    rims
-        Sides of the bodies that nothing touches, two nodes each.
-    broken
-        Nodes of the sides at the break of the broken body, shape (n, 2).
-    """
+    """Nodes of lines, `BREAK` between them."""
 
     geometry: Geometry
+    """What they are of."""
     parts: Indices
+    """Closed lines round substructures."""
     rims: Indices
+    """Sides of the bodies that nothing touches, two nodes each."""
     broken: Indices
+    """Nodes of the sides at the break of the broken body, shape (n, 2)."""
 
     def suits(self, geometry: Geometry) -> bool:
         """Whether it is also that of another geometry, alike but for its size."""

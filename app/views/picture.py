@@ -26,22 +26,15 @@ Stroke = tuple[Array, str, float]
 
 @dataclass(frozen=True)
 class Handle:
-    """What can be dragged: its place, px from the middle of the foot, and what it sets.
-
-    Attributes
-    ----------
-    setting
-        Its name.
-    color
-        Of what it belongs to.
-    value
-        The setting, by the one at present and where the pointer is.
-    """
+    """What can be dragged: its place, px from the middle of the foot, and what it sets."""
 
     setting: str
+    """Its name."""
     place: Array
     color: str
+    """Of what it belongs to."""
     value: Callable[[float, Array], float]
+    """The setting, by the one at present and where the pointer is."""
 
 
 class Picture:

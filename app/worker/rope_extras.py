@@ -27,48 +27,32 @@ MOST_PLACES, MOST_WIRES = 200, 12
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """All wires that one section of a strand cuts; the core wire is the first.
-
-    Attributes
-    ----------
-    place
-        Along the strand, m.
-    wires
-        The interface of each, -1 for the core, shape (n,).
-    centres, radii
-        Of its circle, shape (n, 2) and (n,), m; the outermost fibre is below.
-    stress, slips
-        Mean stress, Pa, and status, shape (n, n_instants).
-    """
+    """All wires that one section of a strand cuts; the core wire is the first."""
 
     place: float
+    """Along the strand, m."""
     wires: NDArray[np.intp]
+    """The interface of each, -1 for the core, shape (n,)."""
     centres: Floats
     radii: Floats
+    """Of its circle, shape (n, 2) and (n,), m; the outermost fibre is below."""
     stress: Floats
     slips: Bytes
+    """Mean stress, Pa, and status, shape (n, n_instants)."""
 
 
 @dataclass(frozen=True, eq=False)
 class AllWires:
-    """Status of all wires of a strand.
-
-    Attributes
-    ----------
-    places
-        Along the strand, m, or polar angles, degrees, where it is bent alike all along.
-    is_clamped
-        Whether it is bent beside a clamp; else each wire stands for its layer.
-    layers
-        Of each wire, from 0, shape (n_wires,).
-    status
-        Shape (n_wires, n_places, n_instants).
-    """
+    """Status of all wires of a strand."""
 
     places: Floats
+    """Along the strand, m, or polar angles, degrees, where it is bent alike all along."""
     is_clamped: bool
+    """Whether it is bent beside a clamp; else each wire stands for its layer."""
     layers: NDArray[np.intp]
+    """Of each wire, from 0, shape (n_wires,)."""
     status: Bytes
+    """Shape (n_wires, n_places, n_instants)."""
 
 
 @dataclass(frozen=True, eq=False)
