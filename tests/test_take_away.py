@@ -26,9 +26,8 @@ from app.views.contact_force import ContactForce
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.worker.extras import EXTRAS
-from app.worker.fclib import fclib_file
 from app.worker.references import ReferenceCache
-from app.worker.runner import Runner
+from app.worker.runner import Runner, fclib_file
 from solver.checked import dump
 from solver.files import settings_from_toml
 from solver.refusal import RefusedError

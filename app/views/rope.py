@@ -71,24 +71,24 @@ class CrossSection(RopePlot):
         cut, column = frame.extras.get("section"), frame.run.column(selection.phase)
         if cut is None:
             return
-        unit = unit_for(float(np.abs(cut.stress).max()), "Pa")
-        low, high = (end / unit.factor for end in extent([cut.stress]))
+        unit = unit_for(float(np.abs(cut["stress"]).max()), "Pa")
+        low, high = (end / unit.factor for end in extent([cut["stress"]]))
         self.colors.update(low=low, high=max(high, low + 1e-9))
-        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut.place)}"
-        self._reach = 1.05 * float((np.hypot(*cut.centres.T) + cut.radii).max())
+        self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['place'])}"
+        self._reach = 1.05 * float((np.hypot(*cut["centres"].T) + cut["radii"]).max())
         self._fit()
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
-        slips, chosen = cut.slips[:, column], cut.wires == number
+        slips, chosen = cut["slips"][:, column], cut["wires"] == number
         rings = [
             STATUS[int(slip)] if slip else ERROR if is_chosen else EDGE
             for slip, is_chosen in zip(slips, chosen, strict=True)
         ]
         self.fill(
             "wires",
-            x=cut.centres[:, 0],
-            y=cut.centres[:, 1],
-            radius=0.96 * cut.radii,
-            stress=cut.stress[:, column] / unit.factor,
+            x=cut["centres"][:, 0],
+            y=cut["centres"][:, 1],
+            radius=0.96 * cut["radii"],
+            stress=cut["stress"][:, column] / unit.factor,
             line_color=rings,
             line_width=np.where(slips != 0, 3.0, np.where(chosen, 2.5, 1.0)),
         )
@@ -108,9 +108,9 @@ class CrossSection(RopePlot):
         cut = self.state.frame and self.state.frame.extras.get("section")
         if cut is None:
             return
-        away = np.hypot(*(cut.centres - [event.x, event.y]).T)
-        if away.min() <= cut.radii[away.argmin()]:
-            self._select(int(cut.wires[away.argmin()]))
+        away = np.hypot(*(cut["centres"] - [event.x, event.y]).T)
+        if away.min() <= cut["radii"][away.argmin()]:
+            self._select(int(cut["wires"][away.argmin()]))
 
 
 class Unrolled(RopePlot):
@@ -138,19 +138,19 @@ class Unrolled(RopePlot):
         wires, column = frame.extras.get("all_wires"), frame.run.column(selection.phase)
         if wires is None:
             return
-        count, places = len(wires.layers), wires.places
-        self.x.rename(*(("x", "m") if wires.is_clamped else ("polar angle", "°")))
-        self.y.rename("wire" if wires.is_clamped else "layer", "")
+        count, places = len(wires["layers"]), wires["places"]
+        self.x.rename(*(("x", "m") if wires["is_clamped"] else ("polar angle", "°")))
+        self.y.rename("wire" if wires["is_clamped"] else "layer", "")
         step = float(places[1] - places[0]) if len(places) > 1 else float(places[0])
         ends = float(places[0]) - 0.5 * step, float(places[-1]) + 0.5 * step
-        key = frame.run.number, wires.is_clamped
+        key = frame.run.number, wires["is_clamped"]
         self.x.hold(key, *ends)
         self.y.hold(key, 0.5, count + 0.5)
         left, right = self.x(ends).tolist()
-        image = np.ascontiguousarray(wires.status[:, :, column])
+        image = np.ascontiguousarray(wires["status"][:, :, column])
         size = {"dw": [right - left], "dh": [count]}
         self.fill("status", image=[image], x=[left], y=[0.5], **size)
-        self.fill("layers", y=np.flatnonzero(np.diff(wires.layers)) + 1.5)
+        self.fill("layers", y=np.flatnonzero(np.diff(wires["layers"])) + 1.5)
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
         middle, width = [0.5 * (left + right)], [right - left]
         self.fill("chosen", x=middle, y=[number + 1.0], width=width, height=[1.0])
@@ -175,9 +175,9 @@ class StressRanges(RopePlot):
         found = frame.extras.get("wire_ranges")
         if found is None:
             return
-        count = len(found.layers)
+        count = len(found["layers"])
         self.x.span(0.5, count + 0.5)
-        self.y.hold(key_of(frame.run), 0.0, 1.08 * float(found.ranges.max()))
-        colors = [LAYERS[layer % len(LAYERS)] for layer in found.layers]
-        top, layer = self.y(found.ranges), found.layers + 1
+        self.y.hold(key_of(frame.run), 0.0, 1.08 * float(found["ranges"].max()))
+        colors = [LAYERS[layer % len(LAYERS)] for layer in found["layers"]]
+        top, layer = self.y(found["ranges"]), found["layers"] + 1
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)

@@ -12,10 +12,9 @@ from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import StressField, floats, thinned
-from app.worker.rope_extras import ROPE_EXTRAS
+from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
-from solver.discrete.rope.forces import WireForces
 from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
@@ -59,7 +58,7 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     """
     rope = structure_of(sampler.settings)
     if isinstance(rope, Rope):
-        return _axial_force_of_rope(rope, sampler, iterate, needs)
+        return axial_force_of_rope(rope, sampler, iterate, needs)
     if kind_of(sampler.settings) != "wires":
         return None
     force = _axial_of(sampler)
@@ -74,25 +73,6 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
         "force": floats(shown),
         "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires],
         "stuck": None,
-    }
-
-
-def _axial_force_of_rope(
-    rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs
-) -> dict[str, Any]:
-    names = [wire.name for wire in rope.wires]
-    name = needs.interface if needs.interface in names else names[0]
-    number, columns = names.index(name), sampler.columns
-    wire, places = rope.wires[number], thinned(rope.elements, MOST_PLACES)
-    nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
-    stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
-    force = WireForces(rope)(iterate.displacement, columns)[number]
-    middles = 0.5 * (wire.along[1:] + wire.along[:-1])
-    return {
-        "x": floats(np.asarray(middles)[places]),
-        "force": floats(force[None, places]),
-        "names": [name],
-        "stuck": floats(stuck[places]),
     }
 
 
@@ -304,6 +284,18 @@ def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
 
 
 Extra = Callable[["Sampler", Iterate, Needs], Any]
+
+
+def _of_rope(extra: Callable[[Rope, Sampler, Iterate, Needs], Any]) -> Extra:
+    """An extra of a strand that is bent; None of all else."""
+
+    def of_rope(sampler: Sampler, iterate: Iterate, needs: Needs) -> Any:
+        rope = structure_of(sampler.settings)
+        return extra(rope, sampler, iterate, needs) if isinstance(rope, Rope) else None
+
+    return of_rope
+
+
 EXTRAS: dict[str, Extra] = {
     "spectra": spectra,
     "axial force": axial_force,
@@ -313,6 +305,8 @@ EXTRAS: dict[str, Extra] = {
     "clips": clips,
     "beside": beside,
     "stress": stress,
-    **ROPE_EXTRAS,
+    "section": _of_rope(section),
+    "all_wires": _of_rope(all_wires),
+    "wire_ranges": _of_rope(wire_ranges),
 }
 """By the name that a view needs them by."""

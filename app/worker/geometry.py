@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,18 +23,6 @@ MOST_POINTS = 200
 """Contact points of an interface, and nodes of a rod, that are drawn at most."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
-
-
-class Drawn(Protocol):
-    """The bodies of a scene as they are drawn."""
-
-    geometry: Geometry
-
-    def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How they have moved in an iterate."""
-
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
-        """Stress of every quadrilateral at all instants."""
 
 
 class StressField(NamedTuple):
