@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,8 +21,8 @@ from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 
 Columns = dict[str, Any]
-Stroke = tuple[Array, str, float]
-"""A line from the middle of the foot, its colour and its width."""
+Strokes = list[tuple[list[Array], str, float]]
+"""Lines on the page that have a colour and a width, px."""
 
 
 @dataclass(frozen=True)
@@ -203,20 +204,19 @@ class Picture:
 
     def _strokes(self) -> Columns:
         """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
-        rims = drawn(self.outlines.rims, self.nodes)
-        held = joined([line.T for line in self._holds()]).T
-        smooth = [(self._page(rims), EDGE, 1.4), (self._page(held), EDGE, 1.3)]
-        strokes = self._bands() if self._shows_status else []
-        strokes += [(self._page(side), ERROR, 3.0) for side in self.nodes[self.outlines.broken]]
-        strokes += [(self._page(line), color, width) for line, color, width in self._arrows()]
-        # Long lines go to the browser as binary arrays, the many short ones as lists.
-        both = _many([line for line, _, _ in strokes])
-        long = [line.T.astype(np.float32) for line, _, _ in smooth]
+        rims = self._page(drawn(self.outlines.rims, self.nodes))
+        strokes = [([rims], EDGE, 1.4), (self._holds(), EDGE, 1.3)]
+        if self._shows_status:
+            strokes += self._bands()
+        broken = self._page(self.nodes[self.outlines.broken])
+        strokes += [(list(broken), ERROR, 3.0), *self._arrows()]
+        lines, colors, widths = zip(*strokes, strict=True)
+        both = [joined([line.T for line in some]).astype(np.float32) for some in lines]
         return {
-            "xs": [x for x, _ in long] + both["xs"],
-            "ys": [y for _, y in long] + both["ys"],
-            "line_color": [color for _, color, _ in smooth + strokes],
-            "line_width": [width for _, _, width in smooth + strokes],
+            "xs": [x for x, _ in both],
+            "ys": [y for _, y in both],
+            "line_color": list(colors),
+            "line_width": list(widths),
         }
 
     def _holds(self) -> list[Array]:
@@ -226,28 +226,31 @@ class Picture:
             corner = np.array([-0.5 * self.layout.size[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * self.layout.size[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
-        return strokes
+        return [self._page(stroke) for stroke in strokes]
 
-    def _bands(self) -> list[Stroke]:
-        """What rubs, with a rim below where there is contact, on the page."""
+    def _bands(self) -> Strokes:
+        """What rubs, by its status, on a rim where there is contact."""
         status = self.frame.deformed.status[:, self.column]
         lines, kinds = bands(self.points, self._geometry.chains, status)
         width = min(BAND, 0.35 * self.layout.size[1] / self._described.bodies)
         if len(np.unique(self._geometry.chains)) > self._described.bodies:
             width = min(width, 5.0)
-        shown = list(zip(lines, kinds, strict=True))
-        rims = [(line, EDGE, width + 2.0) for line, kind in shown if kind != OPEN]
-        return rims + [
-            (line, STATUS[kind], 0.5 * width if kind == OPEN else width) for line, kind in shown
+        of_kind: dict[int, list[Array]] = defaultdict(list)
+        for line, kind in zip(lines, kinds, strict=True):
+            of_kind[kind].append(line)
+        rims = [line for kind, some in of_kind.items() if kind != OPEN for line in some]
+        return [(rims, EDGE, width + 2.0)] + [
+            (some, STATUS[kind], 0.5 * width if kind == OPEN else width)
+            for kind, some in of_kind.items()
         ]
 
-    def _arrows(self) -> list[Stroke]:
+    def _arrows(self) -> Strokes:
         strokes = []
         for act, (_, arrows) in self.acts.items():
             lines, beam = [_shortened(arrow.line) for arrow in arrows], beam_of(arrows)
-            width = 1.6 if len(arrows) > 3 else 3.2
             lines += [] if beam is None else [beam]
-            strokes += [(line, _color(act), width) for line in lines]
+            width = 1.6 if len(arrows) > 3 else 3.2
+            strokes.append(([self._page(line) for line in lines], _color(act), width))
         return strokes
 
     def _words(self) -> list[tuple[Word, Array]]:

@@ -316,9 +316,10 @@ def _equal(old: Any, new: Any) -> bool:
 
 
 def joined(curves: Iterable[ArrayLike]) -> Floats:
-    """Curves or parts of them one after the other, NaN between them, along the last axis."""
-    pieces = [np.append(curve, np.full((*np.shape(curve)[:-1], 1), np.nan), -1) for curve in curves]
-    return np.concatenate(pieces, -1)[..., :-1] if pieces else np.zeros((2, 0))
+    """Curves, shape (2, n) each, one after the other as one, NaN between them."""
+    gap = np.full((2, 1), np.nan)
+    pieces = [piece for curve in curves for piece in (np.asarray(curve), gap)]
+    return np.concatenate(pieces[:-1] or [gap[:, :0]], axis=1)
 
 
 def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
