@@ -6,7 +6,7 @@ from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.views.colors import ERROR, EXACT, RANKS, REFERENCE
-from app.views.view import Plot, extent, hover, joined, key_of
+from app.views.view import View, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
 from solver.settings import Settings
@@ -16,7 +16,7 @@ COLORS = [color for color in RANKS if color != ERROR]
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
-class AxialForce(Plot):
+class AxialForce(View):
     """Force along each wire; a broken one regains it from its break on."""
 
     name = "Force in the wires"

@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.view import Plot, extent, hover, whole
+from app.views.view import View, extent, hover, whole
 from app.worker.extras import MOST_MODES
 from solver.scenes import kind_of
 from solver.settings import Settings
@@ -37,7 +37,7 @@ def _whole_numbers(made: figure, colors: LinearColorMapper, **look: Any) -> Colo
     return bar
 
 
-class Spectra(Plot):
+class Spectra(View):
     """One curve a substructure: how fast it falls says how many modes it needs."""
 
     name = "Singular values"
@@ -74,7 +74,7 @@ class Spectra(Plot):
         self._colors.high = max(count, 2)
 
 
-class ModePlot(Plot):
+class ModePlot(View):
     """Curves of the largest modes, one colour a rank."""
 
     needs = frozenset({"modes"})
@@ -141,7 +141,7 @@ class TimeFunctions(ModePlot):
         self._draw(run.instants, values, titles)
 
 
-class BasisSizes(Plot):
+class BasisSizes(View):
     """How many modes every substructure has, over the iterations; a tap selects one."""
 
     name = "Basis size"
@@ -183,7 +183,7 @@ class BasisSizes(Plot):
         self.state.select(substructure=min(max(round(event.y) - 1, 0), total - 1))
 
 
-class Clips(Plot):
+class Clips(View):
     """Error of this iterate's friction over the numbers that are kept of it."""
 
     name = "Clips"

@@ -7,14 +7,14 @@ from bokeh.plotting import figure
 
 from app.frame import ContactFields, Floats, Frame, Interface, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
-from app.views.view import Plot, extent, hover, joined, key_of, put, source
+from app.views.view import View, extent, hover, joined, key_of, put, source
 from solver.scenes import kind_of
 
 ROOM, MOST = 1.15, 2.0
 """What is seen of forces, over their bound or reference: at least, and at most."""
 
 
-class ContactForce(Plot):
+class ContactForce(View):
     """Contact forces at the selected instant, LATIN on top of the reference, the error shaded.
 
     Of plane bodies whose pressure is not given they are pressure and friction.

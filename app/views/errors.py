@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import Plot, extent, hover, key_of, whole
+from app.views.view import View, extent, hover, key_of, whole
 from app.worker.references import has_reference
 from solver.settings import Settings
 
@@ -29,7 +29,7 @@ CURVES = {
 """Title, colour, width and dash of each scalar of the history; the first is drawn on top."""
 
 
-class ErrorPlot(Plot):
+class ErrorPlot(View):
     """A plot of what the run has come to so far, also where an earlier iterate is gone back to."""
 
     def _newest(self, frame: Frame) -> Frame:

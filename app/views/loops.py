@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE, SCALE, scaled
-from app.views.view import Plot, extent, hover, key_of, whole
+from app.views.view import View, extent, hover, key_of, whole
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
 from solver.settings import Settings
@@ -21,7 +21,7 @@ MOST_LOOPS = 12
 """Loops that are drawn at most; more cannot be told apart."""
 
 
-class HysteresisLoop(Plot):
+class HysteresisLoop(View):
     """Force over displacement of LATIN, of the reference, and of the closed form."""
 
     name = "Loop"
@@ -80,7 +80,7 @@ def _beside(frame: Frame) -> tuple[Floats, Floats]:
     return beside["values"][rows], np.interp(t[rows], instants, frame.loop[1])
 
 
-class CyclePlot(Plot):
+class CyclePlot(View):
     """A plot of what cycles of the load do."""
 
     needs = frozenset({"cycles"})

@@ -18,7 +18,7 @@ from app.views.layout import BAND, FOOT, IMAGE, LETTER, NARROW, Layout, turned
 from app.views.outlines import Outlines, bands, drawn
 from app.views.view import joined
 from solver.arrays import Array
-from solver.discrete.structure import Act, Description
+from solver.discrete.structure import Act
 
 Columns = dict[str, Any]
 Strokes = list[tuple[list[Array], str, float]]
@@ -38,43 +38,29 @@ class Handle:
     """The setting, by the one at present and where the pointer is."""
 
 
+@dataclass(eq=False)
 class Picture:
-    """A frame at one instant.
+    """A frame at one instant."""
 
-    Parameters
-    ----------
-    frame
-        What is shown.
-    column
-        Of the instant in it.
-    layout, factor, outlines
-        Where bodies lie, how much displacements are magnified, and the lines of the bodies.
-    peaks
-        Values of arrows of full length, by what acts.
-    behind
-        Settings behind what acts, by where it does.
-    shows_status
-        Whether there are keys to the colours of what rubs.
-    """
+    frame: Frame
+    column: int
+    """Of the instant in it."""
+    layout: Layout
+    factor: float
+    outlines: Outlines
+    """Where bodies lie, how much displacements are magnified, and the lines of the bodies."""
+    peaks: Mapping[str, float]
+    """Values of arrows of full length, by what acts."""
+    behind: Mapping[str, str]
+    """Settings behind what acts, by where it does."""
+    shows_status: bool
+    """Whether there are keys to the colours of what rubs."""
 
-    def __init__(
-        self,
-        frame: Frame,
-        column: int,
-        layout: Layout,
-        factor: float,
-        outlines: Outlines,
-        peaks: Mapping[str, float],
-        behind: Mapping[str, str],
-        shows_status: bool = True,
-    ) -> None:
-        self.frame, self.column = frame, column
-        self.layout, self.factor, self.outlines = layout, factor, outlines
-        self._peaks, self._behind, self._shows_status = peaks, behind, shows_status
-        self._geometry = frame.run.geometry
-        self._described: Description = self._geometry.description
+    def __post_init__(self) -> None:
+        self._geometry = self.frame.run.geometry
+        self._described = self._geometry.description
         # Values of a description are not thinned.
-        instant = frame.run.instants[column]
+        instant = self.frame.run.instants[self.column]
         self._now = int(np.argmin(np.abs(self._described.instants - instant)))
         tilt = self._described.tilt
         self.tilt = 0.0 if tilt is None else float(tilt[self._now])
@@ -105,7 +91,7 @@ class Picture:
         for act in self._described.acts:
             places = self._follow(act.places * size)
             arrows = arrows_of(
-                act, self._described, self.layout, self._peaks[act.where], self._now, places
+                act, self._described, self.layout, self.peaks[act.where], self._now, places
             )
             found[act] = places, arrows
         return found
@@ -115,22 +101,22 @@ class Picture:
         """All that can be dragged."""
         handles = []
         for act, (_, arrows) in self.acts.items():
-            name = self._behind.get(act.where)
+            name = self.behind.get(act.where)
             if name is not None and arrows:
                 arrow = max(arrows, key=lambda one: abs(one.value))
                 handles.append(Handle(name, arrow.handle, _color(act), _scaled_by(arrow)))
         gap = gap_of(self._described, self.layout, self.factor)
-        if "gap" in self._behind and gap is not None and -gap[-1, 1] > 1.0:
+        if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
             depth = -float(gap[-1, 1])
             # What is behind a gap is a radius: the larger, the shallower.
             handles.append(
                 Handle("radius", gap[-1], EDGE, lambda r, at: r * depth / max(-float(at[1]), 2.0))
             )
-        if "break" in self._behind and self._described.broken is not None:
+        if "break" in self.behind and self._described.broken is not None:
             ends = self.nodes[self.outlines.broken.ravel()]
             if len(ends):
                 place = ends.mean(axis=0)
-                handles.append(Handle(self._behind["break"], place, FORCE, self._to_place))
+                handles.append(Handle(self.behind["break"], place, FORCE, self._to_place))
         return handles
 
     def columns(self) -> dict[str, Columns]:
@@ -140,12 +126,10 @@ class Picture:
             marks.append((self._page(handle.place), "circle", "white", handle.color, 2.5))
         places, markers, fills, lines, widths = zip(*marks, strict=True) if marks else [()] * 5
         x, y = np.reshape(places, (-1, 2)).T
-        acts = [(act, arrow) for act, (_, arrows) in self.acts.items() for arrow in arrows]
         return {
             "bodies": self._bodies(),
             "strokes": self._strokes(),
-            "heads": _many([self._page(arrow.head) for _, arrow in acts])
-            | {"color": [_color(act) for act, _ in acts]},
+            "heads": self._heads(),
             "marks": {
                 "x": x,
                 "y": y,
@@ -189,35 +173,24 @@ class Picture:
         That is turned by half a turn.
         """
         parts = drawn(self.outlines.parts, self.nodes)
-        shown = [(parts, 0.5 if self._shows_status else 0.0, 0.55)]
+        shown = [(parts, 0.5 if self.shows_status else 0.0, 0.55)]
         if any(hold.kind == "image" for hold in self._described.holds):
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
             shown.insert(0, (image, 0.22, 0.0))
         lines, fills, edges = zip(*shown, strict=True)
-        smooth = [self._page(line).T.astype(np.float32) for line in lines]
-        return {
-            "xs": [x for x, _ in smooth],
-            "ys": [y for _, y in smooth],
-            "fill_alpha": list(fills),
-            "line_alpha": list(edges),
-        }
+        pages = _joined([[self._page(line)] for line in lines])
+        return pages | {"fill_alpha": list(fills), "line_alpha": list(edges)}
 
     def _strokes(self) -> Columns:
         """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
         rims = self._page(drawn(self.outlines.rims, self.nodes))
         strokes = [([rims], EDGE, 1.4), (self._holds(), EDGE, 1.3)]
-        if self._shows_status:
+        if self.shows_status:
             strokes += self._bands()
         broken = self._page(self.nodes[self.outlines.broken])
         strokes += [(list(broken), ERROR, 3.0), *self._arrows()]
         lines, colors, widths = zip(*strokes, strict=True)
-        both = [joined([line.T for line in some]).astype(np.float32) for some in lines]
-        return {
-            "xs": [x for x, _ in both],
-            "ys": [y for _, y in both],
-            "line_color": list(colors),
-            "line_width": list(widths),
-        }
+        return _joined(lines) | {"line_color": list(colors), "line_width": list(widths)}
 
     def _holds(self) -> list[Array]:
         foot = self._follow(np.array([[self.layout.length, 0.0]]))[0]
@@ -253,6 +226,10 @@ class Picture:
             strokes.append(([self._page(line) for line in lines], _color(act), width))
         return strokes
 
+    def _heads(self) -> Columns:
+        heads = [[self._page(arrow.head) for arrow in arrows] for _, arrows in self.acts.values()]
+        return _joined(heads) | {"color": [_color(act) for act in self.acts]}
+
     def _words(self) -> list[tuple[Word, Array]]:
         """What acts, and the slope, with their places on the page."""
         words = words_of(self._described, self.layout, self.acts, self._now)
@@ -266,7 +243,7 @@ class Picture:
     def _keys(self) -> tuple[list[Any], list[Word]]:
         """What colours mean, squares and words; and how much displacements are magnified."""
         run, layout = self.frame.run, self.layout
-        kinds = {0: "stick", 1: "slip →", -1: "slip ←"} if self._shows_status else {}
+        kinds = {0: "stick", 1: "slip →", -1: "slip ←"} if self.shows_status else {}
         if kinds and any(interface.bound is None for interface in run.interfaces.values()):
             kinds[OPEN] = "open"
         note = f"displacement × {number(self.factor)}"
@@ -303,9 +280,10 @@ def _shortened(line: Array) -> Array:
     return np.concatenate([line[:-1], [line[-1] - min(5.0, 0.9 * size) / size * along]])
 
 
-def _many(lines: Sequence[Array]) -> Columns:
-    rounded = [np.round(line, 1).T.tolist() for line in lines]
-    return {"xs": [line[0] for line in rounded], "ys": [line[1] for line in rounded]}
+def _joined(lines: Sequence[Sequence[Array]]) -> Columns:
+    """Lines, several as one; binary arrays, which go fast to the browser."""
+    both = [joined([line.T for line in some]).astype(np.float32) for some in lines]
+    return {"xs": [x for x, _ in both], "ys": [y for _, y in both]}
 
 
 def _texts(keys: list[Word], shown: list[tuple[Word, Array]], layout: Layout) -> Columns:

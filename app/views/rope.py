@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.colors import BACKWARD, ERROR, FORWARD, STATUS, STICK
-from app.views.view import Plot, extent, hover, key_of
+from app.views.view import View, extent, hover, key_of
 from solver.scenes import kind_of
 from solver.settings import Settings
 
@@ -23,7 +23,7 @@ RINGS = {"slip +": FORWARD, "slip −": BACKWARD, "selected": ERROR}
 STATUSES = {"stick": STICK, "slip +": FORWARD, "slip −": BACKWARD}
 
 
-class RopePlot(Plot):
+class RopePlot(View):
     """A plot of a strand that is bent; a tap selects a wire."""
 
     @staticmethod

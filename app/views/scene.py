@@ -18,7 +18,7 @@ from app.views.colors import BODY, EDGE, GHOST
 from app.views.layout import Layout, layout_of
 from app.views.outlines import Outlines, outlines_of
 from app.views.picture import Handle, Picture
-from app.views.view import Plot, bare
+from app.views.view import View, bare
 from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -35,7 +35,7 @@ SIGNED = diverging_palette(
 )
 
 
-class Scene(Plot):
+class Scene(View):
     """The deformed bodies at the selected instant, what holds them, rubs, and acts on them.
 
     Arrows are dragged by their ends, and a tap selects an interface.
@@ -46,7 +46,7 @@ class Scene(Plot):
 
     def make(self) -> figure:
         """A new figure."""
-        made = self.start(bare(90, (0, WIDTH), (0, HEIGHT)))
+        made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
         made.axis.visible = False
         self._draw(made)
         self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}

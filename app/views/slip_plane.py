@@ -7,14 +7,14 @@ from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
-from app.views.view import Plot, extent
+from app.views.view import View, extent
 from solver.settings import Settings
 
 FAR = 10.0
 """Times the plot by which a line goes beyond it."""
 
 
-class SlipPlane(Plot):
+class SlipPlane(View):
     """Where two points have slipped, and the lines between which both stick."""
 
     name = "Slip plane"

@@ -11,13 +11,13 @@ from bokeh.plotting import figure
 
 from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
 from app.views.colors import CUT, ERROR, EXACT, STATUS
-from app.views.view import Plot, extent, hover, joined
+from app.views.view import View, extent, hover, joined
 from solver.settings import Settings
 
 ENTRIES = {"slip −": -1, "stick": 0, "slip +": 1, "open": 2}
 
 
-class StatusMap(Plot):
+class StatusMap(View):
     """The status of the selected interface; a tap selects the instant and the place."""
 
     name = "Stick and slip"

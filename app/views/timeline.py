@@ -15,7 +15,7 @@ from app.units import number, unit_for
 from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE
 from app.views.layout import is_opposite
-from app.views.view import Plot, bare
+from app.views.view import View, bare
 from solver.arrays import Array
 
 THIN = ("#7A7A7A", "#A0A0A0", "#56B4E9")
@@ -28,14 +28,14 @@ WIDTH = 930
 """Pixels of the axis until the browser tells."""
 
 
-class Timeline(Plot):
+class Timeline(View):
     """What is given over time, each path over its largest value, and the selected instant."""
 
     name = "Load path"
 
     def make(self) -> figure:
         """A new figure."""
-        made = self.start(bare(40, (-0.01, 1.01), (LOW, TITLE + 0.6)))
+        made = self._made = bare(40, (-0.01, 1.01), (LOW, TITLE + 0.6))
         made.x_range.bounds = (-0.01, 1.01)
         made.yaxis.visible = False
         axis = made.xaxis

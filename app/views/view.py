@@ -44,65 +44,6 @@ CLOSE = """
 keeps them farther apart."""
 
 
-class View:
-    """A figure, made when it is first seen.
-
-    Parameters
-    ----------
-    state
-        Of the page; what is done in the figure, as a tap, selects there.
-
-    Attributes
-    ----------
-    name
-        What its tab is called.
-    needs
-        Names of the extras of a frame that it shows.
-    """
-
-    name: ClassVar[str]
-    needs: ClassVar[frozenset[str]] = frozenset()
-
-    def __init__(self, state: PageState) -> None:
-        self.state, self._type = state, TEXT
-
-    @staticmethod
-    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
-        """Whether it says anything about such a run."""
-        return True
-
-    @cached_property
-    def figure(self) -> figure:
-        """The figure."""
-        made = self.make()
-        lighten(made)
-        self._magnify(made)
-        return made
-
-    def magnify(self, size: str) -> None:
-        """Have its type in a size, as CSS has it."""
-        self._type = size
-        if "figure" in self.__dict__:
-            self._magnify(self.figure)
-
-    def _magnify(self, made: figure) -> None:
-        for model in (made, *made.legend):
-            model.styles = {**model.styles, "font-size": self._type}
-
-    def make(self) -> figure:
-        """A new figure, with the sources that `update` fills."""
-        raise NotImplementedError
-
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show a frame; the ghost is that of the run that it is compared with."""
-        raise NotImplementedError
-
-    @property
-    def ghost_name(self) -> str:
-        """What the run is called that is drawn beside the present one."""
-        return "last run" if self.state.pinned is None else "pinned run"
-
-
 class Axis:
     """An axis of a figure, whose unit is chosen once a run, and whose ends change seldom.
 
@@ -173,31 +114,77 @@ class Axis:
             self._made.yaxis.axis_label = textwrap.fill(text, LONGEST)
 
 
-class Plot(View):
-    """Curves over two axes, below a legend that names those that are there.
+class View:
+    """A figure, made when it is first seen, below a legend that names what is there.
 
     A click on an entry of the legend hides its curve.
 
+    Parameters
+    ----------
+    state
+        Of the page; what is done in the figure, as a tap, selects there.
+
     Attributes
     ----------
+    name
+        What its tab is called.
+    needs
+        Names of the extras of a frame that it shows.
     x, y
         The axes.
     sources
         What is drawn, by name.
     """
 
-    def begin(self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any) -> figure:
-        """A new figure whose axes have a title and an SI unit; `add` fills it."""
-        made = self.start(plot(**more))
-        self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
-        return made
+    name: ClassVar[str]
+    needs: ClassVar[frozenset[str]] = frozenset()
 
-    def start(self, made: figure) -> figure:
-        """Have `add` fill a figure."""
-        self._made = made
+    def __init__(self, state: PageState) -> None:
+        self.state, self._type = state, TEXT
         self.sources: dict[str, ColumnDataSource] = {}
         self._glyphs: dict[str, list[GlyphRenderer]] = {}
         self._items: dict[str, LegendItem] = {}
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
+        """Whether it says anything about such a run."""
+        return True
+
+    @cached_property
+    def figure(self) -> figure:
+        """The figure."""
+        made = self.make()
+        lighten(made)
+        self._magnify(made)
+        return made
+
+    def magnify(self, size: str) -> None:
+        """Have its type in a size, as CSS has it."""
+        self._type = size
+        if "figure" in self.__dict__:
+            self._magnify(self.figure)
+
+    def _magnify(self, made: figure) -> None:
+        for model in (made, *made.legend):
+            model.styles = {**model.styles, "font-size": self._type}
+
+    def make(self) -> figure:
+        """A new figure, by `begin` and `add`."""
+        raise NotImplementedError
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show a frame; the ghost is that of the run that it is compared with."""
+        raise NotImplementedError
+
+    @property
+    def ghost_name(self) -> str:
+        """What the run is called that is drawn beside the present one."""
+        return "last run" if self.state.pinned is None else "pinned run"
+
+    def begin(self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any) -> figure:
+        """A new figure whose axes have a title and an SI unit; `add` fills it."""
+        made = self._made = plot(**more)
+        self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
         return made
 
     def add(
