@@ -120,43 +120,32 @@ def words_of(
 ) -> list[Word]:
     """What acts in words; what presses from above and below alike is said once."""
     above = [act for act in description.acts if act.where.startswith("top")]
-    words = []
-    for act, (places, arrows) in acts.items():
-        side = act.where.partition(" ")[0]
-        if side != "bottom" or not any(is_opposite(act, other) for other in above):
-            words.append(_word(act, description, layout, side, places, arrows, column))
-    return words
+    return [
+        Word(text_of(act, column), *_anchor(act, description, layout, places, arrows), act)
+        for act, (places, arrows) in acts.items()
+        if not act.where.startswith("bottom") or not any(is_opposite(act, each) for each in above)
+    ]
 
 
-def _word(
-    act: Act,
-    description: Description,
-    layout: Layout,
-    side: str,
-    places: Array,
-    arrows: list[Arrow],
-    column: int,
-) -> Word:
-    text, aside, away = text_of(act, column), is_aside(act), np.array(act.away)
+def _anchor(
+    act: Act, description: Description, layout: Layout, places: Array, arrows: list[Arrow]
+) -> tuple[Array, str]:
+    """Where the words of what acts stand, and on which side of them that is."""
+    side, aside, (away, up) = act.where.partition(" ")[0], is_aside(act), act.away
     if side in ("top", "bottom"):
         is_left = float(np.mean(act.places[:, 0])) < 0.45
         place = places[0 if is_left else -1]
-        ends = [place, *(end for arrow in arrows for end in arrow.line)]
-        x = min(end[0] for end in ends) - 10.0 if is_left else max(end[0] for end in ends) + 10.0
-        up = beside(description, side) if aside else 0.75 * layout.arrow
-        return Word(
-            text, np.array([x, place[1] + up * away[1]]), "right" if is_left else "left", act
-        )
+        ends = [place[0], *(end[0] for arrow in arrows for end in arrow.line)]
+        x = min(ends) - 10.0 if is_left else max(ends) + 10.0
+        above = beside(description, side) if aside else 0.75 * layout.arrow
+        return np.array([x, place[1] + above * up]), "right" if is_left else "left"
     if side == "body":
-        if layout.size[0] < 0.5 * layout.width:
-            return Word(
-                text, np.array([-0.5 * layout.size[0] - 14.0, layout.size[1]]), "right", act
-            )
-        return Word(text, np.array([0.0, 0.5 * layout.size[1] + 14.0]), "center", act)
-    align = "left" if side == "right" else "right"
-    if aside:
-        return Word(text, places[-1] + [22.0 * away[0], -16.0], align, act)
-    return Word(text, places[-1] + [9.0 * away[0], 15.0], align, act)
+        length, height = layout.size
+        if length < 0.5 * layout.width:
+            return np.array([-0.5 * length - 14.0, height]), "right"
+        return np.array([0.0, 0.5 * height + 14.0]), "center"
+    shift = [22.0 * away, -16.0] if aside else [9.0 * away, 15.0]
+    return places[-1] + shift, "left" if side == "right" else "right"
 
 
 def text_of(act: Act, column: int) -> str:
@@ -166,11 +155,7 @@ def text_of(act: Act, column: int) -> str:
     peak = float(np.abs(act.values).max())
     # Rounding of a load path leaves what is nearly nothing, as sin(pi).
     texts = [unit(0.0 if abs(value) < 1e-6 * peak else float(value)) for value in now[[0, -1]]]
-    return (
-        f"{act.symbol} = {texts[0]}"
-        if len(now) == 1
-        else f"{act.symbol} = {texts[0]} to {texts[1]}"
-    )
+    return f"{act.symbol} = {' to '.join(texts[: len(now)])}"
 
 
 def unit_of(act: Act) -> Unit:

@@ -70,12 +70,7 @@ class Layout:
     def fitting(self, largest: tuple[float, float], factor: float | None) -> float:
         """Factor on displacements: the present one as long as motion is seen and has room.
 
-        Parameters
-        ----------
-        largest
-            Displacement in size over all instants, along x and y, m.
-        factor
-            The present factor; None for none.
+        That depends on the largest displacement over all instants, along x and y, m.
         """
         shares = [
             size * scale / room
@@ -83,7 +78,7 @@ class Layout:
             if room > 0.0
         ]
         share = max(shares)
-        if not share > 0.0:
+        if share <= 0.0:
             return factor or 1.0
         if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
@@ -163,7 +158,7 @@ def _margins(description: Description, arrow: float) -> tuple[float, float, floa
     for act in description.acts:
         side = act.where.partition(" ")[0]
         if side in ("left", "right"):
-            room[side] = max(room[side], 20.0 + LETTER * longest_text(act))
+            room[side] = max(room[side], 20.0 + LETTER * (len(act.symbol) + len(act.unit) + 9))
         elif side in ("top", "bottom"):
             held = beside(description, side)
             room[side] = max(room[side], held + 11.0 if is_aside(act) else arrow + 10.0)
@@ -173,8 +168,3 @@ def _margins(description: Description, arrow: float) -> tuple[float, float, floa
 def beside(description: Description, side: str) -> float:
     """Pixels between a side and an arrow along it."""
     return 20.0 if any(hold.side == side for hold in description.holds) else 9.0
-
-
-def longest_text(act: Act) -> int:
-    """Letters that its symbol and value take, about."""
-    return len(act.symbol) + len(act.unit) + 9

@@ -50,8 +50,6 @@ def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
 def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """Axial force in wires at all instants; None where there are none.
 
-    Returns
-    -------
     "x" of the middles of elements, (n_places,), m; "force", (n_wires, n_places, n_instants), N;
     "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
     of a strand that is bent, else None.
@@ -84,8 +82,6 @@ def _axial_of(sampler: Sampler) -> AxialForce:
 def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
     """Slips of two points, and the lines A w = b between which both stick.
 
-    Returns
-    -------
     "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4, n_instants), N,
     whose first and third lines are those of the left point; "room", the corners of where both may
     stay in the whole last cycle, (n_corners, 2), m. None where contact alone holds the body, whose
@@ -123,8 +119,6 @@ def _slip_space(sampler: Sampler) -> SlipSpace | None:
 def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The iterate, cycle by cycle of its load; None where that has none.
 
-    Returns
-    -------
     "columns" of the instants at which cycles begin, and the last one ends, (n_cycles + 1,);
     "energy" that friction takes in each, (n_cycles,), J; "slip" to and fro, m, and friction "work",
     J/m or J/m^2, of the last one at the points of the selected interface; "text", what becomes of
@@ -134,12 +128,9 @@ def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     if not len(found):
         return None
     name = needs.interface if needs.interface in sampler.rows else next(iter(sampler.rows))
-    first = 0
-    for other, law in sampler.problem.rubbing.items():
-        if other == name:
-            break
-        first += len(law.positions)
-    points = first + sampler.rows[name]
+    laws = list(sampler.problem.rubbing.values())
+    before = laws[: list(sampler.rows).index(name)]
+    points = sum(len(law.positions) for law in before) + sampler.rows[name]
     slipped = bool(found.slip.any() or found.before.any())
     return {
         "columns": np.searchsorted(sampler.columns, found.ends),
@@ -169,8 +160,6 @@ def _fate_text(fate: Fate | None) -> str:
 def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The largest modes of the selected substructure's separated basis; None without bases.
 
-    Returns
-    -------
     "x", (n_places,), m; "space", (n_modes, n_places), over the largest entry of each; "time",
     (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the basis.
     """
@@ -223,18 +212,14 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
 
     None where it cannot be kept as clips.
 
-    Returns
-    -------
     "table", how many values it has; "branches", times that the load goes one way; and for each of
     "SVD", "PGD" (None without substructures) and "clips" the numbers and errors, (2, n).
     """
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
     fitted, bases = clips_in(sampler.settings, iterate), iterate.reduction
-    pieces: Sizes | None = None
-    if bases is not None:
-        pieces = of_bases(iterate, bases)
-    elif len(sampler.problem.substructures) > 1:
+    pieces = of_bases(iterate, bases) if bases is not None else None
+    if bases is None and len(sampler.problem.substructures) > 1:
         pieces = in_pieces(iterate)
     return {
         "table": fitted.given.size,
@@ -257,8 +242,6 @@ def _laid_beside(brought: Brought, sampler: Sampler, interface: str) -> Beside:
 def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """Results of another program and their distance to the iterate, if they are of its scene.
 
-    Returns
-    -------
     "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
     displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
     iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.

@@ -183,8 +183,6 @@ def axial_force_of_rope(
 def section(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     """All wires that a section at the selected place cuts, or at the clamp; the core is the first.
 
-    Returns
-    -------
     "place" along the strand, m; "wires", the interface of each, -1 for the core, (n,); "centres",
     (n, 2), and "radii", (n,), m, the outermost fibre below; mean "stress", Pa, and "slips", its
     status, (n, n_instants).
@@ -213,8 +211,6 @@ def section(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dic
 def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     """Status of every wire, along it.
 
-    Returns
-    -------
     "places" along the strand, m, or polar angles, degrees, where it is bent alike all along, and
     not beside a clamp ("is_clamped"): then each wire stands for its layer; "layers" of the wires,
     from 0, (n_wires,); "status", (n_wires, n_places, n_instants).
@@ -234,8 +230,6 @@ def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> d
 def wire_ranges(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     """How far the stress of every wire swings in the last cycle, or throughout if there is none.
 
-    Returns
-    -------
     "layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
     """
     ends = ends_of(sampler.settings)
