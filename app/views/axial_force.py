@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from bokeh.plotting import figure
-
 from app.frame import Frame, Selection
 from app.views.colors import ERROR, EXACT, RANKS, REFERENCE
 from app.views.view import View, extent, hover, joined, key_of
@@ -27,15 +25,14 @@ class AxialForce(View):
         """Whether there are wires."""
         return kind_of(settings) in ("wires", "helices")
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
         self.legend(**{wire: wire for wire in WIRES}, stuck="all stick", exact="closed form")
         hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the force in each wire, the broken one in its own colour."""

@@ -48,8 +48,8 @@ class Spectra(View):
         """Whether there are several instants: one has one singular value."""
         return settings.instants > 1
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0))
         whole(made.xaxis[0])
         lines = self.add("values", "multi_line", "xs ys color", width=1.8)
@@ -57,7 +57,6 @@ class Spectra(View):
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
         look = {"width": 8, "padding": 6, "major_tick_line_color": None}
         self._bar = _whole_numbers(made, self._colors, **look)
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the singular values, as far as the frame has them."""
@@ -79,14 +78,13 @@ class ModePlot(View):
 
     needs = frozenset({"modes"})
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "vspan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
             self.add(mode, color=color, width=2)
         self.legend(**{mode: mode for mode in MODES})
-        return made
 
     def _draw(self, x: Floats, values: Floats, titles: list[str]) -> None:
         for number, mode in enumerate(MODES):
@@ -152,8 +150,8 @@ class BasisSizes(View):
         """Whether there are bases."""
         return settings.applies("pgd_modes")
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("iteration",), ("substructure",))
         made.grid.visible = False
         for axis in made.axis:
@@ -163,7 +161,6 @@ class BasisSizes(View):
         self.add("chosen", "hspan", "y", color=ERROR, line_width=2)
         _whole_numbers(made, self._colors, width=6, padding=4, title="modes")
         made.on_event(Tap, self._select)
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the numbers of modes of all iterations so far."""
@@ -198,8 +195,8 @@ class Clips(View):
         interfaces = values.get("wires", 2) - 1
         return bool(interfaces * (values["elements"] + 1) * settings.instants <= MOST_VALUES)
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),
@@ -212,7 +209,6 @@ class Clips(View):
         self._glyphs["clips"].append(lines[-1])
         self.legend(SVD="SVD", PGD="PGD", clips="clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show how the error falls with each way to keep the friction."""

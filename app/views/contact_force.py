@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.plotting import figure
 
 from app.frame import ContactFields, Floats, Frame, Interface, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
@@ -23,8 +22,8 @@ class ContactForce(View):
     name = "Contact force"
     needs = frozenset({"beside"})
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("x", "m"), ("force", "N/m"))
         both = "friction", "pressure"
         self.sources |= {name: source("x", "latin", "reference") for name in both}
@@ -49,7 +48,6 @@ class ContactForce(View):
         tips = {"x": "@x{0.000}", "LATIN": "@latin{0.000}", "reference": "@reference{0.000}"}
         hover(made, lines, tips)
         self._scaled_for: object = None
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the contact forces along the selected interface."""

@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 from bokeh.models import FixedTicker, PrintfTickFormatter
-from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
@@ -48,8 +47,8 @@ class Convergence(ErrorPlot):
 
     name = "Convergence"
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST))
         whole(made.xaxis[0])
         self.add("shown", "vspan", "x", color=REFERENCE, line_width=1.5)
@@ -64,7 +63,6 @@ class Convergence(ErrorPlot):
         titles = {column: title for column, (title, *_) in CURVES.items()}
         self.legend(**titles, answer="answer", ghost="ghost")
         hover(made, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show errors and indicators of all iterations so far."""
@@ -114,8 +112,8 @@ class ErrorTime(ErrorPlot):
         """Whether there is a reference."""
         return has_reference(settings)
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(
             ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
             x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),
@@ -130,7 +128,6 @@ class ErrorTime(ErrorPlot):
         self.add("newest", "scatter", color=ERROR, size=8)
         self.legend(now="this run", ghost="ghost", reference="incremental")
         hover(made, [now, ghost], {"s": "@x{0.000}", "error": "@y{0.00e+0}"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the errors of the search so far."""

@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import numpy as np
 from bokeh.models import Range1d
-from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
@@ -32,8 +31,8 @@ class HysteresisLoop(View):
         """Whether there are several instants."""
         return settings.instants > 1
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin()
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
@@ -46,7 +45,6 @@ class HysteresisLoop(View):
             beside="beside",
         )  # fmt: skip
         hover(made, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the loop of the iterate, and the instant on it."""
@@ -104,13 +102,12 @@ class Cycles(CyclePlot):
 
     name = "Cycles"
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin()
         self.add("loops", "multi_line", "xs ys color", width=2)
         self.add("now", "scatter", color=ERROR, size=10)
         self._add_legend()
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the loop of each cycle."""
@@ -137,14 +134,13 @@ class CycleEnergy(CyclePlot):
 
     name = "Energy a cycle"
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("cycle",), ("energy", "J"))
         whole(made.xaxis[0])
         bars = self.add("bars", "vbar", "x top color", width=0.7)
         self._add_legend()
         hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show a bar for each cycle."""
@@ -166,14 +162,13 @@ class Fretting(CyclePlot):
 
     name = "Fretting"
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
         work = self.add("work", color=ERROR, width=4, alpha=0.7)
         slip = self.add("slip", color=LATIN, width=2)
         self.legend(work="work", slip="slip")
         hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show both, each over its largest value, which the legend has."""

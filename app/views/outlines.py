@@ -119,16 +119,8 @@ def bands(
 ) -> tuple[list[Array], list[int]]:
     """Stretches of contact points of one status, each to the middle between it and the next.
 
-    Parameters
-    ----------
-    points
-        On the screen, shape (n, 2), NaN where a chain is broken, px.
-    chains, status
-        The interface of each, and its status, shape (n,).
-
-    Returns
-    -------
-    Lines, (n, 2) each, and their status.
+    Points are on the screen, shape (n, 2), NaN where their chain is broken, px. What comes back are
+    lines, (n, 2) each, and their status.
     """
     is_drawn = np.isfinite(points).all(axis=1)
     joined = (chains[1:] == chains[:-1]) & is_drawn[1:] & is_drawn[:-1]

@@ -8,7 +8,6 @@ import numpy as np
 from bokeh.events import Tap
 from bokeh.models import ColorBar, LinearColorMapper, Range1d
 from bokeh.palettes import Cividis256
-from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import unit_for
@@ -43,8 +42,8 @@ class CrossSection(RopePlot):
     name = "Cross-section"
     needs = frozenset({"section"})
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(match_aspect=True, x_range=Range1d(-1, 1), y_range=Range1d(-1, 1))
         made.axis.visible = made.grid.visible = False
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
@@ -64,7 +63,6 @@ class CrossSection(RopePlot):
         for size in self._size:
             made.on_change(size, self._resize)
         made.on_event(Tap, self._tap)
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the section at the selected instant."""
@@ -119,8 +117,8 @@ class Unrolled(RopePlot):
     name = "All wires"
     needs = frozenset({"all_wires"})
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin()
         colors = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=-1.5, high=1.5)
         self.add("status", "image", "image x y dw dh", color_mapper=colors)
@@ -131,7 +129,6 @@ class Unrolled(RopePlot):
             self.mark(name, color)
         self.legend(**{name: name for name in STATUSES})
         made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of all wires."""
@@ -162,13 +159,12 @@ class StressRanges(RopePlot):
     name = "Stress range"
     needs = frozenset({"wire_ranges"})
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("wire",), ("range", "Pa"))
         bars = self.add("bars", "vbar", "x top color", also="layer", width=0.8)
         hover(made, [bars], {"wire": "@x", "layer": "@layer", "range": "@top"})
         made.on_event(Tap, lambda event: self._select(round(event.x) - 1))
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the ranges, coloured by layer."""

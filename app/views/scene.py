@@ -44,8 +44,8 @@ class Scene(View):
     name = "Scene"
     shows_status = True
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
         made.axis.visible = False
         self._draw(made)
@@ -63,7 +63,6 @@ class Scene(View):
             made.on_event(event, react)
         for size in self._size:
             made.on_change(size, self._resize)
-        return made
 
     def _draw(self, made: figure) -> None:
         look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
@@ -26,8 +25,8 @@ class SlipPlane(View):
         law = settings.values().get("friction_law")
         return settings.opens and law == "coulomb" and settings.n_jumps == 4
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("left slip", "m"), ("right slip", "m"))
         self.add("room", "patch", color=DISPLACEMENT, alpha=0.3)
         for name, color, width in (
@@ -42,7 +41,6 @@ class SlipPlane(View):
             left="left slips", right="right slips", path="so far", room="free in the last cycle",
             held="contact alone holds the block",
         )  # fmt: skip
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show where both have slipped so far, and the lines at which they slip now."""

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from bokeh.events import Tap
 from bokeh.models import LinearColorMapper
-from bokeh.plotting import figure
 
 from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
 from app.views.colors import CUT, ERROR, EXACT, STATUS
@@ -27,8 +26,8 @@ class StatusMap(View):
         """Whether there are several instants."""
         return settings.instants > 1
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self.begin(("x", "m"), ("t", "s"))
         made.grid.visible = False
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
@@ -44,7 +43,6 @@ class StatusMap(View):
         hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         made.on_event(Tap, self._select)
         self._ghost_of: object = None
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of every point at every instant."""

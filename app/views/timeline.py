@@ -8,7 +8,6 @@ import numpy as np
 from bokeh.core.properties import value
 from bokeh.events import Pan, Tap
 from bokeh.models import PanTool
-from bokeh.plotting import figure
 
 from app.frame import Frame, Run, Selection
 from app.units import number, unit_for
@@ -33,8 +32,8 @@ class Timeline(View):
 
     name = "Load path"
 
-    def make(self) -> figure:
-        """A new figure."""
+    def make(self) -> None:
+        """Make the figure."""
         made = self._made = bare(40, (-0.01, 1.01), (LOW, TITLE + 0.6))
         made.x_range.bounds = (-0.01, 1.01)
         made.yaxis.visible = False
@@ -57,7 +56,6 @@ class Timeline(View):
             made.on_event(event, self._select)
         self._width, self._shown = WIDTH, (0, WIDTH)
         made.on_change("inner_width", self._resize)
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""

@@ -45,18 +45,9 @@ keeps them farther apart."""
 
 
 class Axis:
-    """An axis of a figure, whose unit is chosen once a run, and whose ends change seldom.
+    """The x or y axis of a figure, whose unit is chosen once a run, and whose ends change seldom.
 
-    Parameters
-    ----------
-    made
-        The figure.
-    side
-        "x" or "y".
-    title
-        Of the axis, without a unit.
-    unit
-        SI unit of what it is given; empty for none.
+    Its title is without that; what it is given is in an SI unit, empty for none.
     """
 
     def __init__(self, made: figure, side: str, title: str, unit: str = "") -> None:
@@ -141,6 +132,7 @@ class View:
 
     def __init__(self, state: PageState) -> None:
         self.state, self._type = state, TEXT
+        self._made: figure | None = None
         self.sources: dict[str, ColumnDataSource] = {}
         self._glyphs: dict[str, list[GlyphRenderer]] = {}
         self._items: dict[str, LegendItem] = {}
@@ -153,23 +145,22 @@ class View:
     @cached_property
     def figure(self) -> figure:
         """The figure."""
-        made = self.make()
-        lighten(made)
-        self._magnify(made)
-        return made
+        self.make()
+        # A page opens sooner without glyphs of what nobody selects or mutes.
+        for renderer in self._made.renderers:
+            renderer.update(nonselection_glyph=None, muted_glyph=None)
+        self.magnify(self._type)
+        return self._made
 
     def magnify(self, size: str) -> None:
         """Have its type in a size, as CSS has it."""
         self._type = size
-        if "figure" in self.__dict__:
-            self._magnify(self.figure)
+        if self._made is not None:
+            for model in (self._made, *self._made.legend):
+                model.styles = {**model.styles, "font-size": size}
 
-    def _magnify(self, made: figure) -> None:
-        for model in (made, *made.legend):
-            model.styles = {**model.styles, "font-size": self._type}
-
-    def make(self) -> figure:
-        """A new figure, by `begin` and `add`."""
+    def make(self) -> None:
+        """Make the figure, by `begin` and `add`."""
         raise NotImplementedError
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -270,12 +261,6 @@ def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> fi
     made.outline_line_color = None
     made.background_fill_alpha = made.border_fill_alpha = 0.0
     return made
-
-
-def lighten(made: figure) -> None:
-    """Leave out glyphs of what nobody selects or mutes: a page opens sooner."""
-    for renderer in made.renderers:
-        renderer.update(nonselection_glyph=None, muted_glyph=None)
 
 
 def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:

@@ -38,13 +38,7 @@ def main(connection: Connection) -> None:
 
 
 class Loop:
-    """Orders in, reports out; one run at a time.
-
-    Parameters
-    ----------
-    connection
-        To the server.
-    """
+    """Orders from the server in, reports to it out; one run at a time."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection

@@ -31,13 +31,7 @@ LATE = 0.1
 
 
 class Pacing:
-    """The pace of a run, and the steps that were asked for.
-
-    Parameters
-    ----------
-    pace
-        Iterations a second, as in `Start`.
-    """
+    """The pace of a run, as in `Start`, and the steps that were asked for."""
 
     def __init__(self, pace: float) -> None:
         self._pace, self._steps, self._done = pace, 0, 0
@@ -79,14 +73,7 @@ class Pacing:
 class Runner:
     """One run: its first iteration, then the reference, then the others as they are due.
 
-    Parameters
-    ----------
-    start
-        What to run.
-    references
-        Cache of the process.
-    interrupted
-        Whether an order waits that ends this run.
+    It is `interrupted` where an order waits that ends it.
 
     Attributes
     ----------
