@@ -80,7 +80,7 @@ class ModePlot(View):
 
     def make(self) -> None:
         """Make the figure."""
-        made = self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
+        self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "vspan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
             self.add(mode, color=color, width=2)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
 from app.frame import Floats, Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
-from app.views.view import View, extent, hover, key_of, whole
+from app.views.view import View, extent, hover, key_of, rounded_up, whole
 from app.worker.references import has_reference
 from solver.settings import Settings
 
@@ -82,7 +80,7 @@ class Convergence(ErrorPlot):
         low, high = extent([[LEAST, MOST], error["y"], ghosts["y"]])
         self.y.decades(run.number, max(low, FLOOR), high)
         end = max(float(newest.iteration), *map(float, ghosts["x"][-1:]), SHORTEST)
-        self.x.hold(run.number, 0.0, _round_up(end))
+        self.x.hold(run.number, 0.0, rounded_up(end))
         is_back = frame is not newest and not frame.is_answer
         self.fill("shown", x=[frame.iteration] if is_back else [])
         foot = self.figure.y_range.reset_start
@@ -94,12 +92,6 @@ def _searched(frame: Frame) -> dict[str, Floats]:
     """The history without the answer, which is no iteration."""
     count = len(frame.history["iteration"]) - (1 if frame.is_answer else 0)
     return {name: values[:count] for name, values in frame.history.items()}
-
-
-def _round_up(count: float) -> float:
-    """The next of 20, 50, 100, 200, ..."""
-    decade = 10.0 ** math.floor(math.log10(count))
-    return next(step * decade for step in (1.0, 2.0, 5.0, 10.0) if step * decade >= count)
 
 
 class ErrorTime(ErrorPlot):

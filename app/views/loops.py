@@ -104,7 +104,7 @@ class Cycles(CyclePlot):
 
     def make(self) -> None:
         """Make the figure."""
-        made = self.begin()
+        self.begin()
         self.add("loops", "multi_line", "xs ys color", width=2)
         self.add("now", "scatter", color=ERROR, size=10)
         self._add_legend()

@@ -18,7 +18,7 @@ from app.views.colors import BODY, EDGE, GHOST
 from app.views.layout import Layout, layout_of
 from app.views.outlines import Outlines, outlines_of
 from app.views.picture import Handle, Picture
-from app.views.view import View, bare
+from app.views.view import View, bare, rounded_up
 from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -194,7 +194,8 @@ class Stress(Scene):
             return
         largest = float(np.abs(stress.values).max())
         unit = unit_for(largest, stress.unit)
-        high = _rounded(largest / unit.factor)
+        # It seldom changes.
+        high = rounded_up(0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
         signed = float(stress.values.min()) < -1e-3 * largest
         self.colors.update(
             palette=SIGNED if signed else Cividis256, low=-high if signed else 0.0, high=high
@@ -204,10 +205,3 @@ class Stress(Scene):
         across, up = np.moveaxis(np.round(corners, 1), -1, 0)
         values = stress.values[:, picture.column] / unit.factor
         self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=values)
-
-
-def _rounded(size: float) -> float:
-    """A size rounded up to 1, 1.5, 2, 3, 5 or 7 times a power of ten, so that it seldom changes."""
-    power = 10.0 ** np.floor(np.log10(size)) if size > 0.0 else 1.0
-    steps = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
-    return float(next(step for step in steps if step * power >= 0.999 * size) * power)

@@ -27,14 +27,11 @@ class SlipPlane(View):
 
     def make(self) -> None:
         """Make the figure."""
-        made = self.begin(("left slip", "m"), ("right slip", "m"))
+        self.begin(("left slip", "m"), ("right slip", "m"))
         self.add("room", "patch", color=DISPLACEMENT, alpha=0.3)
-        for name, color, width in (
-            ("left", LATIN, 1.5),
-            ("right", FORWARD, 1.5),
-            ("path", REFERENCE, 2),
-        ):
-            self.add(name, color=color, width=width)
+        self.add("left", color=LATIN, width=1.5)
+        self.add("right", color=FORWARD, width=1.5)
+        self.add("path", color=REFERENCE, width=2)
         self.add("now", "scatter", color=ERROR, size=10)
         self.mark("held", CUT, alpha=0.0)
         self.legend(

@@ -330,3 +330,9 @@ def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
         min(filter(math.isfinite, lows), default=0.0),
         max(filter(math.isfinite, highs), default=0.0),
     )
+
+
+def rounded_up(size: float, steps: Iterable[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
+    """A size rounded up to a step times a power of ten; 1 for none."""
+    power = 10.0 ** math.floor(math.log10(size)) if size > 0.0 else 1.0
+    return next(step * power for step in steps if step * power >= size)

@@ -44,18 +44,10 @@ def thinned(size: int, most: int) -> NDArray[np.intp]:
 
 
 class Drawn:
-    """Bodies as they are drawn, and the contact points of all interfaces.
+    """Bodies as they are drawn at some instants, and the contact points of all interfaces.
 
-    Parameters
-    ----------
-    problem, description
-        What is solved, and in words.
-    columns
-        The instants that are shown.
-    mesh
-        Nodes, quadrilaterals and substructures of `Geometry`.
-    heights
-        Height of every degree of freedom along rods, m; None in the plane.
+    The mesh is nodes, quadrilaterals and substructures of `Geometry`; heights are those of every
+    degree of freedom along rods, m, None in the plane.
     """
 
     def __init__(
