@@ -16,12 +16,12 @@ from app.frame import Frame, Selection
 from app.live import Card
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.axial_force import AxialForce
 from app.views.bases import Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence
 from app.views.loops import HysteresisLoop
+from app.views.rope import AxialForce
 from app.views.status_map import StatusMap
 from app.views.view import View
 from app.worker.extras import EXTRAS

@@ -42,16 +42,11 @@ class Arrow:
     @property
     def head(self) -> Array:
         """Corners of its head."""
-        along = self.line[-1] - self.line[-2]
-        size = float(np.hypot(*along)) or 1.0
-        along = along / size
-        across = np.array([-along[1], along[0]])
-        tip = self.line[-1]
-        whole = np.hypot(*(self.line[-1] - self.line[0]))
-        length = min(HEAD, float(whole))
-        return np.array(
-            [tip, tip + length * (-along + 0.5 * across), tip + length * (-along - 0.5 * across)]
-        )
+        tip, along = self.line[-1], self.line[-1] - self.line[-2]
+        along = along / (float(np.hypot(*along)) or 1.0)
+        length = min(HEAD, float(np.hypot(*(tip - self.line[0]))))
+        foot, half = tip - length * along, 0.5 * length * np.array([-along[1], along[0]])
+        return np.array([tip, foot + half, foot - half])
 
     def dragged(self, pointer: Array) -> float:
         """The value at which its handle is under the pointer."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from app.views.axial_force import AxialForce
 from app.views.bases import BasisSizes, Clips, SpaceModes, Spectra, TimeFunctions
 from app.views.contact_force import ContactForce
 from app.views.errors import Convergence, ErrorTime
 from app.views.loops import CycleEnergy, Cycles, Fretting, HysteresisLoop
-from app.views.rope import CrossSection, StressRanges, Unrolled
+from app.views.rope import AxialForce, CrossSection, StressRanges, Unrolled
 from app.views.scene import Stress
 from app.views.slip_plane import SlipPlane
 from app.views.status_map import StatusMap

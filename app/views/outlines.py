@@ -32,13 +32,12 @@ class Outlines:
     def suits(self, geometry: Geometry) -> bool:
         """Whether it is also that of another geometry, alike but for its size."""
         known = self.geometry
+        shapes = [each.nodes / each.nodes.max() for each in (known, geometry)]
         return (
             np.array_equal(known.quads, geometry.quads)
             and np.array_equal(known.parts, geometry.parts)
-            and known.nodes.shape == geometry.nodes.shape
-            and bool(
-                np.allclose(known.nodes / known.nodes.max(), geometry.nodes / geometry.nodes.max())
-            )
+            and shapes[0].shape == shapes[1].shape
+            and np.allclose(*shapes)
             and known.description.broken == geometry.description.broken
         )
 

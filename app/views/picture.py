@@ -124,20 +124,15 @@ class Picture:
         marks, keys = self._keys()
         for handle in self.handles:
             marks.append((self._page(handle.place), "circle", "white", handle.color, 2.5))
-        places, markers, fills, lines, widths = zip(*marks, strict=True) if marks else [()] * 5
+        places, *looks = zip(*marks, strict=True) if marks else [()] * 5
+        names = "marker", "fill_color", "line_color", "line_width"
+        columns = dict(zip(names, map(list, looks), strict=True))
         x, y = np.reshape(places, (-1, 2)).T
         return {
             "bodies": self._bodies(),
             "strokes": self._strokes(),
             "heads": self._heads(),
-            "marks": {
-                "x": x,
-                "y": y,
-                "marker": list(markers),
-                "fill_color": list(fills),
-                "line_color": list(lines),
-                "line_width": list(widths),
-            },
+            "marks": {"x": x, "y": y, **columns},
             "words": _texts(keys, self._words(), self.layout),
         }
 
