@@ -190,7 +190,8 @@ class LessonPanel:
             _button("Explore freely", self._end, variant="text"),
         ]
         following = dict(pairwise(LESSONS)).get(lesson.name)
-        if following is not None:
+        poll = self._state.poll
+        if following is not None and (poll is None or poll.leads):
             buttons.insert(0, _button("Next lesson", lambda: self.open(following)))
         return [
             self._markdown(f"**{lesson.question}**"),
