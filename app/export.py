@@ -43,9 +43,9 @@ from app.refusals import message_of
 from app.state import PageState
 from app.units import unit_for
 from app.views.view import View
-from app.worker.fclib import fclib_file
 from app.worker.geometry import thinned
 from app.worker.references import has_reference
+from app.worker.runner import fclib_file
 from solver.checked import dump
 from solver.refusal import RefusedError
 from solver.settings import Settings

@@ -25,142 +25,93 @@ OPEN = 2
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """What an interface is in every iterate.
-
-    Attributes
-    ----------
-    positions
-        Of its points along the bodies, shape (n_points,), m.
-    cuts
-        Where substructures meet, m.
-    bound
-        Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1) where it does
-        not change; None where it depends on the pressure.
-    coefficient
-        Coefficient of friction, shape (n_points, 1), where the bound depends on the pressure.
-    """
+    """What an interface is in every iterate."""
 
     positions: Floats
+    """Of its points along the bodies, shape (n_points,), m."""
     cuts: Floats
+    """Where substructures meet, m."""
     bound: Floats | None
+    """Friction bound mu p, N/m or Pa, shape (n_points, n_instants), or (n_points, 1) where it does
+    not change; None where it depends on the pressure."""
     coefficient: Floats | None
+    """Coefficient of friction, shape (n_points, 1), where the bound depends on the pressure."""
 
 
 @dataclass(frozen=True, eq=False)
 class ContactFields:
-    """Contact at one interface.
-
-    Attributes
-    ----------
-    friction
-        Friction force on the body above, shape (n_points, n_instants), N/m along rods, Pa in the
-        plane.
-    pressure
-        Same shape, Pa; None where it is given.
-    status
-        -1, 0, +1 or `OPEN`, same shape.
-    """
+    """Contact at one interface."""
 
     friction: Floats
+    """Friction force on the body above, shape (n_points, n_instants), N/m along rods, Pa in the
+    plane."""
     pressure: Floats | None
+    """Same shape, Pa; None where it is given."""
     status: Bytes
+    """-1, 0, +1 or `OPEN`, same shape."""
 
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """The undeformed bodies as they are drawn.
-
-    Attributes
-    ----------
-    description
-        Bodies, what holds them and what acts on them.
-    nodes
-        Corners of the quadrilaterals, shape (n_nodes, 2), m; rods are drawn with a thickness.
-    quads
-        Nodes of each quadrilateral, shape (n_quads, 4).
-    parts
-        Substructure of each quadrilateral, or its wire in a rope, shape (n_quads,).
-    points
-        Contact points, shape (n_points, 2), m; NaN where a line of them is broken.
-    chains
-        Number of the interface of each contact point, shape (n_points,).
-    """
+    """The undeformed bodies as they are drawn."""
 
     description: Description
+    """Bodies, what holds them and what acts on them."""
     nodes: Floats
+    """Corners of the quadrilaterals, shape (n_nodes, 2), m; rods are drawn with a thickness."""
     quads: NDArray[np.int32]
+    """Nodes of each quadrilateral, shape (n_quads, 4)."""
     parts: NDArray[np.intp]
+    """Substructure of each quadrilateral, or its wire in a rope, shape (n_quads,)."""
     points: Floats
+    """Contact points, shape (n_points, 2), m; NaN where a line of them is broken."""
     chains: NDArray[np.intp]
+    """Number of the interface of each contact point, shape (n_points,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class DeformedGeometry:
-    """How the bodies have moved, at every instant.
-
-    Attributes
-    ----------
-    nodes
-        Displacement of the nodes, shape (n_nodes, 2, n_instants), m.
-    points
-        Displacement of the contact points, shape (n_points, 2, n_instants), m.
-    status
-        Of the contact points, shape (n_points, n_instants).
-    """
+    """How the bodies have moved, at every instant."""
 
     nodes: Floats
+    """Displacement of the nodes, shape (n_nodes, 2, n_instants), m."""
     points: Floats
+    """Displacement of the contact points, shape (n_points, 2, n_instants), m."""
     status: Bytes
+    """Of the contact points, shape (n_points, n_instants)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What all frames of a run share.
-
-    Attributes
-    ----------
-    number
-        Counts the runs of a page, from 1.
-    settings
-        Of the run.
-    sentence
-        What the scene is and what acts on it.
-    instants
-        Shape (n_instants,), s.
-    interfaces
-        All interfaces with friction, by name.
-    geometry
-        The undeformed bodies.
-    across, up
-        Title and SI unit of the loop's displacement and force.
-    load
-        The load path, shape (n_instants,), in the unit of `up`; None where frames have it.
-    exact
-        Closed forms of the scene, at the same instants.
-    reference
-        Contact of the incremental solver, by interface; empty while there is none.
-    reference_loop
-        Its displacement and force, shape (2, n_instants).
-    reference_seconds
-        Time that it took, s.
-    is_idle
-        Whether nothing acts, so that nothing moves.
-    """
+    """What all frames of a run share."""
 
     number: int
+    """Counts the runs of a page, from 1."""
     settings: Settings
+    """Of the run."""
     sentence: str
+    """What the scene is and what acts on it."""
     instants: Floats
+    """Shape (n_instants,), s."""
     interfaces: Mapping[str, Interface]
+    """All interfaces with friction, by name."""
     geometry: Geometry
+    """The undeformed bodies."""
     across: tuple[str, str]
     up: tuple[str, str]
+    """Title and SI unit of the loop's displacement and force."""
     load: Floats | None
+    """The load path, shape (n_instants,), in the unit of `up`; None where frames have it."""
     exact: tuple[ExactCurve, ...] = ()
+    """Closed forms of the scene, at the same instants."""
     reference: Mapping[str, ContactFields] = field(default_factory=dict)
+    """Contact of the incremental solver, by interface; empty while there is none."""
     reference_loop: Floats | None = None
+    """Its displacement and force, shape (2, n_instants)."""
     reference_seconds: float = float("nan")
+    """Time that it took, s."""
     is_idle: bool = False
+    """Whether nothing acts, so that nothing moves."""
 
     def known(self, quantity: str) -> list[ExactCurve]:
         """Closed forms of one quantity."""
@@ -174,53 +125,36 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One iterate of a run.
-
-    Attributes
-    ----------
-    run
-        What it belongs to.
-    iteration
-        Its number, from 1.
-    is_answer
-        Whether it is the certified solution, which is no iteration of the search.
-    contact
-        Contact fields by interface: the selected one, and all others where they are small.
-    deformed
-        How the bodies have moved.
-    loop
-        Displacement and force of the loop, shape (2, n_instants).
-    history
-        Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
-        (n_iterations,). With separated bases also "modes", how many each substructure's has, of
-        shape (n_iterations, n_substructures), of 60 substructures at most.
-    status
-        How the run ends, once it does.
-    energy
-        Energy lost in the whole interval, J.
-    residual
-        KKT residual of a certified solution; None of all other iterates.
-    remarks
-        What is to be said of the answer, in plain sentences.
-    extras
-        What only some views need, by name, as far as one of them was in sight.
-    readings
-        Quantities of the run that a lesson names, by name.
-    """
+    """One iterate of a run."""
 
     run: Run
+    """What it belongs to."""
     iteration: int
+    """Its number, from 1."""
     is_answer: bool
+    """Whether it is the certified solution, which is no iteration of the search."""
     contact: Mapping[str, ContactFields]
+    """Contact fields by interface: the selected one, and all others where they are small."""
     deformed: DeformedGeometry
+    """How the bodies have moved."""
     loop: Floats
+    """Displacement and force of the loop, shape (2, n_instants)."""
     history: Mapping[str, Floats]
+    """Scalars of every iteration so far, by the names of `solver.latin.Record`; each of shape
+    (n_iterations,). With separated bases also "modes", how many each substructure's has, of
+    shape (n_iterations, n_substructures), of 60 substructures at most."""
     status: Status | None = None
+    """How the run ends, once it does."""
     energy: float = float("nan")
+    """Energy lost in the whole interval, J."""
     residual: float | None = None
+    """KKT residual of a certified solution; None of all other iterates."""
     remarks: tuple[str, ...] = ()
+    """What is to be said of the answer, in plain sentences."""
     extras: Mapping[str, Any] = field(default_factory=dict)
+    """What only some views need, by name, as far as one of them was in sight."""
     readings: Mapping[str, float] = field(default_factory=dict)
+    """Quantities of the run that a lesson names, by name."""
 
     @property
     def nbytes(self) -> int:
@@ -244,27 +178,18 @@ class Frame:
 
 @dataclass(frozen=True)
 class Selection:
-    """What is looked at.
-
-    Attributes
-    ----------
-    phase
-        The instant, as a share of the interval.
-    interface
-        Name of the selected interface.
-    substructure
-        Number of the selected substructure, from 0; None is the last.
-    place
-        Position along the bodies that is marked, m.
-    stress
-        Component of stress that colours the bodies.
-    """
+    """What is looked at."""
 
     phase: float = 0.75
+    """The instant, as a share of the interval."""
     interface: str = ""
+    """Name of the selected interface."""
     substructure: int | None = None
+    """Number of the selected substructure, from 0; None is the last."""
     place: float | None = None
+    """Position along the bodies that is marked, m."""
     stress: str = "von Mises"
+    """Component of stress that colours the bodies."""
 
     def interface_of(self, run: Run) -> str:
         """The selected interface of a run, or its default one."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.messages import WHOLE
-from app.worker import pacing
-from app.worker.pacing import LATE, Pacing
+from app.worker import runner
+from app.worker.runner import LATE, Pacing
 
 
 class Watch:
@@ -22,7 +22,7 @@ class Watch:
 @pytest.fixture
 def watch(monkeypatch: pytest.MonkeyPatch) -> Watch:
     made = Watch()
-    monkeypatch.setattr(pacing, "time", made)
+    monkeypatch.setattr(runner, "time", made)
     return made
 
 

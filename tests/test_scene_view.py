@@ -9,11 +9,9 @@ import pytest
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
+from app.views.outlines import bands
 from app.views.rope import CrossSection, StressRanges, Unrolled
-from app.views.scene import Scene
-from app.views.scene.outlines import bands
-from app.views.scene.scene import HEIGHT, WIDTH
-from app.views.scene.stress import Stress
+from app.views.scene import HEIGHT, WIDTH, Scene, Stress
 from app.views.timeline import Timeline, paths_of
 from app.worker.extras import EXTRAS
 from app.worker.references import ReferenceCache
@@ -76,7 +74,7 @@ def test_bodies_in_the_plane_have_equal_axes(frame: Frame) -> None:
 
 def test_words_are_whole(frame: Frame) -> None:
     words = shown(frame).sources["words"].data
-    for x, text, align in zip(words["x"], words["text"], words["align"], strict=True):
+    for x, text, align in zip(words["x"], words["text"], words["text_align"], strict=True):
         width = 7.0 * len(text)
         left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[align] * width
         assert left >= -1.0

@@ -26,9 +26,8 @@ from app.views.contact_force import ContactForce
 from app.views.scene import Scene
 from app.views.timeline import Timeline
 from app.worker.extras import EXTRAS
-from app.worker.fclib import fclib_file
 from app.worker.references import ReferenceCache
-from app.worker.runner import Runner
+from app.worker.runner import Runner, fclib_file
 from solver.checked import dump
 from solver.files import settings_from_toml
 from solver.refusal import RefusedError
@@ -90,7 +89,7 @@ def test_tables_hold_what_is_drawn_with_all_settings_before_it() -> None:
     view = next(view for view in page("bar").display.views if isinstance(view, ContactForce))
     table = plot_table(view, frame)
     drawn = {float(row["latin"]) for row in rows_of(table) if row["latin"]}
-    assert drawn >= {float(value) for value in view.friction.data["latin"]}
+    assert drawn >= {float(value) for value in view.sources["friction"].data["latin"]}
     head = "\n".join(line[2:] for line in table.splitlines() if line.startswith("# "))
     saved = settings_from_toml(head[head.index("scene = ") :])
     assert dump(saved) == dump(frame.run.settings)

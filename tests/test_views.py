@@ -16,12 +16,12 @@ from app.frame import Frame, Selection
 from app.live import Card
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.axial_force import AxialForce
+from app.views.bases import Spectra
 from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
-from app.views.convergence import Convergence
-from app.views.loop import HysteresisLoop
-from app.views.spectra import Spectra
+from app.views.errors import Convergence
+from app.views.loops import HysteresisLoop
+from app.views.rope import AxialForce
 from app.views.status_map import StatusMap
 from app.views.view import View
 from app.worker.extras import EXTRAS
@@ -133,7 +133,7 @@ def test_the_shaded_error_is_there_on_the_way_and_vanishes_at_the_answer(case: s
     _, last, answer = frames_of(case)
     sizes = []
     for frame in (last, answer):
-        data = view_of(ContactForce, frame).friction.data
+        data = view_of(ContactForce, frame).sources["friction"].data
         sizes.append(
             np.abs(data["latin"] - data["reference"]).max() / np.abs(data["reference"]).max()
         )
@@ -147,7 +147,7 @@ def test_the_contact_force_is_shown_in_the_unit_that_its_axis_says() -> None:
     column = frame.run.column(Selection().phase)
     fields = next(iter(frame.contact.values()))
     assert view.figure.yaxis[0].axis_label == "force, kN/m"
-    assert np.allclose(view.friction.data["latin"], 1e-3 * fields.friction[:, column])
+    assert np.allclose(view.sources["friction"].data["latin"], 1e-3 * fields.friction[:, column])
 
 
 def test_the_axis_of_the_contact_force_stays_while_a_run_iterates() -> None:
@@ -175,12 +175,14 @@ def test_the_map_is_the_status_and_is_not_sent_again_when_the_instant_changes() 
     frame = frames_of("block")[1]
     view = view_of(StatusMap, frame)
     status = next(iter(frame.contact.values())).status
-    image = view.status.data["image"][0]
+    image = view.sources["status"].data["image"][0]
     assert np.array_equal(image, status.T)
-    data = view.status.data
+    data = view.sources["status"].data
     shown(view, frame, phase=0.3)
-    assert view.status.data is data
-    assert view.now.data["t"] == pytest.approx(frame.run.instants[[frame.run.column(0.3)]])
+    assert view.sources["status"].data is data
+    assert view.sources["now"].data["y"] == pytest.approx(
+        frame.run.instants[[frame.run.column(0.3)]]
+    )
 
 
 def test_the_ghosts_boundary_lies_where_its_status_changes() -> None:
@@ -188,7 +190,7 @@ def test_the_ghosts_boundary_lies_where_its_status_changes() -> None:
     view = shown(view_of(StatusMap, last), last, other_run(answer))
     status = next(iter(answer.contact.values())).status
     changes = np.count_nonzero(np.diff(status, axis=0)) + np.count_nonzero(np.diff(status, axis=1))
-    assert len(view.ghost.data["x0"]) == changes
+    assert len(view.sources["ghost"].data["x0"]) == changes
 
 
 def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
@@ -203,16 +205,16 @@ def test_a_tap_on_the_map_selects_the_instant_and_the_place() -> None:
 def test_the_answer_is_a_ring_and_no_iteration_of_the_curve() -> None:
     answer = frames_of("bar")[2]
     view = view_of(Convergence, answer)
-    assert list(view.answer.data["x"]) == [answer.iteration]
-    assert len(view.curves["force"].data["x"]) == len(answer.history["iteration"]) - 1
+    assert list(view.sources["answer"].data["x"]) == [answer.iteration]
+    assert len(view.sources["error_force"].data["x"]) == len(answer.history["iteration"]) - 1
 
 
 def test_an_iterate_that_is_gone_back_to_is_marked_on_the_whole_curve() -> None:
     first, last, _ = frames_of("bar")
     view = view_of(Convergence, last)
     view.update(first, Selection(), None)
-    assert list(view.shown.data["x"]) == [first.iteration]
-    assert len(view.curves["η"].data["x"]) == len(last.history["iteration"])
+    assert list(view.sources["shown"].data["x"]) == [first.iteration]
+    assert len(view.sources["indicator"].data["x"]) == len(last.history["iteration"])
 
 
 def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
@@ -225,9 +227,9 @@ def test_an_indicator_does_not_widen_the_axis_of_errors() -> None:
 def test_singular_values_wait_for_the_worker_to_send_them() -> None:
     last = frames_of("bar")[1]
     view = view_of(Spectra, last)
-    count = len(view.values.data["xs"])
+    count = len(view.sources["values"].data["xs"])
     shown(view, replace(last, extras={}))
-    assert count == last.run.settings.n_substructures == len(view.values.data["xs"])
+    assert count == last.run.settings.n_substructures == len(view.sources["values"].data["xs"])
 
 
 def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
@@ -243,7 +245,7 @@ def test_another_programs_results_stand_beside_ours_at_their_nearest_instant() -
     x, t = (grid.ravel() for grid in np.meshgrid([0.0, 0.5, 1.0], [0.0, 0.7, 1.0]))
     theirs = {"x": x, "t": t, "values": 1000.0 * t, "quantity": "friction force"}
     view = view_of(ContactForce, replace(frame, extras={"beside": theirs}))
-    assert np.allclose(view.beside.data["y"], 0.7)
+    assert np.allclose(view.sources["beside"].data["y"], 0.7)
     theirs["quantity"] = "displacement"
     view = view_of(HysteresisLoop, replace(frame, extras={"beside": theirs}))
     assert len(view.sources["beside"].data["x"]) == 3

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.plotting import figure
 
 from app.frame import ContactFields, Floats, Frame, Interface, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
-from app.views.view import Axis, Key, View, extent, hover, key_of, plot, put, source
+from app.views.view import View, extent, hover, joined, key_of, put, source
 from solver.scenes import kind_of
 
 ROOM, MOST = 1.15, 2.0
@@ -23,48 +22,32 @@ class ContactForce(View):
     name = "Contact force"
     needs = frozenset({"beside"})
 
-    def make(self) -> figure:
-        """A new figure."""
-        made = plot("", "")
-        self._x, self._y = Axis(made, "x", "x", "m"), Axis(made, "y", "force", "N/m")
-        self.friction, self.pressure = (source("x", "latin", "reference") for _ in range(2))
-        self.bound, self.cuts = source("x", "upper", "lower"), source("x")
-        self.exact, self.ghost = source("xs", "ys"), source("xs", "ys")
-        self.beside, self.place = source("x", "y"), source("x")
-        made.vspan("x", source=self.cuts, color=CUT, alpha=0.4, line_width=1)
-        made.vspan("x", source=self.place, color=ERROR, alpha=0.7, line_width=1)
-        both = self.friction, self.pressure
-        exact = made.multi_line("xs", "ys", source=self.exact, color=EXACT, width=8, alpha=0.35)
-        areas = [
-            made.varea("x", "reference", "latin", source=each, color=ERROR, alpha=0.35)
-            for each in both
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(("x", "m"), ("force", "N/m"))
+        both = "friction", "pressure"
+        self.sources |= {name: source("x", "latin", "reference") for name in both}
+        self.add("cuts", "vspan", "x", color=CUT, alpha=0.4, line_width=1)
+        self.add("place", "vspan", "x", color=ERROR, alpha=0.7, line_width=1)
+        self.add("exact", color=EXACT, width=8, alpha=0.35)
+        area = {"x": "x", "y1": "reference", "y2": "latin", "color": ERROR, "alpha": 0.35}
+        for name in both:
+            self.add("error", "varea", on=name, **area)
+        self.add("bound", color=REFERENCE, dash="dashed")
+        self.add("ghost", color=GHOST, width=2, dash="dotted")
+        self.add("reference", color=REFERENCE, width=1.5)
+        self.add("beside", color=BESIDE, width=2, dash="dashed")
+        lines = [
+            self.add(name, on=name, x="x", y="latin", color=color, width=2.5)
+            for name, color in (("pressure", PRESSURE), ("friction", LATIN))
         ]
-        bounds = [
-            made.line("x", side, source=self.bound, color=REFERENCE, dash="dashed")
-            for side in ("upper", "lower")
-        ]
-        ghost = made.multi_line("xs", "ys", source=self.ghost, color=GHOST, width=2, dash="dotted")
-        references = [
-            made.line("x", "reference", source=each, color=REFERENCE, width=1.5) for each in both
-        ]
-        beside = made.line("x", "y", source=self.beside, color=BESIDE, width=2, dash="dashed")
-        pressure = made.line("x", "latin", source=self.pressure, color=PRESSURE, width=2.5)
-        latin = made.line("x", "latin", source=self.friction, color=LATIN, width=2.5)
-        entries = {
-            "LATIN": [latin],
-            "pressure": [pressure],
-            "reference": references,
-            "error": areas,
-            "±µp": bounds,
-            "closed form": [exact],
-            "ghost": [ghost],
-            "beside": [beside],
-        }
-        self._key = Key(made, entries)
+        self.legend(
+            friction="LATIN", pressure="pressure", reference="reference", error="error",
+            bound="±µp", exact="closed form", ghost="ghost", beside="beside",
+        )  # fmt: skip
         tips = {"x": "@x{0.000}", "LATIN": "@latin{0.000}", "reference": "@reference{0.000}"}
-        hover(made, [latin, pressure], tips)
+        hover(made, lines, tips)
         self._scaled_for: object = None
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the contact forces along the selected interface."""
@@ -74,42 +57,43 @@ class ContactForce(View):
             return
         column, reference = run.column(selection.phase), run.reference.get(name)
         is_plane, has_pressure = kind_of(run.settings) == "plane", fields.pressure is not None
-        self._y.rename("traction" if is_plane else "force", "Pa" if is_plane else "N/m")
-        bound = _bound(interface, fields)
+        self.y.rename("traction" if is_plane else "force", "Pa" if is_plane else "N/m")
         curves = run.known("friction") + (run.known("pressure") if has_pressure else [])
         exact = [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
         self._scale(run, name, fields, [curve.up for curve in exact])
-        x = self._x(interface.positions)
-        for target, quantity in ((self.friction, "friction"), (self.pressure, "pressure")):
-            latin, known = getattr(fields, quantity), getattr(reference, quantity, None)
-            if latin is None:
-                put(target, x=x[:0], latin=x[:0], reference=x[:0])
-                continue
-            latin = self._y(latin[:, column])
-            known = latin if known is None else self._y(known[:, column])
-            put(target, x=x, latin=latin, reference=known)
-        limit = self._y(bound[:, min(column, bound.shape[1] - 1)])
-        put(self.bound, x=x, upper=limit, lower=-limit)
-        put(self.cuts, x=self._x(interface.cuts))
-        put(self.place, x=self._x([] if selection.place is None else [selection.place]))
-        put(
-            self.exact,
-            xs=[self._x(curve.across) for curve in exact],
-            ys=[self._y(curve.up[:, column]) for curve in exact],
-        )
-        self._show_ghost(ghost, selection, is_plane=is_plane)
-        beside = self._show_beside(frame, float(run.instants[column]))
-        self._key.show(
-            {
-                "LATIN": "friction" if has_pressure else "LATIN",
-                "pressure": has_pressure,
-                "reference": reference is not None,
-                "error": reference is not None,
-                "closed form": bool(exact),
-                "ghost": self.ghost_name if self.ghost.data["xs"] else "",
-                "beside": beside,
-            }
-        )
+        places = interface.positions
+        x = self.x(places)
+        put(self.sources["friction"], x=x, **self._both(fields, reference, "friction", column))
+        pressure = self._both(fields, reference, "pressure", column)
+        put(self.sources["pressure"], x=x if has_pressure else x[:0], **pressure)
+        self.draw("reference", *_curves(places, reference, column))
+        self.show("friction", "friction" if has_pressure else "LATIN")
+        self.show("pressure", has_pressure)
+        self.show("error", reference is not None)
+        bound = _bound(interface, fields)
+        bound = bound[:, min(column, bound.shape[1] - 1)]
+        self.draw("bound", *joined([(places, bound), (places, -bound)]))
+        self.fill("cuts", x=self.x(interface.cuts))
+        self.fill("place", x=self.x([] if selection.place is None else [selection.place]))
+        self.draw("exact", *joined([(c.across, c.up[:, column]) for c in exact]))
+        past = None
+        if ghost is not None and (kind_of(ghost.run.settings) == "plane") == is_plane:
+            other = selection.interface_of(ghost.run)
+            past = ghost.contact.get(other)
+            places = ghost.run.interfaces[other].positions
+            column = ghost.run.column(selection.phase)
+        self.draw("ghost", *_curves(places, past, column), self.ghost_name)
+        self._show_beside(frame, float(run.instants[run.column(selection.phase)]))
+
+    def _both(
+        self, fields: ContactFields, reference: ContactFields | None, quantity: str, column: int
+    ) -> dict[str, Floats]:
+        """A contact force of an iterate and its reference, or twice that where there is none."""
+        latin, known = getattr(fields, quantity), getattr(reference, quantity, None)
+        if latin is None:
+            return {"latin": np.zeros(0), "reference": np.zeros(0)}
+        known = latin if known is None else known
+        return {"latin": self.y(latin[:, column]), "reference": self.y(known[:, column])}
 
     def _scale(self, run: Run, name: str, fields: ContactFields, exact: list[Floats]) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
@@ -120,42 +104,30 @@ class ContactForce(View):
             ends = [known.friction, *exact, *([] if known.pressure is None else [known.pressure])]
             self._known = extent([*ends, *([] if bound is None else [bound, -bound])])
             self._scaled_for = key
-            self._x.hold(key, *extent([run.interfaces[name].positions]))
+            self.x.hold(key, *extent([run.interfaces[name].positions]))
         low, high = self._known
         most = MOST * max(abs(low), abs(high))
         least, largest = extent([f for f in (fields.friction, fields.pressure) if f is not None])
         low, high = min(ROOM * low, max(least, -most)), max(ROOM * high, min(largest, most))
-        self._y.hold(key, low, high)
+        self.y.hold(key, low, high)
 
-    def _show_ghost(self, ghost: Frame | None, selection: Selection, *, is_plane: bool) -> None:
-        fields = None
-        if ghost is not None and (kind_of(ghost.run.settings) == "plane") == is_plane:
-            name = selection.interface_of(ghost.run)
-            fields = ghost.contact.get(name)
-        if ghost is None or fields is None:
-            put(self.ghost, xs=[], ys=[])
-            return
-        x, column = ghost.run.interfaces[name].positions, ghost.run.column(selection.phase)
-        shown = [field for field in (fields.friction, fields.pressure) if field is not None]
-        put(
-            self.ghost,
-            xs=[self._x(x)] * len(shown),
-            ys=[self._y(field[:, column]) for field in shown],
-        )
-
-    def _show_beside(self, frame: Frame, time: float) -> str:
+    def _show_beside(self, frame: Frame, time: float) -> None:
         """Show another program's friction at its nearest instant, and name it."""
         beside = frame.extras.get("beside")
         if beside is None or beside["quantity"] != "friction force":
-            put(self.beside, x=[], y=[])
-            return ""
-        times = np.asarray(beside["t"])
-        near = times[np.abs(times - time).argmin()]
-        rows = times == near
-        x, y = np.asarray(beside["x"])[rows], np.asarray(beside["values"])[rows]
-        order = np.argsort(x)
-        put(self.beside, x=self._x(x[order]), y=self._y(y[order]))
-        return f"{beside.get('name', 'another program')}, t = {near:.3g} s"
+            self.draw("beside", [], [])
+            return
+        near = beside["t"][np.abs(beside["t"] - time).argmin()]
+        rows = beside["t"] == near
+        order = np.argsort(beside["x"][rows])
+        title = f"{beside.get('name', 'another program')}, t = {near:.3g} s"
+        self.draw("beside", beside["x"][rows][order], beside["values"][rows][order], title)
+
+
+def _curves(places: Floats, fields: ContactFields | None, column: int) -> Floats:
+    """Friction, and pressure where it is not given, as one curve, shape (2, n)."""
+    both = [] if fields is None else [fields.friction, fields.pressure]
+    return joined([(places, field[:, column]) for field in both if field is not None])
 
 
 def _bound(interface: Interface, fields: ContactFields) -> Floats:

@@ -7,16 +7,14 @@ from typing import Any
 import numpy as np
 from bokeh.core.properties import value
 from bokeh.events import Pan, Tap
-from bokeh.models import PanTool, Range1d
-from bokeh.plotting import figure
+from bokeh.models import PanTool
 
 from app.frame import Frame, Run, Selection
 from app.units import number, unit_for
+from app.views.acts import unit_of
 from app.views.colors import ERROR, FORCE
-from app.views.scene.acts import unit_of
-from app.views.scene.layout import is_opposite
-from app.views.scene.scene import put
-from app.views.view import View, source
+from app.views.layout import is_opposite
+from app.views.view import View, bare
 from solver.arrays import Array
 
 THIN = ("#7A7A7A", "#A0A0A0", "#56B4E9")
@@ -34,29 +32,22 @@ class Timeline(View):
 
     name = "Load path"
 
-    def make(self) -> figure:
-        """A new figure."""
-        made = figure(
-            sizing_mode="stretch_both", min_height=40, tools="", toolbar_location=None,
-            x_range=Range1d(-0.01, 1.01, bounds=(-0.01, 1.01)), y_range=Range1d(LOW, TITLE + 0.6),
-            min_border=0,
-        )  # fmt: skip
-        made.outline_line_color = None
-        made.background_fill_alpha = made.border_fill_alpha = 0.0
-        made.yaxis.visible = made.grid.visible = False
+    def make(self) -> None:
+        """Make the figure."""
+        made = self._made = bare(40, (-0.01, 1.01), (LOW, TITLE + 0.6))
+        made.x_range.bounds = (-0.01, 1.01)
+        made.yaxis.visible = False
         axis = made.xaxis
         axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
         axis.axis_line_alpha = 0.4
-        self.path, self.now = source("t", "load"), source("t", "load")
-        self.others, self.names = source("xs", "ys", "color"), source("x", "y", "text", "color")
-        made.varea("t", 0, "load", source=self.path, color=FORCE, alpha=0.16)
-        made.multi_line("xs", "ys", source=self.others, color="color", width=1.4)
-        made.line("t", "load", source=self.path, color=FORCE, width=2)
-        made.ray("t", LOW, length=0, angle=np.pi / 2, source=self.now, color=ERROR, alpha=0.5)
-        made.scatter("t", "load", source=self.now, color=FORCE, size=13)
-        made.text(
-            "x", "y", text="text", source=self.names, text_color="color", text_font_size="12px",
+        self.add("area", "varea", "x y2", y1=0, color=FORCE, alpha=0.16)
+        self.add("paths", "multi_line", "xs ys line_color line_width")
+        look = {"y": LOW, "length": 0, "angle": np.pi / 2, "color": ERROR, "alpha": 0.5}
+        self.add("instant", "ray", "x", **look)
+        self.add("now", "scatter", color=FORCE, size=13)
+        self.add(
+            "titles", "text", "x text text_color", y=TITLE, text_font_size="12px",
             text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
         # The range has bounds, so that the tool only keeps a touch from scrolling the page.
@@ -65,7 +56,6 @@ class Timeline(View):
             made.on_event(event, self._select)
         self._width, self._shown = WIDTH, (0, WIDTH)
         made.on_change("inner_width", self._resize)
-        return made
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
@@ -75,35 +65,29 @@ class Timeline(View):
         if self._shown != (run.number, self._width):
             self._shown = run.number, self._width
             self._show_paths(run, times, unit.name)
-        column = run.column(selection.phase)
-        load = self.path.data["load"]
-        put(self.now, {"t": times[[column]], "load": np.asarray(load)[[column]]})
+        column = [run.column(selection.phase)]
+        self.fill("instant", x=times[column])
+        self.fill("now", x=times[column], y=self.sources["area"].data["y2"][column])
 
     def _show_paths(self, run: Run, times: Array, unit: str) -> None:
-        paths = paths_of(run)
         end = float(times[-1])
         margin = 0.01 * end
         across = self.figure.x_range
         across.update(bounds=(-margin, end + margin), start=-margin, end=end + margin)
-        scaled = [values / (np.abs(values).max() or 1.0) for _, values, _ in paths]
-        colors = [FORCE, *THIN[: len(paths) - 1]]
-        self.path.data = {"t": times, "load": scaled[0].astype(np.float32)}
-        count = len(colors)
-        self.others.data = {
-            "xs": [times] * (count - 1),
-            "ys": [values.astype(np.float32) for values in scaled[1:count]],
-            "color": colors[1:],
-        }
-        texts = [text for text, _, _ in paths[:count]] + [f"t, {unit}"]
+        colors = [FORCE, *THIN]
+        paths = paths_of(run)[: len(colors)]
+        colors = colors[: len(paths)]
+        ys = [np.float32(values / (np.abs(values).max() or 1.0)) for _, values, _ in paths]
+        self.fill("area", x=times, y2=ys[0])
+        # The first is on top.
+        widths = [2.0, *[1.4] * len(THIN)][: len(paths)]
+        looks = {"line_color": colors[::-1], "line_width": widths[::-1]}
+        self.fill("paths", xs=[times] * len(paths), ys=ys[::-1], **looks)
+        titles = [title for title, _, _ in paths] + [f"t, {unit}"]
         letter = LETTER / self._width
-        ends = np.cumsum([(len(text) + 4) * letter for text in texts[:-1]])
-        x = [*np.concatenate([[0.0], ends[:-1]]), 1.0 - 4 * letter]
-        self.names.data = {
-            "x": [end * share for share in x],
-            "y": [TITLE] * (count + 1),
-            "text": texts,
-            "color": [*colors, THIN[0]],
-        }
+        ends = np.cumsum([0.0, *((len(title) + 4) * letter for title in titles[:-1])])
+        x = end * np.append(ends[:-1], 1.0 - 4 * letter)
+        self.fill("titles", x=x, text=titles, text_color=[*colors, THIN[0]])
 
     def _resize(self, _name: str, _old: int, new: int) -> None:
         self._width = max(new, 1)

@@ -13,12 +13,11 @@ from bokeh.core.properties import value
 from bokeh.models import (
     ColumnDataSource,
     CrosshairTool,
-    FixedTicker,
     GlyphRenderer,
     HoverTool,
     Legend,
+    LegendItem,
     NumeralTickFormatter,
-    PrintfTickFormatter,
     Range1d,
     Title,
 )
@@ -45,78 +44,10 @@ CLOSE = """
 keeps them farther apart."""
 
 
-class View:
-    """A figure, made when it is first seen.
-
-    Parameters
-    ----------
-    state
-        Of the page; what is done in the figure, as a tap, selects there.
-
-    Attributes
-    ----------
-    name
-        What its tab is called.
-    needs
-        Names of the extras of a frame that it shows.
-    """
-
-    name: ClassVar[str]
-    needs: ClassVar[frozenset[str]] = frozenset()
-
-    def __init__(self, state: PageState) -> None:
-        self.state, self._type = state, TEXT
-
-    @staticmethod
-    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
-        """Whether it says anything about such a run."""
-        return True
-
-    @cached_property
-    def figure(self) -> figure:
-        """The figure."""
-        made = self.make()
-        lighten(made)
-        self._magnify(made)
-        return made
-
-    def magnify(self, size: str) -> None:
-        """Have its type in a size, as CSS has it."""
-        self._type = size
-        if "figure" in self.__dict__:
-            self._magnify(self.figure)
-
-    def _magnify(self, made: figure) -> None:
-        for model in (made, *made.legend):
-            model.styles = {**model.styles, "font-size": self._type}
-
-    def make(self) -> figure:
-        """A new figure, with the sources that `update` fills."""
-        raise NotImplementedError
-
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show a frame; the ghost is that of the run that it is compared with."""
-        raise NotImplementedError
-
-    @property
-    def ghost_name(self) -> str:
-        """What the run is called that is drawn beside the present one."""
-        return "last run" if self.state.pinned is None else "pinned run"
-
-
 class Axis:
-    """An axis of a figure, whose unit is chosen once a run, and whose ends change seldom.
+    """The x or y axis of a figure, whose unit is chosen once a run, and whose ends change seldom.
 
-    Parameters
-    ----------
-    made
-        The figure.
-    side
-        "x" or "y".
-    title
-        Of the axis, without a unit.
-    unit
-        SI unit of what it is given; empty for none.
+    Its title is without that; what it is given is in an SI unit, empty for none.
     """
 
     def __init__(self, made: figure, side: str, title: str, unit: str = "") -> None:
@@ -174,36 +105,132 @@ class Axis:
             self._made.yaxis.axis_label = textwrap.fill(text, LONGEST)
 
 
-class Key:
-    """The legend of a plot, in one line above it, where it covers no curve.
+class View:
+    """A figure, made when it is first seen, below a legend that names what is there.
 
-    A click on an entry hides its curve.
+    A click on an entry of the legend hides its curve.
 
     Parameters
     ----------
-    made
-        The figure.
-    entries
-        What each entry names.
+    state
+        Of the page; what is done in the figure, as a tap, selects there.
+
+    Attributes
+    ----------
+    name
+        What its tab is called.
+    needs
+        Names of the extras of a frame that it shows.
+    x, y
+        The axes.
+    sources
+        What is drawn, by name.
     """
 
-    def __init__(self, made: figure, entries: Mapping[str, list[GlyphRenderer]]) -> None:
-        self._items = dict(zip(entries, legend(made, dict(entries)).items, strict=True))
+    name: ClassVar[str]
+    needs: ClassVar[frozenset[str]] = frozenset()
 
-    def show(self, entries: Mapping[str, bool | str]) -> None:
-        """Show or hide entries, or give them other names."""
-        for name, wanted in entries.items():
-            item = self._items[name]
+    def __init__(self, state: PageState) -> None:
+        self.state, self._type = state, TEXT
+        self._made: figure | None = None
+        self.sources: dict[str, ColumnDataSource] = {}
+        self._glyphs: dict[str, list[GlyphRenderer]] = {}
+        self._items: dict[str, LegendItem] = {}
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
+        """Whether it says anything about such a run."""
+        return True
+
+    @cached_property
+    def figure(self) -> figure:
+        """The figure."""
+        self.make()
+        # A page opens sooner without glyphs of what nobody selects or mutes.
+        for renderer in self._made.renderers:
+            renderer.update(nonselection_glyph=None, muted_glyph=None)
+        self.magnify(self._type)
+        return self._made
+
+    def magnify(self, size: str) -> None:
+        """Have its type in a size, as CSS has it."""
+        self._type = size
+        if self._made is not None:
+            for model in (self._made, *self._made.legend):
+                model.styles = {**model.styles, "font-size": size}
+
+    def make(self) -> None:
+        """Make the figure, by `begin` and `add`."""
+        raise NotImplementedError
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show a frame; the ghost is that of the run that it is compared with."""
+        raise NotImplementedError
+
+    @property
+    def ghost_name(self) -> str:
+        """What the run is called that is drawn beside the present one."""
+        return "last run" if self.state.pinned is None else "pinned run"
+
+    def begin(self, x: tuple[str, ...] = ("",), y: tuple[str, ...] = ("",), **more: Any) -> figure:
+        """A new figure whose axes have a title and an SI unit; `add` fills it."""
+        made = self._made = plot(**more)
+        self.x, self.y = Axis(made, "x", *x), Axis(made, "y", *y)
+        return made
+
+    def add(
+        self,
+        name: str,
+        glyph: str = "line",
+        columns: str = "x y",
+        *,
+        also: str = "",
+        on: str = "",
+        **look: Any,
+    ) -> GlyphRenderer:
+        """A glyph whose columns are called as its properties, or one on another one's source.
+
+        Its source has also other columns, for whoever hovers.
+        """
+        if not on:
+            on, look = name, {column: column for column in columns.split()} | look
+            self.sources[name] = source(*columns.split(), *also.split())
+        renderer: GlyphRenderer = getattr(self._made, glyph)(source=self.sources[on], **look)
+        self._glyphs.setdefault(name, []).append(renderer)
+        return renderer
+
+    def mark(self, name: str, color: str, **look: Any) -> None:
+        """A square that stands in the legend only."""
+        look = {"marker": "square", "size": 10, "color": color} | look
+        self._glyphs[name] = [self._made.scatter([np.nan], [np.nan], **look)]
+
+    def legend(self, **titles: str) -> None:
+        """Name glyphs in a legend, in this order."""
+        box = legend(self._made, {title: self._glyphs[name] for name, title in titles.items()})
+        self._items = dict(zip(titles, box.items, strict=True))
+
+    def show(self, name: str, wanted: bool | str) -> None:
+        """Show or hide an entry of the legend, or give it another title."""
+        item = self._items.get(name)
+        if item is not None:
             item.visible = bool(wanted)
             if isinstance(wanted, str) and wanted and item.label != value(wanted):
                 item.label = value(wanted)
 
+    def fill(self, name: str, title: str = "", **columns: Any) -> None:
+        """Fill a source; the legend has it, by a title, if there is anything in it."""
+        put(self.sources[name], **columns)
+        self.show(name, any(map(len, columns.values())) and (title or True))
 
-def plot(x: str, y: str, **more: Any) -> figure:
-    """A figure with the look that all plots share; its ranges are set by whoever fills it."""
+    def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
+        """Draw a curve of values in SI."""
+        self.fill(name, title, x=self.x(x), y=self.y(y))
+
+
+def plot(**more: Any) -> figure:
+    """A figure with the look that all plots share; its ranges and titles are those of `Axis`."""
     more = {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)} | more
     made = figure(
-        y_axis_label=y,
         sizing_mode="stretch_both",
         min_height=120,
         styles={"font-size": TEXT},
@@ -219,15 +246,21 @@ def plot(x: str, y: str, **more: Any) -> figure:
     made.axis.major_label_standoff, made.axis.minor_tick_line_color = 3, None
     made.axis.major_tick_in, made.axis.major_tick_out = 0, 3
     # A title stands nearer than the label of an axis, which the theme moves away.
-    made.add_layout(Title(text=x, align="center", standoff=2), "below")
+    made.add_layout(Title(align="center", standoff=2), "below")
     made.grid.grid_line_alpha = 0.3
     return made
 
 
-def lighten(made: figure) -> None:
-    """Leave out glyphs of what nobody selects or mutes: a page opens sooner."""
-    for renderer in made.renderers:
-        renderer.update(nonselection_glyph=None, muted_glyph=None)
+def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> figure:
+    """A figure without tools, frame and grid, at least so many pixels high, with ends of axes."""
+    made = figure(
+        sizing_mode="stretch_both", min_height=least, tools="", toolbar_location=None,
+        x_range=Range1d(*across), y_range=Range1d(*up), min_border=0,
+    )  # fmt: skip
+    made.grid.visible = False
+    made.outline_line_color = None
+    made.background_fill_alpha = made.border_fill_alpha = 0.0
+    return made
 
 
 def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:
@@ -242,28 +275,23 @@ def source(*columns: str) -> ColumnDataSource:
 
 def put(target: ColumnDataSource, **columns: Any) -> None:
     """Fill a source, where anything has changed: what is the same is not sent again."""
-    old = target.data
-    if any(not _equal(old.get(name), new) for name, new in columns.items()):
+    if not all(_equal(target.data[name], new) for name, new in columns.items()):
         target.data = columns
 
 
 def _equal(old: Any, new: Any) -> bool:
-    if isinstance(new, list) and new and isinstance(new[0], np.ndarray):
-        return len(old) == len(new) and all(map(np.array_equal, old, new))
-    return np.array_equal(old, new)
+    if isinstance(new, np.ndarray):
+        return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
+    if isinstance(new, list):
+        return len(old) == len(new) and all(map(_equal, old, new))
+    return bool(old == new)
 
 
-def mark(made: figure, color: str, alpha: float = 1.0) -> GlyphRenderer:
-    """A square that stands in a legend only."""
-    nowhere = {"x": [np.nan], "y": [np.nan]}
-    return made.scatter(**nowhere, marker="square", size=10, color=color, alpha=alpha)
-
-
-def curve(target: ColumnDataSource, x: ArrayLike, y: ArrayLike) -> None:
-    """Fill a source of x and y with a curve on logarithmic axes: what is positive and finite."""
-    x, y = np.asarray(x), np.asarray(y)
-    shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
-    put(target, x=x[shown], y=y[shown])
+def joined(curves: Iterable[ArrayLike]) -> Floats:
+    """Curves, shape (2, n) each, one after the other as one, NaN between them."""
+    gap = np.full((2, 1), np.nan)
+    pieces = [piece for curve in curves for piece in (np.asarray(curve), gap)]
+    return np.concatenate(pieces[:-1] or [gap[:, :0]], axis=1)
 
 
 def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
@@ -288,12 +316,6 @@ def key_of(run: Run) -> tuple[int, bool]:
     return run.number, bool(run.reference)
 
 
-def few_ticks(axis: Any) -> None:
-    """Have a logarithmic axis of few decades say 1, 2, 5, 10, ... without overlaps."""
-    axis.ticker = FixedTicker(ticks=[f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)])
-    axis.formatter = PrintfTickFormatter(format="%g")
-
-
 def whole(axis: Any) -> None:
     """Have an axis say whole numbers only."""
     axis.ticker.update(min_interval=1, num_minor_ticks=0)
@@ -308,3 +330,9 @@ def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
         min(filter(math.isfinite, lows), default=0.0),
         max(filter(math.isfinite, highs), default=0.0),
     )
+
+
+def rounded_up(size: float, steps: Iterable[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
+    """A size rounded up to a step times a power of ten; 1 for none."""
+    power = 10.0 ** math.floor(math.log10(size)) if size > 0.0 else 1.0
+    return next(step * power for step in steps if step * power >= size)

@@ -12,10 +12,9 @@ from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
 from app.worker.geometry import StressField, floats, thinned
-from app.worker.rope_extras import ROPE_EXTRAS
+from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
-from solver.discrete.rope.forces import WireForces
 from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
@@ -51,15 +50,13 @@ def spectra(sampler: Sampler, iterate: Iterate, needs: Needs) -> list[Floats]:
 def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """Axial force in wires at all instants; None where there are none.
 
-    Returns
-    -------
     "x" of the middles of elements, (n_places,), m; "force", (n_wires, n_places, n_instants), N;
     "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
     of a strand that is bent, else None.
     """
     rope = structure_of(sampler.settings)
     if isinstance(rope, Rope):
-        return _axial_force_of_rope(rope, sampler, iterate, needs)
+        return axial_force_of_rope(rope, sampler, iterate, needs)
     if kind_of(sampler.settings) != "wires":
         return None
     force = _axial_of(sampler)
@@ -77,25 +74,6 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     }
 
 
-def _axial_force_of_rope(
-    rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs
-) -> dict[str, Any]:
-    names = [wire.name for wire in rope.wires]
-    name = needs.interface if needs.interface in names else names[0]
-    number, columns = names.index(name), sampler.columns
-    wire, places = rope.wires[number], thinned(rope.elements, MOST_PLACES)
-    nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
-    stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
-    force = WireForces(rope)(iterate.displacement, columns)[number]
-    middles = 0.5 * (wire.along[1:] + wire.along[:-1])
-    return {
-        "x": floats(np.asarray(middles)[places]),
-        "force": floats(force[None, places]),
-        "names": [name],
-        "stuck": floats(stuck[places]),
-    }
-
-
 @lru_cache(maxsize=1)
 def _axial_of(sampler: Sampler) -> AxialForce:
     return AxialForce(sampler.problem)
@@ -104,8 +82,6 @@ def _axial_of(sampler: Sampler) -> AxialForce:
 def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
     """Slips of two points, and the lines A w = b between which both stick.
 
-    Returns
-    -------
     "slip" of both, (2, n_instants), m; "matrix" A, (4, 2), N/m, and "limit" b, (4, n_instants), N,
     whose first and third lines are those of the left point; "room", the corners of where both may
     stay in the whole last cycle, (n_corners, 2), m. None where contact alone holds the body, whose
@@ -143,8 +119,6 @@ def _slip_space(sampler: Sampler) -> SlipSpace | None:
 def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The iterate, cycle by cycle of its load; None where that has none.
 
-    Returns
-    -------
     "columns" of the instants at which cycles begin, and the last one ends, (n_cycles + 1,);
     "energy" that friction takes in each, (n_cycles,), J; "slip" to and fro, m, and friction "work",
     J/m or J/m^2, of the last one at the points of the selected interface; "text", what becomes of
@@ -154,12 +128,9 @@ def cycles(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] |
     if not len(found):
         return None
     name = needs.interface if needs.interface in sampler.rows else next(iter(sampler.rows))
-    first = 0
-    for other, law in sampler.problem.rubbing.items():
-        if other == name:
-            break
-        first += len(law.positions)
-    points = first + sampler.rows[name]
+    laws = list(sampler.problem.rubbing.values())
+    before = laws[: list(sampler.rows).index(name)]
+    points = sum(len(law.positions) for law in before) + sampler.rows[name]
     slipped = bool(found.slip.any() or found.before.any())
     return {
         "columns": np.searchsorted(sampler.columns, found.ends),
@@ -189,8 +160,6 @@ def _fate_text(fate: Fate | None) -> str:
 def modes(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """The largest modes of the selected substructure's separated basis; None without bases.
 
-    Returns
-    -------
     "x", (n_places,), m; "space", (n_modes, n_places), over the largest entry of each; "time",
     (n_modes, n_instants), m; "substructure" from 0; "text", what the iteration did to the basis.
     """
@@ -243,18 +212,14 @@ def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | 
 
     None where it cannot be kept as clips.
 
-    Returns
-    -------
     "table", how many values it has; "branches", times that the load goes one way; and for each of
     "SVD", "PGD" (None without substructures) and "clips" the numbers and errors, (2, n).
     """
     if not can_be_clipped(sampler.settings) or sampler.settings.instants < 2:
         return None
     fitted, bases = clips_in(sampler.settings, iterate), iterate.reduction
-    pieces: Sizes | None = None
-    if bases is not None:
-        pieces = of_bases(iterate, bases)
-    elif len(sampler.problem.substructures) > 1:
+    pieces = of_bases(iterate, bases) if bases is not None else None
+    if bases is None and len(sampler.problem.substructures) > 1:
         pieces = in_pieces(iterate)
     return {
         "table": fitted.given.size,
@@ -277,8 +242,6 @@ def _laid_beside(brought: Brought, sampler: Sampler, interface: str) -> Beside:
 def beside(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
     """Results of another program and their distance to the iterate, if they are of its scene.
 
-    Returns
-    -------
     "name" of their file; "quantity", friction force, N/m along rods and Pa in the plane, or
     displacement, m; "x", "t" and "values" of every row, (n_rows,); the relative "distance" of the
     iterate to them, NaN where both share too few rows, and the "interface" whose friction it is of.
@@ -304,6 +267,18 @@ def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
 
 
 Extra = Callable[["Sampler", Iterate, Needs], Any]
+
+
+def _of_rope(extra: Callable[[Rope, Sampler, Iterate, Needs], Any]) -> Extra:
+    """An extra of a strand that is bent; None of all else."""
+
+    def of_rope(sampler: Sampler, iterate: Iterate, needs: Needs) -> Any:
+        rope = structure_of(sampler.settings)
+        return extra(rope, sampler, iterate, needs) if isinstance(rope, Rope) else None
+
+    return of_rope
+
+
 EXTRAS: dict[str, Extra] = {
     "spectra": spectra,
     "axial force": axial_force,
@@ -313,6 +288,8 @@ EXTRAS: dict[str, Extra] = {
     "clips": clips,
     "beside": beside,
     "stress": stress,
-    **ROPE_EXTRAS,
+    "section": _of_rope(section),
+    "all_wires": _of_rope(all_wires),
+    "wire_ranges": _of_rope(wire_ranges),
 }
 """By the name that a view needs them by."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,18 +25,6 @@ MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
 
 
-class Drawn(Protocol):
-    """The bodies of a scene as they are drawn."""
-
-    geometry: Geometry
-
-    def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How they have moved in an iterate."""
-
-    def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
-        """Stress of every quadrilateral at all instants."""
-
-
 class StressField(NamedTuple):
     """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 
@@ -55,21 +43,22 @@ def thinned(size: int, most: int) -> NDArray[np.intp]:
     return np.unique(np.linspace(0, size - 1, min(size, most)).round().astype(np.intp))
 
 
-class DrawnContacts:
-    """The contact points of all interfaces that are drawn.
+class Drawn:
+    """Bodies as they are drawn at some instants, and the contact points of all interfaces.
 
-    Parameters
-    ----------
-    problem
-        What is solved.
-    columns
-        The instants that are shown.
-    heights
-        Height of every degree of freedom along rods, m; None in the plane.
+    The mesh is nodes, quadrilaterals and substructures of `Geometry`; heights are those of every
+    degree of freedom along rods, m, None in the plane.
     """
 
-    def __init__(self, problem: Problem, columns: NDArray[np.intp], heights: Array | None) -> None:
-        chosen, along, across, chains = [], [], [], []
+    def __init__(
+        self,
+        problem: Problem,
+        description: Description,
+        columns: NDArray[np.intp],
+        mesh: tuple[Floats, NDArray[np.int32], NDArray[np.intp]],
+        heights: Array | None,
+    ) -> None:
+        chosen, dofs, chains = [], [], []
         first = 0
         for number, law in enumerate(problem.rubbing.values()):
             points, pairs = np.unique(law.points, return_index=True)
@@ -77,25 +66,28 @@ class DrawnContacts:
             chosen.append(first + kept)
             tangent = law.tangent.above[pairs[kept]]
             normal = law.normal.component.above[pairs[kept]] if law.normal else tangent
-            along.append(problem.row_dofs[tangent])
-            across.append(problem.row_dofs[normal])
+            dofs.append(problem.row_dofs[np.stack([tangent, normal], axis=1)])
             chains.append(np.full(len(kept), number))
             first += len(points)
         self._points, self._columns = np.concatenate(chosen), columns
-        self._dofs = np.stack([np.concatenate(along), np.concatenate(across)], axis=1)
+        self._dofs = np.concatenate(dofs)
         self._moves = np.array([1.0, 0.0 if heights is not None else 1.0])[:, None]
         places = problem.positions[self._dofs[:, 0]]
         if heights is not None:
             places = np.stack([places, heights[self._dofs[:, 0]]], axis=1)
-        self.points, self.chains = floats(places), np.concatenate(chains)
+        self.geometry = Geometry(description, *mesh, floats(places), np.concatenate(chains))
 
-    def moved(self, iterate: Iterate) -> tuple[Floats, NDArray[np.int8]]:
-        """Displacement, (n_points, 2, n_instants), and status, (n_points, n_instants)."""
+    def deformed(self, iterate: Iterate) -> DeformedGeometry:
+        """How the bodies have moved."""
         moved = iterate.displacement[self._dofs][:, :, self._columns] * self._moves
-        return floats(moved), iterate.status[np.ix_(self._points, self._columns)]
+        status = iterate.status[np.ix_(self._points, self._columns)]
+        return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
+
+    def _nodes_moved(self, iterate: Iterate) -> Floats:
+        raise NotImplementedError
 
 
-class DrawnRods:
+class DrawnRods(Drawn):
     """Rods as rectangles above each other; they rub between them, or on what is below."""
 
     def __init__(
@@ -118,24 +110,12 @@ class DrawnRods:
             elements.append(first_element + (places[:-1] + places[1:]) // 2)
             size += 2 * len(places)
             first_element += len(part.dofs) - 1
-        self._dofs, self._columns = np.concatenate(kept), columns
+        self._along = np.concatenate(kept)
         self._force, self._elements = AxialForce(problem), np.concatenate(elements)
-        self._contacts = DrawnContacts(problem, columns, heights)
-        nodes = np.stack([problem.positions[self._dofs], np.concatenate(lows)], axis=1)
-        self.geometry = Geometry(
-            description,
-            floats(nodes),
-            np.concatenate(corners).astype(np.int32),
-            np.concatenate(parts),
-            self._contacts.points,
-            self._contacts.chains,
-        )
-
-    def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How the rods have moved; they do so along themselves."""
-        along = iterate.displacement[np.ix_(self._dofs, self._columns)]
-        nodes = floats(np.stack([along, np.zeros_like(along)], axis=1))
-        return DeformedGeometry(nodes, *self._contacts.moved(iterate))
+        nodes = np.stack([problem.positions[self._along], np.concatenate(lows)], axis=1)
+        quads = np.concatenate(corners).astype(np.int32)
+        mesh = floats(nodes), quads, np.concatenate(parts)
+        super().__init__(problem, description, columns, mesh, heights)
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Axial force, as rods have no height."""
@@ -143,43 +123,34 @@ class DrawnRods:
         force = np.stack([self._force(at_once)[self._elements] for at_once in moved], axis=1)
         return StressField("axial force", "N", floats(force))
 
+    def _nodes_moved(self, iterate: Iterate) -> Floats:
+        """They move along themselves."""
+        along = iterate.displacement[np.ix_(self._along, self._columns)]
+        return floats(np.stack([along, np.zeros_like(along)], axis=1))
+
 
 STRESSES = {"σ xx": 0, "σ yy": 1, "τ xy": 2}
 """Components beside von Mises' equivalent."""
 
 
-class DrawnMesh:
+class DrawnMesh(Drawn):
     """Plane bodies, each with its mesh thinned where that is a grid."""
 
     def __init__(
         self, problem: Problem, description: Description, columns: NDArray[np.intp]
     ) -> None:
         assert problem.inside is not None
-        self._inside, self._columns = problem.inside, columns
-        self._contacts = DrawnContacts(problem, columns, None)
+        self._inside = problem.inside
         self._nodes, quads, self._quad = thinned_mesh(problem.inside)
         self._counts = np.bincount(self._quad)
         parts = np.zeros(len(self._counts), dtype=np.intp)
         parts[self._quad] = problem.inside.parts
-        self.geometry = Geometry(
-            description,
-            floats(problem.inside.nodes[self._nodes]),
-            quads,
-            parts,
-            self._contacts.points,
-            self._contacts.chains,
-        )
-
-    def deformed(self, iterate: Iterate) -> DeformedGeometry:
-        """How the bodies have moved."""
-        whole = self._inside.displacement(iterate.displacement, slice(None))
-        nodes = floats(whole[self._nodes][:, :, self._columns])
-        return DeformedGeometry(nodes, *self._contacts.moved(iterate))
+        mesh = floats(problem.inside.nodes[self._nodes]), quads, parts
+        super().__init__(problem, description, columns, mesh, None)
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """A component of stress, or von Mises' equivalent, its mean in every quadrilateral."""
-        moved = self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]
-        values = settings.values()
+        moved, values = self._moved(iterate), settings.values()
         means = []
         for place in range(len(self._columns)):
             stress = self._inside.stress(moved[:, :, place])
@@ -190,6 +161,12 @@ class DrawnMesh:
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
         title = component if component in STRESSES else "von Mises stress"
         return StressField(title, "Pa", floats(np.stack(means, axis=1)))
+
+    def _moved(self, iterate: Iterate) -> Array:
+        return self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]
+
+    def _nodes_moved(self, iterate: Iterate) -> Floats:
+        return floats(self._moved(iterate)[self._nodes])
 
 
 def thinned_mesh(

@@ -12,22 +12,8 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
-from app.messages import (
-    Alive,
-    Began,
-    Compute,
-    Computed,
-    Costly,
-    Failed,
-    Needs,
-    Order,
-    Pace,
-    Ready,
-    Report,
-    Shown,
-    Start,
-    Step,
-)
+from app import messages
+from app.messages import Needs, Order, Ready, Report, Start
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.refusal import RefusedError
@@ -52,13 +38,7 @@ def main(connection: Connection) -> None:
 
 
 class Loop:
-    """Orders in, reports out; one run at a time.
-
-    Parameters
-    ----------
-    connection
-        To the server.
-    """
+    """Orders from the server in, reports to it out; one run at a time."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
@@ -86,7 +66,7 @@ class Loop:
         if self._is_ready and runner.is_presentable:
             self._is_ready, self._shown_at = False, time.monotonic()
             goes_on = runner.status is None and runner.pacing.goes_on
-            self._send(Shown(runner.frame(self._needs), goes_on))
+            self._send(messages.Shown(runner.frame(self._needs), goes_on))
 
     def _rest(self) -> float | None:
         """Seconds to wait for an order."""
@@ -110,25 +90,25 @@ class Loop:
                 self._needs = order
                 if runner is not None and runner.iterate is not None:
                     runner.has_news = True
-            case Pace(pace) if runner is not None:
+            case messages.Pace(pace) if runner is not None:
                 runner.pacing.change(pace)
                 runner.has_news = runner.iterate is not None
-            case Step(count) if runner is not None:
+            case messages.Step(count) if runner is not None:
                 runner.pacing.step(count)
-            case Compute(function, argument) if runner is not None:
+            case messages.Compute(function, argument) if runner is not None:
                 try:
-                    self._send(Computed(function(runner, argument)))
+                    self._send(messages.Computed(function(runner, argument)))
                 except Exception as problem:  # whoever asked is told
-                    self._send(Computed(problem))
+                    self._send(messages.Computed(problem))
             case _:
                 pass
 
     def _begin(self, start: Start) -> None:
-        self._send(Began(start.number))
+        self._send(messages.Began(start.number))
         self._number, self._runner = start.number, None
         runner = Runner(start, self._references, self._is_superseded)
         if runner.cost.is_to_be_agreed and not start.is_agreed:
-            self._send(Costly(start.number, str(runner.cost)))
+            self._send(messages.Costly(start.number, str(runner.cost)))
         else:
             self._runner = runner
 
@@ -146,7 +126,7 @@ class Loop:
 
     def _fail(self, text: str) -> None:
         self._runner = None
-        self._send(Failed(self._number, text))
+        self._send(messages.Failed(self._number, text))
 
     def _is_superseded(self) -> bool:
         """Whether another run is ordered."""
@@ -169,5 +149,5 @@ class Loop:
     def _beat(self) -> None:
         with contextlib.suppress(OSError):
             while True:
-                self._send(Alive())
+                self._send(messages.Alive())
                 time.sleep(HEARTBEAT)

@@ -1,38 +1,79 @@
-"""A run in the worker process: one small piece of work at a time, and frames of it."""
+"""A run in the worker process: one small piece of work when it is due, and frames of it."""
 
 from __future__ import annotations
 
+import io
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
 
 from app.frame import Frame
-from app.messages import Needs, Start
-from app.worker.pacing import Pacing
+from app.messages import WHOLE, Needs, Start
 from app.worker.references import ReferenceCache, has_reference
 from app.worker.sampling import Sampler
 from solver.latin import Ending, Iterate, Record, Status, judged, record
 from solver.latin.run_cost import RunCost, run_cost
 from solver.reference.distance import Distance, distance_to
 from solver.reference.solution import Interrupted
+from solver.refusal import RefusedError
 from solver.scenes import discretise
 from solver.scenes.method import method_of
+from solver.study.other_programs.fclib import contacts_of, instant_at, local_problem, write_fclib
 
 HURRY = 0.1
 """Seconds that a run which follows a dragged slider has to end before it is shown."""
+WHOLE_LASTS, FIRST = 3.0, 0.25
+"""Seconds that a search takes at the pace `WHOLE`, and those before its second iterate. Intervals
+shrink by one ratio: each of the first iterates is seen, and a hundred last as long as thirty."""
+LATE = 0.1
+"""Seconds that iterations may be behind and catch up: pictures are painted in between."""
+
+
+class Pacing:
+    """The pace of a run, as in `Start`, and the steps that were asked for."""
+
+    def __init__(self, pace: float) -> None:
+        self._pace, self._steps, self._done = pace, 0, 0
+        self._due = time.monotonic()
+
+    def change(self, pace: float) -> None:
+        """Go on at another pace."""
+        self._pace, self._steps = pace, 0
+        self._due = min(self._due, time.monotonic() + self._interval())
+
+    def step(self, count: int) -> None:
+        """Do so many iterations, and wait."""
+        self._pace = 0.0
+        self._steps += count
+
+    def count(self, number: int) -> None:
+        """Count the iteration that was done."""
+        self._done = number
+        self._steps = max(self._steps - 1, 0)
+        self._due = max(self._due, time.monotonic() - LATE) + self._interval()
+
+    def rest(self) -> float | None:
+        """Seconds until the next iteration is due; None waits for an order."""
+        if self._steps:
+            return 0.0
+        return None if self._pace == 0.0 else max(self._due - time.monotonic(), 0.0)
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether it does not wait."""
+        return self._pace != 0.0 or self._steps > 0
+
+    def _interval(self) -> float:
+        if self._pace == WHOLE:
+            return FIRST * float((1.0 - FIRST / WHOLE_LASTS) ** self._done)
+        return 1.0 / self._pace if 0.0 < self._pace < math.inf else 0.0
 
 
 class Runner:
     """One run: its first iteration, then the reference, then the others as they are due.
 
-    Parameters
-    ----------
-    start
-        What to run.
-    references
-        Cache of the process.
-    interrupted
-        Whether an order waits that ends this run.
+    It is `interrupted` where an order waits that ends it.
 
     Attributes
     ----------
@@ -126,3 +167,29 @@ class Runner:
                 error_displacement=distance.of_displacement(self.iterate),
                 error_force=distance.of_friction_force(self.iterate),
             )
+
+
+def fclib_file(runner: Runner, phase: float) -> bytes:
+    """The contact problem of an instant, a share of the interval, in FCLIB's format (HDF5).
+
+    Raises
+    ------
+    RefusedError
+        Where the instant is no problem that FCLIB has, or too large for a page.
+    """
+    settings, problem, iterate = runner.settings, runner.sampler.problem, runner.iterate
+    if iterate is None or not has_reference(settings):
+        can = "python -m solver fclib writes it"
+        raise RefusedError("FCLIB", "so many points of contact", "fewer on a page", can)
+    shown = runner.sampler.run
+    instant = instant_at(float(shown.instants[shown.column(phase)]), problem.instants)
+    local = local_problem(
+        contacts_of(problem),
+        iterate,
+        instant,
+        settings.scene,
+        certified=iterate.residual is not None,
+    )
+    file = io.BytesIO()
+    write_fclib(file, local)
+    return file.getvalue()

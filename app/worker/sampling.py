@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
 from app.frame import ContactFields, Floats, Frame, Interface, Run
 from app.messages import Needs
 from app.worker.extras import EXTRAS
-from app.worker.geometry import Drawn, DrawnMesh, DrawnRods, floats, thinned
+from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
+from app.worker.strand import DrawnRope
 from solver.arrays import Array
 from solver.discrete import Problem
-from solver.discrete.contact_fields import ContactFields as NodalFields
 from solver.discrete.idle import nothing_acts
 from solver.discrete.loops import LoopFields
 from solver.discrete.rope.rope import Rope
@@ -50,13 +51,12 @@ class Sampler:
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
         self.problem, self.settings = problem, settings
-        structure = structure_of(settings)
         self.columns = thinned(problem.n_instants, MOST_INSTANTS)
         self.rows = {
             name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
         }
         self.loop = loop_of(settings, problem)
-        self.drawn = drawn_of(problem, structure, self.columns)
+        self.drawn = _drawn(problem, structure_of(settings), self.columns)
         load = self.loop.force
         self.run = Run(
             number=number,
@@ -140,17 +140,16 @@ class Sampler:
     def _contact(
         self, shown: Iterate | Reference, names: Sequence[str]
     ) -> Mapping[str, ContactFields]:
-        return {name: self._fields(name, shown.contact(name)) for name in names}
-
-    def _fields(self, name: str, nodal: NodalFields) -> ContactFields:
-        shown = np.ix_(self.rows[name], self.columns)
-        lengths = self.lengths(name)[:, None]
-        pressure = nodal.normal_force
-        return ContactFields(
-            floats(nodal.tangential_force[shown] / lengths),
-            None if pressure is None else floats(pressure[shown] / lengths),
-            np.ascontiguousarray(nodal.status[shown]),
-        )
+        contact = {}
+        for name in names:
+            nodal, lengths = shown.contact(name), self.lengths(name)[:, None]
+            kept, pressure = np.ix_(self.rows[name], self.columns), nodal.normal_force
+            contact[name] = ContactFields(
+                floats(nodal.tangential_force[kept] / lengths),
+                None if pressure is None else floats(pressure[kept] / lengths),
+                np.ascontiguousarray(nodal.status[kept]),
+            )
+        return contact
 
     def _loop(self, shown: LoopFields) -> Floats:
         force = (
@@ -160,15 +159,12 @@ class Sampler:
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
 
 
-def drawn_of(problem: Problem, structure: object, columns: Array) -> Drawn:
+def _drawn(problem: Problem, structure: Any, columns: Array) -> DrawnRods | DrawnMesh | DrawnRope:
     """The bodies of a structure as they are drawn."""
     if isinstance(structure, Rope):
-        from app.worker.helices import DrawnRope
-
         return DrawnRope(structure, columns)
-    description = structure.described()  # type: ignore[attr-defined]
     kind = DrawnRods if problem.inside is None else DrawnMesh
-    return kind(problem, description, columns)
+    return kind(problem, structure.described(), columns)
 
 
 def _columns(history: Sequence[Record]) -> dict[str, Floats]:

@@ -18,35 +18,26 @@ BREAK = -1
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """Nodes of lines, `BREAK` between them.
-
-    Attributes
-    ----------
-    geometry
-        What they are of.
-    parts
-        Closed lines round substructures.
-    rims
-        Sides of the bodies that nothing touches, two nodes each.
-    broken
-        Sides at the break of the broken body, two nodes each.
-    """
+    """Nodes of lines, `BREAK` between them."""
 
     geometry: Geometry
+    """What they are of."""
     parts: Indices
+    """Closed lines round substructures."""
     rims: Indices
+    """Sides of the bodies that nothing touches, two nodes each."""
     broken: Indices
+    """Nodes of the sides at the break of the broken body, shape (n, 2)."""
 
     def suits(self, geometry: Geometry) -> bool:
         """Whether it is also that of another geometry, alike but for its size."""
         known = self.geometry
+        shapes = [each.nodes / each.nodes.max() for each in (known, geometry)]
         return (
             np.array_equal(known.quads, geometry.quads)
             and np.array_equal(known.parts, geometry.parts)
-            and known.nodes.shape == geometry.nodes.shape
-            and bool(
-                np.allclose(known.nodes / known.nodes.max(), geometry.nodes / geometry.nodes.max())
-            )
+            and shapes[0].shape == shapes[1].shape
+            and np.allclose(*shapes)
             and known.description.broken == geometry.description.broken
         )
 
@@ -58,11 +49,12 @@ def outlines_of(geometry: Geometry) -> Outlines:
         own = _boundary(geometry.quads[geometry.parts == part])
         sides.append(own)
         loops += _loops(own)
+    rims = _untouched(np.concatenate(sides), geometry.nodes)
     return Outlines(
         geometry,
         np.concatenate([np.append(loop, BREAK) for loop in loops])[:-1],
-        _apart(_untouched(np.concatenate(sides), geometry.nodes)),
-        _apart(_at_break(np.concatenate(sides), geometry)),
+        np.append(rims, np.full((len(rims), 1), BREAK), axis=1).ravel(),
+        _at_break(np.concatenate(sides), geometry),
     )
 
 
@@ -121,25 +113,13 @@ def _at_break(sides: Indices, geometry: Geometry) -> Indices:
     return np.asarray(sides[at & ((y / height).astype(np.intp) == body)])
 
 
-def _apart(sides: Indices) -> Indices:
-    return np.append(sides, np.full((len(sides), 1), BREAK), axis=1).ravel()
-
-
 def bands(
     points: Array, chains: Indices, status: NDArray[np.int8]
 ) -> tuple[list[Array], list[int]]:
     """Stretches of contact points of one status, each to the middle between it and the next.
 
-    Parameters
-    ----------
-    points
-        On the screen, shape (n, 2), NaN where a chain is broken, px.
-    chains, status
-        The interface of each, and its status, shape (n,).
-
-    Returns
-    -------
-    Lines, (n, 2) each, and their status.
+    Points are on the screen, shape (n, 2), NaN where their chain is broken, px. What comes back are
+    lines, (n, 2) each, and their status.
     """
     is_drawn = np.isfinite(points).all(axis=1)
     joined = (chains[1:] == chains[:-1]) & is_drawn[1:] & is_drawn[:-1]

@@ -1,24 +1,35 @@
-"""A strand that is bent as it is seen from the side: the wires in front of its outer layer.
+"""A strand that is bent: as it is seen from the side, and what views of its wires need.
 
-One looks across the plane of bending onto the cylinder that the outer wires share. Each has its
-strip of it, and half of them are hidden behind it at any place; the outermost fibre is below.
+From the side one sees the wires in front of its outer layer: one looks across the plane of bending
+onto the cylinder that they share. Each has its strip of it, and half of them are hidden behind it
+at any place; the outermost fibre is below.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import cumulative_trapezoid
 
 from app.frame import Bytes, DeformedGeometry, Geometry
-from app.worker.geometry import StressField, floats
+from app.messages import Needs
+from app.worker.geometry import StressField, floats, thinned
 from solver.arrays import Array
-from solver.discrete.rope.forces import WireForces
+from solver.discrete.rope.forces import WireForces, cut_at, stress_ranges
 from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.settings import Settings
+from solver.study.quantities.cycles import ends_of
+
+if TYPE_CHECKING:
+    from app.worker.sampling import Sampler
 
 A_TURN, FEWEST, MOST = 20, 40, 100
 """Steps along the strand for each turn of an outer wire, and their number in any case."""
+MOST_PLACES = 200
+"""Places along a wire that are shown at most."""
 SHOWN_SHARE = 0.12 * np.pi
 """Angle from the edges of what is in front within which a wire has no line of contact."""
 
@@ -140,8 +151,8 @@ class DrawnRope:
             curvature = np.stack([np.interp(z, wire.along, values) for values in columns], axis=1)
         else:
             curvature = np.tile(rope.curvature[self._columns], (len(z), 1))
-        slope = _integrated(curvature, z[1])
-        up = _integrated(slope, z[1])
+        slope = cumulative_trapezoid(curvature, dx=z[1], axis=0, initial=0.0)
+        up = cumulative_trapezoid(slope, dx=z[1], axis=0, initial=0.0)
         if not rope.is_clamped:
             middle = len(z) // 2
             up = up - up[middle] - slope[middle] * (z - z[middle])[:, None]
@@ -149,6 +160,79 @@ class DrawnRope:
         return up, slope
 
 
-def _integrated(values: Array, step: float) -> Array:
-    summed = np.cumsum(0.5 * step * (values[1:] + values[:-1]), axis=0)
-    return np.concatenate([np.zeros((1, values.shape[1])), summed])
+def axial_force_of_rope(
+    rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs
+) -> dict[str, Any]:
+    """Axial force in the selected wire, and what it would be if nothing slipped."""
+    names = [wire.name for wire in rope.wires]
+    name = needs.interface if needs.interface in names else names[0]
+    number, columns = names.index(name), sampler.columns
+    wire, places = rope.wires[number], thinned(rope.elements, MOST_PLACES)
+    nodes = wire.helix.stuck_force(wire.arc, wire.curvature[:, columns])
+    stuck = wire.tension[columns] + 0.5 * (nodes[1:] + nodes[:-1])
+    force = WireForces(rope)(iterate.displacement, columns)[number]
+    middles = 0.5 * (wire.along[1:] + wire.along[:-1])
+    return {
+        "x": floats(np.asarray(middles)[places]),
+        "force": floats(force[None, places]),
+        "names": [name],
+        "stuck": floats(stuck[places]),
+    }
+
+
+def section(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+    """All wires that a section at the selected place cuts, or at the clamp; the core is the first.
+
+    "place" along the strand, m; "wires", the interface of each, -1 for the core, (n,); "centres",
+    (n, 2), and "radii", (n,), m, the outermost fibre below; mean "stress", Pa, and "slips", its
+    status, (n, n_instants).
+    """
+    columns = sampler.columns
+    place = float(np.clip(needs.place or 0.0, 0.0, rope.seen_length))
+    cut, forces = cut_at(rope, place), WireForces(rope)
+    lengths = np.array([wire.length for wire in rope.wires])[cut.wire]
+    node = np.round(cut.arc / lengths * rope.elements).astype(np.intp)
+    points = cut.wire * (rope.elements - 1) + np.clip(node - 1, 0, rope.elements - 2)
+    slips = iterate.status[np.ix_(points, columns)] * cut.side[:, None]
+    core = rope.section.core
+    stretched = core.young / rope.section.stiffness * rope.tension[columns]
+    stress = forces.stress_at(cut, forces(iterate.displacement, columns))
+    radii = [0.5 * rope.wires[number].diameter for number in cut.wire]
+    return {
+        "place": place,
+        "wires": np.append(-1, cut.wire),
+        "centres": floats(np.concatenate([[[0.0, 0.0]], cut.centres * (1.0, -1.0)])),
+        "radii": floats(np.array([0.5 * core.diameter, *radii])),
+        "stress": floats(np.concatenate([stretched[None], stress])),
+        "slips": np.concatenate([np.zeros((1, len(columns))), slips]).astype(np.int8),
+    }
+
+
+def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+    """Status of every wire, along it.
+
+    "places" along the strand, m, or polar angles, degrees, where it is bent alike all along, and
+    not beside a clamp ("is_clamped"): then each wire stands for its layer; "layers" of the wires,
+    from 0, (n_wires,); "status", (n_wires, n_places, n_instants).
+    """
+    points = rope.elements - 1
+    kept = thinned(points, MOST_PLACES)
+    status = iterate.status[:, sampler.columns].reshape(len(rope.wires), points, -1)
+    length = rope.seen_length if rope.is_clamped else 180.0
+    return {
+        "places": floats((kept + 1.0) / rope.elements * length),
+        "is_clamped": rope.is_clamped,
+        "layers": np.array([wire.layer for wire in rope.wires]),
+        "status": np.ascontiguousarray(status[:, kept]),
+    }
+
+
+def wire_ranges(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+    """How far the stress of every wire swings in the last cycle, or throughout if there is none.
+
+    "layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
+    """
+    ends = ends_of(sampler.settings)
+    last = slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else slice(None)
+    ranges = stress_ranges(rope, iterate.displacement, last)
+    return {"layers": np.array([wire.layer for wire in rope.wires]), "ranges": floats(ranges)}

@@ -31,35 +31,24 @@ NARROW = 560.0
 
 @dataclass(frozen=True)
 class Layout:
-    """From metres to pixels.
-
-    Attributes
-    ----------
-    width, height
-        Of the figure, px.
-    length, top
-        Of the bodies as they are drawn, m.
-    scale
-        Pixels per metre, along x and y; these differ for rods alone.
-    origin
-        The middle of the foot of the bodies, px.
-    arrow
-        Length of an arrow at its largest value, px.
-    motion
-        Pixels that the largest displacement takes at most, along x and y.
-    keys_beside
-        Whether keys stand at the left of the bodies, and not below them.
-    """
+    """From metres to pixels."""
 
     width: float
     height: float
+    """Of the figure, px."""
     length: float
     top: float
+    """Of the bodies as they are drawn, m."""
     scale: tuple[float, float]
+    """Pixels per metre, along x and y; these differ for rods alone."""
     origin: tuple[float, float]
+    """The middle of the foot of the bodies, px."""
     arrow: float
+    """Length of an arrow at its largest value, px."""
     motion: tuple[float, float]
+    """Pixels that the largest displacement takes at most, along x and y."""
     keys_beside: bool
+    """Whether keys stand at the left of the bodies, and not below them."""
 
     @property
     def size(self) -> Array:
@@ -81,12 +70,7 @@ class Layout:
     def fitting(self, largest: tuple[float, float], factor: float | None) -> float:
         """Factor on displacements: the present one as long as motion is seen and has room.
 
-        Parameters
-        ----------
-        largest
-            Displacement in size over all instants, along x and y, m.
-        factor
-            The present factor; None for none.
+        That depends on the largest displacement over all instants, along x and y, m.
         """
         shares = [
             size * scale / room
@@ -94,7 +78,7 @@ class Layout:
             if room > 0.0
         ]
         share = max(shares)
-        if not share > 0.0:
+        if share <= 0.0:
             return factor or 1.0
         if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
@@ -174,7 +158,7 @@ def _margins(description: Description, arrow: float) -> tuple[float, float, floa
     for act in description.acts:
         side = act.where.partition(" ")[0]
         if side in ("left", "right"):
-            room[side] = max(room[side], 20.0 + LETTER * longest_text(act))
+            room[side] = max(room[side], 20.0 + LETTER * (len(act.symbol) + len(act.unit) + 9))
         elif side in ("top", "bottom"):
             held = beside(description, side)
             room[side] = max(room[side], held + 11.0 if is_aside(act) else arrow + 10.0)
@@ -184,8 +168,3 @@ def _margins(description: Description, arrow: float) -> tuple[float, float, floa
 def beside(description: Description, side: str) -> float:
     """Pixels between a side and an arrow along it."""
     return 20.0 if any(hold.side == side for hold in description.holds) else 9.0
-
-
-def longest_text(act: Act) -> int:
-    """Letters that its symbol and value take, about."""
-    return len(act.symbol) + len(act.unit) + 9

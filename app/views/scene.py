@@ -8,15 +8,17 @@ import numpy as np
 import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Pan, PanEnd, PanStart, Tap
-from bokeh.models import ColumnDataSource, Range1d
+from bokeh.models import ColorBar, LinearColorMapper
+from bokeh.palettes import Cividis256, diverging_palette
 from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
+from app.units import unit_for
 from app.views.colors import BODY, EDGE, GHOST
-from app.views.scene.layout import Layout, layout_of
-from app.views.scene.outlines import Outlines, outlines_of
-from app.views.scene.picture import Columns, Handle, Picture
-from app.views.view import View, source
+from app.views.layout import Layout, layout_of
+from app.views.outlines import Outlines, outlines_of
+from app.views.picture import Handle, Picture
+from app.views.view import View, bare, rounded_up
 from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -25,13 +27,12 @@ NEAR, CLOSE = 22.0, 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
-TEXT = {"text_font": value("Roboto, sans-serif"), "text_baseline": "middle"}
-SOURCES = {
-    "image": "x y", "parts": "x y", "rims": "x y", "holds": "x y", "ghost": "x y", "broken": "x y",
-    "bands": "xs ys color width edge", "arrows": "xs ys color width", "heads": "xs ys color",
-    "handles": "x y color", "words": "x y text align color", "keys": "x y color",
-    "notes": "x y text align",
-}  # fmt: skip
+SIGNED = diverging_palette(
+    ("#053061", "#2166AC", "#67A9CF", "#D1E5F0", "#F2F2F2"),
+    ("#67001F", "#B2182B", "#EF8A62", "#FDDBC7", "#F2F2F2"),
+    n=9,
+    midpoint=0.5,
+)
 
 
 class Scene(View):
@@ -43,16 +44,10 @@ class Scene(View):
     name = "Scene"
     shows_status = True
 
-    def make(self) -> figure:
-        """A new figure."""
-        made = figure(
-            sizing_mode="stretch_both", min_height=90, tools="", toolbar_location=None,
-            x_range=Range1d(0, WIDTH), y_range=Range1d(0, HEIGHT), min_border=0,
-        )  # fmt: skip
-        made.axis.visible = made.grid.visible = False
-        made.outline_line_color = None
-        made.background_fill_alpha = made.border_fill_alpha = 0.0
-        self.sources = {name: source(*columns.split()) for name, columns in SOURCES.items()}
+    def make(self) -> None:
+        """Make the figure."""
+        made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
+        made.axis.visible = False
         self._draw(made)
         self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         self._layout: tuple[object, Layout] | None = None
@@ -60,69 +55,50 @@ class Scene(View):
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
-        self._frame: Frame | None = None
         self.picture: Picture | None = None
         self._held: tuple[Handle, Picture, float] | None = None
         for event, react in (
             (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
         ):  # fmt: skip
             made.on_event(event, react)
-        for size in ("inner_width", "inner_height"):
+        for size in self._size:
             made.on_change(size, self._resize)
-        return made
 
     def _draw(self, made: figure) -> None:
-        of = self.sources
-        made.patch("x", "y", source=of["image"], color=BODY, fill_alpha=0.22, line_alpha=0.0)
-        body = {
-            "fill_color": BODY,
-            "fill_alpha": 0.5 if self.shows_status else 0.0,
-            "line_color": EDGE,
-        }
-        made.patch("x", "y", source=of["parts"], line_alpha=0.55, line_width=0.8, **body)
-        made.line("x", "y", source=of["ghost"], color=GHOST, width=1.2, dash="dashed")
-        made.line("x", "y", source=of["rims"], color=EDGE, width=1.4)
-        made.line("x", "y", source=of["holds"], color=EDGE, width=1.3)
-        if self.shows_status:
-            for color, width in ((EDGE, "edge"), ("color", "width")):
-                made.multi_line("xs", "ys", source=of["bands"], color=color, line_width=width)
-        made.line("x", "y", source=of["broken"], color="#D55E00", width=3)
-        made.multi_line("xs", "ys", source=of["arrows"], color="color", line_width="width")
-        made.patches("xs", "ys", source=of["heads"], color="color")
-        made.scatter(
-            "x", "y", source=of["handles"], size=11, fill_color="white", line_color="color",
-            line_width=2.5,
+        look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8}
+        self.add("bodies", "patches", "xs ys fill_alpha line_alpha", **look)
+        self.add("ghost", color=GHOST, width=1.2, dash="dashed")
+        self.add("strokes", "multi_line", "xs ys line_color line_width")
+        self.add("heads", "patches", "xs ys color")
+        self.add("marks", "scatter", "x y marker fill_color line_color line_width", size=11)
+        self.add(
+            "words", "text", "x y text text_align text_color text_font_size text_font_style",
+            text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
-        more = {"text_align": "align", "text": "text", **TEXT}
-        made.text(
-            "x", "y", source=of["words"], text_color="color", text_font_size="14px",
-            text_font_style="bold", **more,
-        )  # fmt: skip
-        if self.shows_status:
-            made.scatter("x", "y", source=of["keys"], marker="square", size=11, color="color")
-        made.text("x", "y", source=of["notes"], text_color="#78858C", text_font_size="12px", **more)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant."""
+        made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        made, run = self.figure, frame.run
         layout = self._layout_of(frame)
-        if frame is not self._frame:
-            if self._frame is None or self._frame.run.settings.scene != run.settings.scene:
-                self._factor, self._peaks = None, {}
-            self._frame = frame
+        if shown is None or shown[0].run.settings.scene != run.settings.scene:
+            self._factor, self._peaks = None, {}
+        if self._factor is None or shown is None or shown[0] is not frame:
             largest = np.nanmax(np.abs(frame.deformed.nodes), axis=(0, 2), initial=0.0)
             self._factor = layout.fitting((float(largest[0]), float(largest[1])), self._factor)
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
-        assert self._factor is not None
         self.picture = picture = Picture(
             frame, run.column(selection.phase), layout, self._factor,
             self._outlines_of("frame", frame), self._peaks, behind(run.settings), self.shows_status,
         )  # fmt: skip
         for name, columns in picture.columns().items():
-            put(self.sources[name], columns)
-        put(self.sources["ghost"], self._ghost(picture, selection, ghost))
+            self.fill(name, **columns)
+        x, y = np.zeros((2, 0))
+        if ghost is not None and ghost.run.settings.scene == run.settings.scene:
+            column = ghost.run.column(selection.phase)
+            x, y = picture.ghost(ghost, column, self._outlines_of("ghost", ghost))
+        self.fill("ghost", x=x, y=y)
 
     def _layout_of(self, frame: Frame) -> Layout:
         key = frame.run.geometry, *self._size.values()
@@ -144,21 +120,11 @@ class Scene(View):
             if kept is None or not (self._held or KEPT[0] <= peak / kept <= KEPT[1]):
                 self._peaks[act.where] = peak
 
-    def _ghost(self, picture: Picture, selection: Selection, ghost: Frame | None) -> Columns:
-        """The outline of the run that is compared with, where it is of the same bodies."""
-        if ghost is None or ghost.run.settings.scene != picture.frame.run.settings.scene:
-            return {"x": [], "y": []}
-        column = ghost.run.column(selection.phase)
-        x, y = picture.ghost(ghost, column, self._outlines_of("ghost", ghost)).T
-        return {"x": x.astype(np.float32), "y": y.astype(np.float32)}
-
     def _resize(self, name: str, old: float, new: float) -> None:
         self._size[name] = max(float(new), 60.0)
         if self._shown is not None:
             with pn.io.hold():
                 self.update(*self._shown)
-
-    # ------------------------------------------------------------------- pointer
 
     def _hold(self, event: Any) -> None:
         """Take hold of the handle under the pointer."""
@@ -195,19 +161,47 @@ class Scene(View):
         if picture is None:
             return
         away = np.hypot(*(picture.points - [event.x, event.y]).T)
-        if not np.any(away <= CLOSE):
+        if np.any(away <= CLOSE):
+            chain = int(picture.frame.run.geometry.chains[int(np.nanargmin(away))])
+            self.state.select(interface=list(picture.frame.run.interfaces)[chain])
+
+
+class Stress(Scene):
+    """A stress in every quadrilateral that is drawn, at the selected instant."""
+
+    name = "Stress"
+    needs = frozenset({"stress"})
+    shows_status = False
+
+    def _draw(self, made: figure) -> None:
+        self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
+        color = {"field": "value", "transform": self.colors}
+        self.add("quads", "patches", "xs ys", also="value", fill_color=color, line_color=color)
+        self.bar = ColorBar(
+            color_mapper=self.colors, width=9, padding=2, margin=0, title_standoff=4,
+            title_text_font_size="11px", title_text_font_style="normal",
+            major_label_text_font_size="11px", background_fill_alpha=0.0,
+        )  # fmt: skip
+        made.add_layout(self.bar, "right")
+        super()._draw(made)
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the stress at the selected instant, as far as the frame has it."""
+        super().update(frame, selection, ghost)
+        stress, picture = frame.extras.get("stress"), self.picture
+        if stress is None or picture is None:
+            self.fill("quads", xs=[], ys=[], value=[])
             return
-        chain = int(picture.frame.run.geometry.chains[int(np.nanargmin(away))])
-        self.state.select(interface=list(picture.frame.run.interfaces)[chain])
-
-
-def put(shown: ColumnDataSource, columns: Columns) -> None:
-    """Set a source, if it changes."""
-    if not all(_same(shown.data[name], values) for name, values in columns.items()):
-        shown.data = columns
-
-
-def _same(known: Any, values: Any) -> bool:
-    if isinstance(values, np.ndarray) and values.dtype.kind == "f":
-        return np.array_equal(np.asarray(known, dtype=values.dtype), values, equal_nan=True)
-    return list(known) == list(values)
+        largest = float(np.abs(stress.values).max())
+        unit = unit_for(largest, stress.unit)
+        # It seldom changes.
+        high = rounded_up(0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
+        signed = float(stress.values.min()) < -1e-3 * largest
+        self.colors.update(
+            palette=SIGNED if signed else Cividis256, low=-high if signed else 0.0, high=high
+        )
+        self.bar.title = f"{stress.title}, {unit.name}"
+        corners = picture.layout.page(picture.nodes[frame.run.geometry.quads], picture.tilt)
+        across, up = np.moveaxis(np.round(corners, 1), -1, 0)
+        values = stress.values[:, picture.column] / unit.factor
+        self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=values)

@@ -1,0 +1,241 @@
+"""What acts on the bodies, as arrows and in words, and strokes of what holds them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.units import Unit, unit_for
+from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
+from app.worker.geometry import PITCH, THICKNESS
+from solver.arrays import Array
+from solver.discrete.structure import OUTWARD, Act, Description, Hold, ends_of
+
+LEAST = 0.02
+"""Share of its largest value below which an arrow is not drawn, or cannot be dragged."""
+HEAD = 9.0
+BOW = 0.22
+"""Height of the bow of an arrow that bends, over its length."""
+DEPTH, SPACING, BEYOND = 9.0, 11.0, 7.0
+"""Of hatching, between its strokes, and by which clamps go on beyond bodies, px."""
+RADIUS = 4.0
+"""Of rollers, px."""
+RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """An arrow, px from the middle of the bodies' foot."""
+
+    act: Act
+    """What it shows."""
+    line: Array
+    """From its tail to its head, shape (n, 2)."""
+    base: Array
+    handle: Array
+    """Where it would be at the value 0, and the end that moves with the value."""
+    value: float
+    """Now."""
+
+    @property
+    def head(self) -> Array:
+        """Corners of its head."""
+        tip, along = self.line[-1], self.line[-1] - self.line[-2]
+        along = along / (float(np.hypot(*along)) or 1.0)
+        length = min(HEAD, float(np.hypot(*(tip - self.line[0]))))
+        foot, half = tip - length * along, 0.5 * length * np.array([-along[1], along[0]])
+        return np.array([tip, foot + half, foot - half])
+
+    def dragged(self, pointer: Array) -> float:
+        """The value at which its handle is under the pointer."""
+        along = self.handle - self.base
+        return float(self.value * ((pointer - self.base) @ along) / (along @ along))
+
+
+@dataclass(frozen=True)
+class Word:
+    """A text, px from the middle of the bodies' foot, and on which side of it is its anchor."""
+
+    text: str
+    place: Array
+    align: str
+    act: Act | None = None
+
+
+def arrows_of(
+    act: Act, description: Description, layout: Layout, peak: float, column: int, moved: Array
+) -> list[Arrow]:
+    """The arrows of what acts at an instant, the column of its values.
+
+    An arrow of the value `peak` has full length; `moved` is where the act's places have gone,
+    shape (n, 2), px from the middle of the foot.
+    """
+    towards = np.asarray(act.towards)
+    towards = towards[:, column] if towards.ndim > 1 else towards
+    away, aside = np.array(act.away), is_aside(act)
+    side = act.where.partition(" ")[0]
+    is_inside, distance = side == "body", beside(description, side)
+    now = np.broadcast_to(act.values.T[column], len(moved))
+    arrows = []
+    for place, value in zip(moved, now, strict=True):
+        share = float(np.clip(value / peak, -1.6, 1.6))
+        if abs(share) < LEAST:
+            continue
+        base = place + distance * away if aside else place
+        span = layout.arrow * share * towards
+        pushes = not aside and not is_inside and span @ away < 0.0
+        tail, head = (base - span, base) if pushes else (base, base + span)
+        line = np.array([tail, head])
+        if act.unit == "1/m":
+            line = _bow(tail, head, away)
+        arrows.append(Arrow(act, line, base, tail if pushes else head, float(value)))
+    return arrows
+
+
+def _bow(tail: Array, head: Array, away: Array) -> Array:
+    share = np.linspace(0.0, 1.0, 9)[:, None]
+    height = BOW * np.hypot(*(head - tail)) * 4.0 * share * (1.0 - share)
+    return np.asarray(tail + share * (head - tail) + height * away)
+
+
+def beam_of(arrows: list[Arrow]) -> Array | None:
+    """The line over the arrows of what is spread along a side."""
+    if len(arrows) < 3 or arrows[0].act.unit == "N" or is_aside(arrows[0].act):
+        return None
+    return np.array([arrow.handle for arrow in arrows])
+
+
+def words_of(
+    description: Description,
+    layout: Layout,
+    acts: Mapping[Act, tuple[Array, list[Arrow]]],
+    column: int,
+) -> list[Word]:
+    """What acts in words; what presses from above and below alike is said once."""
+    above = [act for act in description.acts if act.where.startswith("top")]
+    return [
+        Word(text_of(act, column), *_anchor(act, description, layout, places, arrows), act)
+        for act, (places, arrows) in acts.items()
+        if not act.where.startswith("bottom") or not any(is_opposite(act, each) for each in above)
+    ]
+
+
+def _anchor(
+    act: Act, description: Description, layout: Layout, places: Array, arrows: list[Arrow]
+) -> tuple[Array, str]:
+    """Where the words of what acts stand, and on which side of them that is."""
+    side, aside, (away, up) = act.where.partition(" ")[0], is_aside(act), act.away
+    if side in ("top", "bottom"):
+        is_left = float(np.mean(act.places[:, 0])) < 0.45
+        place = places[0 if is_left else -1]
+        ends = [place[0], *(end[0] for arrow in arrows for end in arrow.line)]
+        x = min(ends) - 10.0 if is_left else max(ends) + 10.0
+        above = beside(description, side) if aside else 0.75 * layout.arrow
+        return np.array([x, place[1] + above * up]), "right" if is_left else "left"
+    if side == "body":
+        length, height = layout.size
+        if length < 0.5 * layout.width:
+            return np.array([-0.5 * length - 14.0, height]), "right"
+        return np.array([0.0, 0.5 * height + 14.0]), "center"
+    shift = [22.0 * away, -16.0] if aside else [9.0 * away, 15.0]
+    return places[-1] + shift, "left" if side == "right" else "right"
+
+
+def text_of(act: Act, column: int) -> str:
+    """A symbol and its value now; what varies along a side at both of its ends."""
+    unit = unit_of(act)
+    now = np.atleast_1d(act.values.T[column])
+    peak = float(np.abs(act.values).max())
+    # Rounding of a load path leaves what is nearly nothing, as sin(pi).
+    texts = [unit(0.0 if abs(value) < 1e-6 * peak else float(value)) for value in now[[0, -1]]]
+    return f"{act.symbol} = {' to '.join(texts[: len(now)])}"
+
+
+def unit_of(act: Act) -> Unit:
+    """The unit that its values are read in."""
+    return unit_for(float(np.abs(act.values).max()), act.unit)
+
+
+def strokes_of(
+    description: Description, layout: Layout, factor: float, column: int, foot: Array
+) -> list[Array]:
+    """Lines of what holds the bodies at an instant, px from the middle of their foot.
+
+    `column` is that of the instant in the description's values; `foot` is where the right end of
+    the foot has gone, to which a spring is fixed.
+    """
+    lines: list[Array] = []
+    for hold in description.holds:
+        first, last = layout.local(ends_of(hold.side) * np.array([layout.length, layout.top]))
+        edge = np.array([first + share * (last - first) for share in hold.stretch])
+        away = np.array(OUTWARD[hold.side])
+        if hold.kind == "clamp":
+            along = (last - first) / np.hypot(*(last - first)) * BEYOND
+            moved = 0.0 if hold.moved is None else hold.moved[column]
+            edge = edge + layout.shift(np.array([moved, 0.0]), factor) + [-along, along]
+            lines += hatched(edge, away)
+        elif hold.kind == "rollers":
+            lines += _rollers(edge, away)
+        elif hold.kind == "support":
+            lines += hatched(_support(description, hold, layout, factor, edge), away)
+        elif hold.kind == "spring":
+            lines += _spring(foot, edge[0, 0] + WALL)
+    return lines
+
+
+def hatched(edge: Array, away: Array) -> list[Array]:
+    """A line, (n, 2), and strokes behind it."""
+    steps = np.hypot(*np.diff(edge, axis=0).T)
+    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    places = np.arange(0.5 * SPACING, arc[-1], SPACING)
+    points = np.stack([np.interp(places, arc, values) for values in edge.T], axis=1)
+    along = np.array([-away[1], away[0]])
+    ends = points + DEPTH * (0.8 * away - 0.6 * np.abs(along))
+    return [edge, *np.stack([points, ends], axis=1)]
+
+
+def gap_of(description: Description, layout: Layout, factor: float) -> Array | None:
+    """The gap below the bodies as it is drawn, (n, 2) from the middle of their foot, px.
+
+    It is magnified as displacements are, and at most so deep.
+    """
+    for hold in description.holds:
+        if hold.gap is not None:
+            depth = np.minimum(hold.gap * factor * layout.scale[1], DEEPEST)
+            x = (np.linspace(0.0, 1.0, len(depth)) - 0.5) * layout.size[0]
+            return np.stack([x, -depth], axis=1)
+    return None
+
+
+def _support(
+    description: Description, hold: Hold, layout: Layout, factor: float, edge: Array
+) -> Array:
+    if description.height is None:
+        below = (PITCH - THICKNESS) * layout.length * layout.scale[1]
+        return np.asarray(edge - [0.0, max(below, BAND + 1.0)])
+    gap = gap_of(description, layout, factor)
+    if hold.gap is not None and gap is not None:
+        edge = gap
+    beyond = np.array([[-3.0 * BEYOND, 0.0], [3.0 * BEYOND, 0.0]]) + edge[[0, -1]]
+    return np.concatenate([beyond[:1], edge, beyond[1:]]) - [0.0, 0.5 * BAND + 1.5]
+
+
+def _rollers(edge: Array, away: Array) -> list[Array]:
+    count = max(int(np.hypot(*(edge[1] - edge[0])) / 30.0), 2)
+    shares = (np.arange(count) + 0.5) / count
+    centres = edge[0] + shares[:, None] * (edge[1] - edge[0]) + RADIUS * away
+    behind = edge + 2.0 * RADIUS * away
+    return [*(centre + RADIUS * RING for centre in centres), *hatched(behind, away)[:1]]
+
+
+def _spring(foot: Array, wall: float) -> list[Array]:
+    """A coil from the foot to its wall."""
+    y, coils = foot[1] + 12.0, 6
+    x = np.linspace(foot[0] + 8.0, wall - 6.0, 2 * coils)
+    swing = np.where(np.arange(2 * coils) % 2 == 0, 6.0, -6.0)
+    coil = np.stack([x, y + swing], axis=1)
+    line = np.concatenate([[[foot[0], y]], coil, [[wall, y]]])
+    upright = np.array([[wall, y - 16.0], [wall, y + 18.0]])
+    return [line, *hatched(upright, np.array([1.0, 0.0]))]

@@ -1,0 +1,239 @@
+"""How many numbers a field takes: singular values, modes of separated bases, and clips."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.events import Tap
+from bokeh.models import BasicTicker, ColorBar, LinearColorMapper, Range1d
+from bokeh.palettes import Viridis256
+from bokeh.plotting import figure
+
+from app.frame import Floats, Frame, Selection
+from app.units import percent, unit_for
+from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
+from app.views.view import View, extent, hover, whole
+from app.worker.extras import MOST_MODES
+from solver.scenes import kind_of
+from solver.settings import Settings
+from solver.study.quantities.clip_measures import can_be_clipped
+
+LEAST, FEWEST = 1e-4, 8
+"""Of singular values, the least size and the fewest that the axes show."""
+MODES = [str(number) for number in range(MOST_MODES)]
+MOST_VALUES = 1_000_000
+"""Values of a field up to which all curves take no longer than a second, in which the worker obeys
+no order (measured: 0.9 s for 1001 x 999)."""
+FLOOR, EXACT = 1e-6, 1e-9
+"""Smallest error that is shown, and error up to which clips are exact but for rounding."""
+
+
+def _whole_numbers(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
+    """A colour bar that says whole numbers, beside a figure."""
+    ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
+    bar = ColorBar(color_mapper=colors, ticker=ticker, **look)
+    made.add_layout(bar, "right")
+    return bar
+
+
+class Spectra(View):
+    """One curve a substructure: how fast it falls says how many modes it needs."""
+
+    name = "Singular values"
+    needs = frozenset({"spectra"})
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are several instants: one has one singular value."""
+        return settings.instants > 1
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0))
+        whole(made.xaxis[0])
+        lines = self.add("values", "multi_line", "xs ys color", width=1.8)
+        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
+        self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
+        look = {"width": 8, "padding": 6, "major_tick_line_color": None}
+        self._bar = _whole_numbers(made, self._colors, **look)
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the singular values, as far as the frame has them."""
+        spectra = frame.extras.get("spectra")
+        if spectra is None:
+            return
+        count = frame.run.settings.n_substructures
+        ys = [values[values > 0.1 * LEAST] for values in spectra]
+        xs = [np.arange(1, len(values) + 1) for values in ys]
+        self.fill("values", xs=xs, ys=ys, color=scaled(len(ys)))
+        self.x.rename("mode; the colour is the substructure" if count > 1 else "mode", "")
+        self.x.hold(frame.run.number, 1.0, float(max([FEWEST, *map(len, ys)])))
+        self._bar.visible = count > 1
+        self._colors.high = max(count, 2)
+
+
+class ModePlot(View):
+    """Curves of the largest modes, one colour a rank."""
+
+    needs = frozenset({"modes"})
+
+    def make(self) -> None:
+        """Make the figure."""
+        self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
+        self.add("now", "vspan", "x", color=ERROR, line_width=2)
+        for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
+            self.add(mode, color=color, width=2)
+        self.legend(**{mode: mode for mode in MODES})
+
+    def _draw(self, x: Floats, values: Floats, titles: list[str]) -> None:
+        for number, mode in enumerate(MODES):
+            if number < len(values):
+                self.fill(mode, titles[number], x=self.x(x), y=values[number])
+            else:
+                self.fill(mode, x=[], y=[])
+
+
+class SpaceModes(ModePlot):
+    """Displacement modes along the selected substructure."""
+
+    name = "Space modes"
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are bases, of rods: those of plane bodies are no curves."""
+        return settings.applies("pgd_modes") and kind_of(settings) != "plane"
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the modes over the places of the substructure."""
+        modes = frame.extras.get("modes")
+        if modes is None:
+            return
+        self.x.rename(f"x ({modes['text']})", "m")
+        self.x.hold((frame.run.number, modes["substructure"]), *extent([modes["x"]]))
+        titles = ["mode 1", *(str(n + 1) for n in range(1, len(modes["space"])))]
+        self._draw(modes["x"], modes["space"], titles)
+
+
+class TimeFunctions(ModePlot):
+    """Time functions of the same modes, each over its largest value, which the legend has."""
+
+    name = "Time functions"
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are bases, and several instants."""
+        return settings.applies("pgd_modes") and settings.instants > 1
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the time functions."""
+        modes, run = frame.extras.get("modes"), frame.run
+        if modes is None:
+            return
+        self.x.rename(f"t (substructure {modes['substructure'] + 1})", "s")
+        self.x.hold(run.number, *extent([run.instants]))
+        self.fill("now", x=self.x(run.instants[[run.column(selection.phase)]]))
+        sizes = np.abs(modes["time"]).max(axis=1, initial=0.0)
+        values = modes["time"] / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+        titles = [unit_for(float(size), "m")(float(size), 2) for size in sizes]
+        self._draw(run.instants, values, titles)
+
+
+class BasisSizes(View):
+    """How many modes every substructure has, over the iterations; a tap selects one."""
+
+    name = "Basis size"
+    needs = frozenset({"modes"})
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are bases."""
+        return settings.applies("pgd_modes")
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(("iteration",), ("substructure",))
+        made.grid.visible = False
+        for axis in made.axis:
+            whole(axis)
+        self._colors = LinearColorMapper(palette=Viridis256, low=0, high=2)
+        self.add("sizes", "image", "image x y dw dh", color_mapper=self._colors)
+        self.add("chosen", "hspan", "y", color=ERROR, line_width=2)
+        _whole_numbers(made, self._colors, width=6, padding=4, title="modes")
+        made.on_event(Tap, self._select)
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the numbers of modes of all iterations so far."""
+        sizes, total = frame.history.get("modes"), frame.run.settings.n_substructures
+        if sizes is None:
+            return
+        last = float(frame.history["iteration"][-1])
+        self.fill("sizes", image=[sizes.T], x=[0.5], y=[0.5], dw=[last], dh=[total])
+        self._colors.high = max(2.0, float(sizes.max()))
+        self.x.hold(frame.run.number, 0.5, max(last, 20.0) + 0.5)
+        self.y.span(0.5, total + 0.5)
+        chosen = selection.substructure
+        self.fill("chosen", y=[total if chosen is None else min(chosen + 1, total)])
+
+    def _select(self, event: Any) -> None:
+        total = self.state.settings.n_substructures
+        self.state.select(substructure=min(max(round(event.y) - 1, 0), total - 1))
+
+
+class Clips(View):
+    """Error of this iterate's friction over the numbers that are kept of it."""
+
+    name = "Clips"
+    needs = frozenset({"clips"})
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are rods, whose friction bound is known, and not too many values."""
+        if not can_be_clipped(settings) or settings.instants < 2:
+            return False
+        values = settings.values()
+        interfaces = values.get("wires", 2) - 1
+        return bool(interfaces * (values["elements"] + 1) * settings.instants <= MOST_VALUES)
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(
+            ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
+            x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),
+        )  # fmt: skip
+        colors = {"SVD": LATIN, "PGD": DISPLACEMENT, "clips": ERROR}
+        lines = [self.add(name, color=color, width=2.5) for name, color in colors.items()]
+        ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
+        lines.append(self.add("alone", "scatter", size=11, **ring))
+        self.add("table", "vspan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
+        self._glyphs["clips"].append(lines[-1])
+        self.legend(SVD="SVD", PGD="PGD", clips="clips", table="whole table")
+        hover(made, lines, {"numbers": "@x", "error": "@y"})
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show how the error falls with each way to keep the friction."""
+        clips = frame.extras.get("clips")
+        if clips is None:
+            return
+        table = float(clips["table"])
+        kept = {n: clips[n] for n in ("SVD", "PGD", "clips") if clips[n] is not None}
+        numbers = np.concatenate([way[0] for way in kept.values()])
+        smallest = float(numbers[numbers > 0].min(initial=table))
+        self.x.decades(frame.run.number, max(smallest, 1.0), min(float(numbers.max()), 10 * table))
+        size, missed = (float(part) for part in clips["clips"][:, 0])
+        exactness = "exact" if missed <= EXACT else percent(missed)
+        titles = {"clips": f"clips, {clips['branches']} × 2 vectors: {exactness}"}
+        for name in ("SVD", "PGD", "clips"):
+            curve = _shown(kept[name]) if name in kept else np.zeros((2, 0))
+            self.draw(name, *curve, titles.get(name, ""))
+        self.show("clips", True)
+        self.draw("alone", [max(size, 1.0)], [max(missed, 1.6 * FLOOR)])
+        self.fill("table", x=[table])
+
+
+def _shown(way: Floats) -> Floats:
+    """Errors from the first number on, down to the first that is as good as none, (2, n)."""
+    some = way[:, way[0] > 0]
+    below = np.flatnonzero(some[1] <= FLOOR)
+    some = some[:, : int(below[0]) + 1 if len(below) else None]
+    return np.maximum(some, np.array([[0.0], [FLOOR]], dtype=np.float32))

@@ -1,0 +1,138 @@
+"""Errors of a search: over its iterations beside indicators, and over run time."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import FixedTicker, PrintfTickFormatter
+
+from app.frame import Floats, Frame, Selection
+from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
+from app.views.view import View, extent, hover, key_of, rounded_up, whole
+from app.worker.references import has_reference
+from solver.settings import Settings
+
+LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
+"""What is seen at least, which indicators do not widen, and the smallest error that is seen."""
+LEAST_IN_TIME, MOST_IN_TIME = 1e-2, 2.0
+"""What is seen at least over run time."""
+SHORTEST = 20
+CURVES = {
+    "error_force": ("force", ERROR, 3.5, "solid"),
+    "error_displacement": ("displ.", DISPLACEMENT, 2.0, "solid"),
+    "estimated_error": ("estimate", BESIDE, 1.5, "dashed"),
+    "behaviour": ("k-free", PRESSURE, 1.2, "solid"),
+    "indicator": ("η", REFERENCE, 1.2, "solid"),
+}
+"""Title, colour, width and dash of each scalar of the history; the first is drawn on top."""
+
+
+class ErrorPlot(View):
+    """A plot of what the run has come to so far, also where an earlier iterate is gone back to."""
+
+    def _newest(self, frame: Frame) -> Frame:
+        newest = self.state.newest
+        is_known = newest is not None and newest.run.number == frame.run.number
+        return newest if newest is not None and is_known else frame
+
+    def _plot(self, name: str, x: Floats, y: Floats, title: str = "") -> None:
+        """Draw what is positive and finite."""
+        shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
+        self.draw(name, x[shown], y[shown], title)
+
+
+class Convergence(ErrorPlot):
+    """Error of the force bold, and indicators on an axis that does not flatten it."""
+
+    name = "Convergence"
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST))
+        whole(made.xaxis[0])
+        self.add("shown", "vspan", "x", color=REFERENCE, line_width=1.5)
+        self.add("ghost", color=GHOST, width=2, dash="dotted")
+        lines = [
+            self.add(column, color=color, width=width, dash=dash)
+            for column, (_, color, width, dash) in reversed(CURVES.items())
+        ]
+        self.add("newest", "scatter", color=ERROR, size=8)
+        ring = {"line_color": ERROR, "line_width": 2.5, "fill_alpha": 0}
+        self.add("answer", "scatter", size=11, **ring)
+        titles = {column: title for column, (title, *_) in CURVES.items()}
+        self.legend(**titles, answer="answer", ghost="ghost")
+        hover(made, lines, {"iteration": "@x", "value": "@y{0.00e+0}"})
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show errors and indicators of all iterations so far."""
+        newest = self._newest(frame)
+        run, history = newest.run, _searched(newest)
+        for column in CURVES:
+            self._plot(column, history["iteration"], history[column])
+        error = self.sources["error_force"].data
+        self.draw("newest", error["x"][-1:], error["y"][-1:])
+        past = {} if ghost is None else _searched(ghost)
+        column = "error_force" if len(error["x"]) else "estimated_error"
+        nothing = np.zeros(0)
+        self._plot(
+            "ghost", past.get("iteration", nothing), past.get(column, nothing), self.ghost_name
+        )
+        ghosts = self.sources["ghost"].data
+        low, high = extent([[LEAST, MOST], error["y"], ghosts["y"]])
+        self.y.decades(run.number, max(low, FLOOR), high)
+        end = max(float(newest.iteration), *map(float, ghosts["x"][-1:]), SHORTEST)
+        self.x.hold(run.number, 0.0, rounded_up(end))
+        is_back = frame is not newest and not frame.is_answer
+        self.fill("shown", x=[frame.iteration] if is_back else [])
+        foot = self.figure.y_range.reset_start
+        answer = [newest.iteration] if newest.is_answer else []
+        self.draw("answer", answer, [1.6 * foot for _ in answer])
+
+
+def _searched(frame: Frame) -> dict[str, Floats]:
+    """The history without the answer, which is no iteration."""
+    count = len(frame.history["iteration"]) - (1 if frame.is_answer else 0)
+    return {name: values[:count] for name, values in frame.history.items()}
+
+
+class ErrorTime(ErrorPlot):
+    """Error over the time of the method, set-up included, by which settings are compared."""
+
+    name = "Error over run time"
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there is a reference."""
+        return has_reference(settings)
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(
+            ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
+            x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),
+        )  # fmt: skip
+        # Few decades have room for 1, 2, 5, 10, ...
+        ticks = [f * 10.0**e for e in range(-4, 6) for f in (1, 2, 5)]
+        made.xaxis.ticker = FixedTicker(ticks=ticks)
+        made.xaxis.formatter = PrintfTickFormatter(format="%g")
+        self.add("reference", "vspan", "x", color=REFERENCE, line_width=2, line_dash="dashed")
+        ghost = self.add("ghost", color=GHOST, width=2, dash="dotted")
+        now = self.add("now", color=ERROR, width=3)
+        self.add("newest", "scatter", color=ERROR, size=8)
+        self.legend(now="this run", ghost="ghost", reference="incremental")
+        hover(made, [now, ghost], {"s": "@x{0.000}", "error": "@y{0.00e+0}"})
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the errors of the search so far."""
+        newest = self._newest(frame)
+        run, past = newest.run, ghost.history if ghost is not None else {}
+        self._plot("now", newest.history["seconds"], newest.history["error_force"])
+        columns = (past.get(name, np.zeros(0)) for name in ("seconds", "error_force"))
+        self._plot("ghost", *columns, title=self.ghost_name)
+        now, ghosts = self.sources["now"].data, self.sources["ghost"].data
+        self.draw("newest", now["x"][-1:], now["y"][-1:])
+        seconds = [run.reference_seconds] if np.isfinite(run.reference_seconds) else []
+        self.fill("reference", x=seconds)
+        if len(now["x"]) or len(ghosts["x"]):
+            self.x.decades(key_of(run), *extent([now["x"], ghosts["x"], seconds]))
+            low, high = extent([now["y"], ghosts["y"], [LEAST_IN_TIME, MOST_IN_TIME]])
+            self.y.decades(run.number, max(low, FLOOR), high)

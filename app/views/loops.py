@@ -1,0 +1,188 @@
+"""Hysteresis: force over displacement, cycle by cycle, and where the last cycle wears bodies."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from bokeh.models import Range1d
+
+from app.frame import Floats, Frame, Selection
+from app.units import unit_for
+from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE, SCALE, scaled
+from app.views.view import View, extent, hover, key_of, whole
+from app.worker.geometry import thinned
+from solver.scenes import kind_of
+from solver.settings import Settings
+from solver.study.quantities.cycles import cycles_in
+
+MOST_LOOPS = 12
+"""Loops that are drawn at most; more cannot be told apart."""
+
+
+class HysteresisLoop(View):
+    """Force over displacement of LATIN, of the reference, and of the closed form."""
+
+    name = "Loop"
+    needs = frozenset({"beside"})
+
+    @staticmethod
+    def applies(settings: Settings) -> bool:
+        """Whether there are several instants."""
+        return settings.instants > 1
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin()
+        self.add("exact", color=EXACT, width=8, alpha=0.35)
+        self.add("ghost", color=GHOST, width=2, dash="dotted")
+        self.add("reference", color=REFERENCE, width=1.5)
+        self.add("beside", color=BESIDE, width=2, dash="dashed")
+        latin = self.add("latin", color=LATIN, width=2.5)
+        self.add("now", "scatter", color=ERROR, size=10)
+        self.legend(
+            latin="LATIN", reference="reference", exact="closed form", ghost="ghost",
+            beside="beside",
+        )  # fmt: skip
+        hover(made, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the loop of the iterate, and the instant on it."""
+        run, nothing = frame.run, np.zeros((2, 0))
+        self.x.rename(*run.across)
+        self.y.rename(*run.up)
+        exact = next(((curve.across, curve.up) for curve in run.known("loop")), nothing)
+        reference = nothing if run.reference_loop is None else run.reference_loop
+        for axis, row in ((self.x, 0), (self.y, 1)):
+            low, high = extent([frame.loop[row], exact[row], reference[row]])
+            axis.hold(key_of(run), min(low, 0.0), max(high, 0.0), 0.08)
+        is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
+        self.draw("latin", *frame.loop)
+        self.draw("reference", *reference)
+        self.draw("exact", *exact)
+        self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
+        name = (frame.extras.get("beside") or {}).get("name", "another program")
+        self.draw("beside", *_beside(frame), name)
+        self.draw("now", *frame.loop[:, [run.column(selection.phase)]])
+
+
+def _beside(frame: Frame) -> tuple[Floats, Floats]:
+    """Another program's displacement of the loaded end, under the load of the run."""
+    beside, instants = frame.extras.get("beside"), frame.run.instants
+    if beside is None or beside["quantity"] != "displacement":
+        return np.zeros(0), np.zeros(0)
+    x, t = beside["x"], beside["t"]
+    end = x[np.abs(x - frame.run.geometry.description.length).argmin()]
+    rows = np.flatnonzero((x == end) & (t <= instants[-1]))
+    rows = rows[np.argsort(t[rows])]
+    return beside["values"][rows], np.interp(t[rows], instants, frame.loop[1])
+
+
+class CyclePlot(View):
+    """A plot of what cycles of the load do."""
+
+    needs = frozenset({"cycles"})
+
+    @staticmethod
+    @lru_cache(maxsize=64)
+    def applies(settings: Settings) -> bool:
+        """Whether there are cycles to compare."""
+        return cycles_in(settings) > 1
+
+    def _add_legend(self) -> None:
+        """Name the first and the last cycle, and what becomes of slip."""
+        for name, color in (("first", SCALE[0]), ("last", SCALE[-1])):
+            self.mark(name, color)
+        self.mark("text", CUT, alpha=0.0)
+        self.legend(first="cycle 1", last="last", text="text")
+
+
+class Cycles(CyclePlot):
+    """Force over displacement from the first cycle to the last, and what becomes of slip."""
+
+    name = "Cycles"
+
+    def make(self) -> None:
+        """Make the figure."""
+        self.begin()
+        self.add("loops", "multi_line", "xs ys color", width=2)
+        self.add("now", "scatter", color=ERROR, size=10)
+        self._add_legend()
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show the loop of each cycle."""
+        cycles, run, loop = frame.extras.get("cycles"), frame.run, frame.loop
+        if cycles is None:
+            return
+        self.x.rename(*run.across)
+        self.y.rename(*run.up)
+        for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
+            axis.hold(key_of(run), *extent([values]), 0.08)
+        x, y = self.x(loop[0]), self.y(loop[1])
+        count, columns = len(cycles["energy"]), cycles["columns"]
+        shown = thinned(count, MOST_LOOPS)
+        parts = [slice(columns[n], columns[n + 1] + 1) for n in shown]
+        colors = np.array(scaled(count))[shown].tolist()
+        self.fill("loops", xs=[x[p] for p in parts], ys=[y[p] for p in parts], color=colors)
+        self.draw("now", *loop[:, [run.column(selection.phase)]])
+        self.show("last", f"cycle {count}")
+        self.show("text", cycles["text"])
+
+
+class CycleEnergy(CyclePlot):
+    """Energy that friction takes in every cycle."""
+
+    name = "Energy a cycle"
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(("cycle",), ("energy", "J"))
+        whole(made.xaxis[0])
+        bars = self.add("bars", "vbar", "x top color", width=0.7)
+        self._add_legend()
+        hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show a bar for each cycle."""
+        cycles = frame.extras.get("cycles")
+        if cycles is None:
+            return
+        energy = cycles["energy"]
+        count = len(energy)
+        self.x.span(0.5, count + 0.5)
+        low, high = extent([energy])
+        self.y.hold(key_of(frame.run), min(low, 0.0), max(1.1 * high, 0.0))
+        self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
+        self.show("last", f"cycle {count}")
+        self.show("text", cycles["text"])
+
+
+class Fretting(CyclePlot):
+    """Slip and friction work of the last cycle along the interface."""
+
+    name = "Fretting"
+
+    def make(self) -> None:
+        """Make the figure."""
+        made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
+        work = self.add("work", color=ERROR, width=4, alpha=0.7)
+        slip = self.add("slip", color=LATIN, width=2)
+        self.legend(work="work", slip="slip")
+        hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show both, each over its largest value, which the legend has."""
+        cycles, run = frame.extras.get("cycles"), frame.run
+        if cycles is None:
+            return
+        name = selection.interface_of(run)
+        x = run.interfaces[name].positions
+        if len(x) != len(cycles["slip"]):
+            return
+        self.x.hold((run.number, name), *extent([x]))
+        work, slip = (float(cycles[name].max(initial=0.0)) for name in ("work", "slip"))
+        unit = "J/m²" if kind_of(run.settings) == "plane" else "J/m"
+        title = f"friction work, at most {work:.3g} {unit}"
+        self.draw("work", x, cycles["work"] / (work or 1.0), title)
+        title = f"slip, at most {unit_for(slip, 'm')(slip)}"
+        self.draw("slip", x, cycles["slip"] / (slip or 1.0), title)
