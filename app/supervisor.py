@@ -43,6 +43,7 @@ class Supervisor:
     def open(self) -> None:
         """Take reports as they come, now that a browser is there to see them."""
         self._is_open = True
+        self._asked = time.monotonic()
         self.take()
 
     def end(self) -> None:
@@ -78,7 +79,7 @@ class Supervisor:
 
     def _look(self) -> None:
         """Start a worker anew that hangs, or that is too busy with a run to begin the next one."""
-        if self._worker is None:
+        if self._worker is None or not self._is_open:
             return
         is_stuck = self._state.began != self._state.number
         if self._worker.hangs:
