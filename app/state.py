@@ -232,13 +232,13 @@ class PageState(param.Parameterized):
         self.running = False
         self._start(self.settings, 0.0)
 
-    def seek(self, iteration: int) -> None:
-        """Show an earlier iterate of the run; beyond the last the newest."""
+    def seek(self, iteration: int | None) -> None:
+        """Show an earlier iterate of the run; None, and beyond the last, the newest."""
         newest = self.newest
         if newest is None:
             return
         # The answer has the number of the last iterate before it.
-        is_newest = iteration >= newest.iteration + newest.is_answer
+        is_newest = iteration is None or iteration >= newest.iteration + newest.is_answer
         frame = newest if is_newest else self.history.at(iteration)
         place = None if is_newest else frame.iteration
         self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))

@@ -75,11 +75,12 @@ class Transport:
         pace = pmui.Select.from_param(
             self._state.param.pace, options=list(PACES), size="small", width=150, margin=(6, 4)
         )
+        # Counted from the newest: so its value rests while a run goes on.
         self._iteration = pmui.IntSlider(
-            label="Iteration",
-            start=1,
-            end=2,
-            value=1,
+            label="Iterations back",
+            start=-1,
+            end=0,
+            value=0,
             show_value=False,
             size="small",
             width=130,
@@ -153,11 +154,11 @@ class Transport:
             shown = state.frame.iteration
             state.seek(state.history.after(shown) if way > 0 else shown - 1)
 
-    def _seek(self, iteration: int) -> None:
+    def _seek(self, back: int) -> None:
         """Show the iteration to which the slider was moved."""
-        if not self._echoes.has(iteration):
+        if not self._echoes.has(back):
             self._moved_at = time.monotonic()
-            self._state.seek(iteration)
+            self._state.seek(self._last + back if back < 0 else None)
 
     def _choose_way(self, finish: str) -> None:
         if finish != self._state.settings.finish:
@@ -175,12 +176,19 @@ class Transport:
 
     def _follow(self) -> None:
         """Show which iteration is shown."""
-        newest, frame, slider = self._state.newest, self._state.frame, self._iteration
-        if newest is None or frame is None or time.monotonic() < self._moved_at + HELD:
+        frame, slider = self._state.frame, self._iteration
+        if frame is None or time.monotonic() < self._moved_at + HELD:
             return
-        last = max(newest.iteration + newest.is_answer, 2)
-        at = last if frame is newest else min(frame.iteration, last)
-        slider.param.update(end=last, value=self._echoes.give(at, slider.value))
+        is_newest = frame is self._state.newest
+        back = 0 if is_newest else min(frame.iteration - self._last, -1)
+        start = min(1 - self._last, -1)
+        slider.param.update(start=start, value=self._echoes.give(back, slider.value))
+
+    @property
+    def _last(self) -> int:
+        """Number of the newest iterate; an answer comes after the last one of the search."""
+        newest = self._state.newest
+        return 0 if newest is None else newest.iteration + newest.is_answer
 
 
 def _button(icon: str, description: str, act: Callable[[], None], *, changes: bool = False) -> Any:

@@ -138,21 +138,6 @@ def drag(page: Page, place: Locator, start: float, end: float, height: float = 0
     page.mouse.move(box["x"] + end * box["width"], y, steps=6)
 
 
-RESTS = """(text) => {
-  if (window.restingText !== text()) {
-    window.restingText = text()
-    window.restsSince = performance.now()
-  }
-  return performance.now() - window.restsSince > 700
-}"""
-
-
-def rests(page: Page) -> None:
-    """Wait until the status line stays as it is: pictures follow a hand with some delay."""
-    text = status(page).element_handle()
-    page.wait_for_function(f"(line) => ({RESTS})(() => line.textContent)", arg=text)
-
-
 def close_dialog(page: Page) -> None:
     """Close what has opened over the page."""
     page.keyboard.press("Escape")

@@ -17,11 +17,11 @@ from pages import (
     is_solved,
     iteration,
     painted,
-    rests,
     slider,
     status,
 )  # fmt: skip
 from playwright.sync_api import expect
+from processes import wait_for
 
 from solver.scenes import CATALOGUE
 
@@ -86,11 +86,13 @@ def test_one_goes_back_to_an_iteration_and_on_again(visit: Visit) -> None:
     page = visit()
     is_solved(page)
     last = iteration(page)
-    scrub = slider(page, "Iteration")
+    scrub = slider(page, "Iterations back")
     drag(page, scrub, 0.5, -4.0)
     expect(status(page)).to_contain_text(re.compile(rf"iteration \d+ of {last}"))
     page.mouse.up()
-    rests(page)
+    # Pictures follow a hand with some delay; counted back from the answer, which comes after the
+    # last iterate; not each was shown.
+    wait_for(lambda: iteration(page) <= last + 1 + int(scrub.input_value()))
     back = iteration(page)
     page.locator(".sentence").click()
     page.keyboard.press("Shift+ArrowRight")

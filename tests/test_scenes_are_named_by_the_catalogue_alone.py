@@ -25,7 +25,7 @@ READING = "solver/units.py", "solver/columns.py", "solver/curves.py"
 """They read units and quantities by whatever people call them."""
 STRUCTURES = "solver/discrete/"
 """Interfaces are made, and so named, there."""
-HELD = "/scene/layout.py", "/scene/holds.py", "/remarks.py"
+HELD = "views/layout.py", "views/acts.py", "/remarks.py"
 """They draw, or speak of, what holds bodies, by its kind."""
 
 

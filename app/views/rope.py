@@ -136,7 +136,7 @@ class Unrolled(RopePlot):
         made = self.begin()
         colors = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=-1.5, high=1.5)
         self.add("status", "image", "image x y dw dh", color_mapper=colors)
-        self.add("layers", "hspan", "y", color=EDGE, line_width=1.5)
+        self.add("wire_layers", "hspan", "y", color=EDGE, line_width=1.5)
         look = {"fill_alpha": 0, "line_color": ERROR, "line_width": 2}
         self.add("chosen", "rect", "x y width height", **look)
         for name, color in STATUSES.items():
@@ -149,7 +149,7 @@ class Unrolled(RopePlot):
         wires, column = frame.extras.get("all_wires"), frame.run.column(selection.phase)
         if wires is None:
             return
-        count, places = len(wires["layers"]), wires["places"]
+        count, places = len(wires["wire_layers"]), wires["places"]
         self.x.rename(*(("x", "m") if wires["is_clamped"] else ("polar angle", "°")))
         self.y.rename("wire" if wires["is_clamped"] else "layer", "")
         step = float(places[1] - places[0]) if len(places) > 1 else float(places[0])
@@ -161,7 +161,7 @@ class Unrolled(RopePlot):
         image = np.ascontiguousarray(wires["status"][:, :, column])
         size = {"dw": [right - left], "dh": [count]}
         self.fill("status", image=[image], x=[left], y=[0.5], **size)
-        self.fill("layers", y=np.flatnonzero(np.diff(wires["layers"])) + 1.5)
+        self.fill("wire_layers", y=np.flatnonzero(np.diff(wires["wire_layers"])) + 1.5)
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
         middle, width = [0.5 * (left + right)], [right - left]
         self.fill("chosen", x=middle, y=[number + 1.0], width=width, height=[1.0])
@@ -185,11 +185,11 @@ class StressRanges(RopePlot):
         found = frame.extras.get("wire_ranges")
         if found is None:
             return
-        count = len(found["layers"])
+        count = len(found["wire_layers"])
         self.x.span(0.5, count + 0.5)
         self.y.hold(key_of(frame.run), 0.0, 1.08 * float(found["ranges"].max()))
-        colors = [LAYERS[layer % len(LAYERS)] for layer in found["layers"]]
-        top, layer = self.y(found["ranges"]), found["layers"] + 1
+        colors = [LAYERS[layer % len(LAYERS)] for layer in found["wire_layers"]]
+        top, layer = self.y(found["ranges"]), found["wire_layers"] + 1
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
 
 

@@ -212,7 +212,7 @@ def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> d
     """Status of every wire, along it.
 
     "places" along the strand, m, or polar angles, degrees, where it is bent alike all along, and
-    not beside a clamp ("is_clamped"): then each wire stands for its layer; "layers" of the wires,
+    not beside a clamp ("is_clamped"): then each wire stands for its layer; "wire_layers" of them,
     from 0, (n_wires,); "status", (n_wires, n_places, n_instants).
     """
     points = rope.elements - 1
@@ -222,7 +222,7 @@ def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> d
     return {
         "places": floats((kept + 1.0) / rope.elements * length),
         "is_clamped": rope.is_clamped,
-        "layers": np.array([wire.layer for wire in rope.wires]),
+        "wire_layers": np.array([wire.layer for wire in rope.wires]),
         "status": np.ascontiguousarray(status[:, kept]),
     }
 
@@ -230,9 +230,9 @@ def all_wires(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> d
 def wire_ranges(rope: Rope, sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any]:
     """How far the stress of every wire swings in the last cycle, or throughout if there is none.
 
-    "layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
+    "wire_layers" of the wires, from 0, and "ranges", Pa, (n_wires,).
     """
     ends = ends_of(sampler.settings)
     last = slice(ends[-2], ends[-1] + 1) if len(ends) > 1 else slice(None)
     ranges = stress_ranges(rope, iterate.displacement, last)
-    return {"layers": np.array([wire.layer for wire in rope.wires]), "ranges": floats(ranges)}
+    return {"wire_layers": np.array([wire.layer for wire in rope.wires]), "ranges": floats(ranges)}
