@@ -15,6 +15,7 @@ from bokeh.model import DataModel
 from bokeh.models import CustomJS
 
 from app.messages import Ready
+from app.server import PAGES
 from app.state import PageState
 from app.views.view import View
 
@@ -22,6 +23,8 @@ log = logging.getLogger(__name__)
 LOST = 5.0
 """Seconds after which a picture counts as lost, as when the network broke."""
 PAINTED = "requestAnimationFrame(() => requestAnimationFrame(() => { pulse.painted = pulse.sent }))"
+SHORTEST = 0.02
+"""Seconds of a pause between pictures that is kept."""
 LASTS = 1.0
 """Seconds after which a value that was shown no longer comes back."""
 HELP = {
@@ -62,11 +65,11 @@ class Display:
     `also` is called with each picture, inside its hold: for what is not a view, as the status line.
     """
 
-    def __init__(self, state: PageState, also: Callable[[], None]) -> None:
-        self._state, self._also = state, also
+    def __init__(self, state: PageState, document: Any, also: Callable[[], None]) -> None:
+        self._state, self._document, self._also = state, document, also
         self._views: Sequence[View] = ()
         self._is_due = False
-        self._sent_at = 0.0
+        self._sent_at = self._took = 0.0
         self.pulse = Pulse(name="pulse")
         self.pulse.js_on_change("sent", CustomJS(args={"pulse": self.pulse}, code=PAINTED))
         self.pulse.on_change("painted", lambda name, old, new: self._on_painted())
@@ -107,6 +110,7 @@ class Display:
         self._is_due = False
         if frame is None:
             return
+        began = time.monotonic()
         with pn.io.hold():
             for view in self._views:
                 try:
@@ -116,12 +120,21 @@ class Display:
                     log.exception("The view %s failed.", view.name)
             self._also()
             self._count()
+        self._took = time.monotonic() - began
 
     def _count(self) -> None:
         self._sent_at = time.monotonic()
         self.pulse.sent += 1
 
     def _on_painted(self) -> None:
+        """Go on, once each other page could paint as long: they share the server's one thread."""
+        pause = (PAGES.count - 1) * self._took
+        if pause < SHORTEST:
+            self._go_on()
+        else:
+            self._document.add_timeout_callback(self._go_on, int(1000 * pause))
+
+    def _go_on(self) -> None:
         if self._is_due:
             self._paint()
         self._state.send(Ready())

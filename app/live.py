@@ -48,7 +48,7 @@ class Live:
         self._views: list[View] = [Scene(state), Timeline(state)]
         self._all = self._cards = [Card(kinds, state, self.look) for kinds in CARDS]
         self.transport = Transport(state, document)
-        self.display = Display(state, self._write)
+        self.display = Display(state, document, self._write)
         document.add_root(self.display.pulse)
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.

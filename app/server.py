@@ -36,17 +36,17 @@ class Pages:
     """A count of the pages that are open."""
 
     def __init__(self) -> None:
-        self._open = 0
+        self.count = 0
 
     def enter(self) -> bool:
         """Count a page, if there is room for it."""
-        has_room = self._open < most_pages()
-        self._open += has_room
+        has_room = self.count < most_pages()
+        self.count += has_room
         return has_room
 
     def leave(self) -> None:
         """Count a page no more."""
-        self._open -= 1
+        self.count -= 1
 
 
 PAGES = Pages()

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -55,7 +58,7 @@ def test_a_picture_whose_answer_got_lost_is_asked_for_again(
     state = PageState(answer.run.settings)
     orders: list[object] = []
     state.send = orders.append
-    display = Display(state, lambda: None)
+    display = Display(state, None, lambda: None)
     state.frame = answer
     sent = display.pulse.sent
     display.catch_up()
@@ -64,4 +67,23 @@ def test_a_picture_whose_answer_got_lost_is_asked_for_again(
     display.catch_up()
     assert display.pulse.sent == sent + 1
     display.pulse.painted = display.pulse.sent
+    assert Ready() in orders
+
+
+def test_of_many_pages_each_leaves_the_others_time(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    later: list[tuple[Callable[[], None], int]] = []
+    document = SimpleNamespace(add_timeout_callback=lambda *call: later.append(call))
+    state = PageState(answer.run.settings)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, document, lambda: time.sleep(0.002))
+    monkeypatch.setattr(app.browser.PAGES, "count", 31)
+    state.frame = answer
+    display.pulse.painted = display.pulse.sent
+    assert Ready() not in orders
+    ((go_on, milliseconds),) = later
+    assert milliseconds >= 60
+    go_on()
     assert Ready() in orders

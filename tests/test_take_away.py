@@ -54,7 +54,7 @@ def page(scene: str) -> TakeAway:
     _, frame = ended(scene)
     state = PageState(frame.run.settings)
     state.newest = state.frame = frame
-    display = Display(state, lambda: None)
+    display = Display(state, None, lambda: None)
     kinds = [kind for card in CARDS for kind in card if kind.applies(state.settings)]
     views = [kind(state) for kind in (Scene, Timeline, *kinds)]
     assert all(view.figure is not None for view in views)
