@@ -28,6 +28,8 @@ ROUND = {
     "& .MuiButton-startIcon": {"margin": 0},
     "& .MuiButton-startIcon > *": {"fontSize": "24px !important"},
 }
+PASSED = ".MuiTooltip-popper { pointer-events: none !important }"
+"""A tooltip lies over the next buttons, and would stay under a pointer on its way to them."""
 PIN = "Keep this run, drawn dotted, to compare others with; or let it go"
 WATCH = {"Watch": "accuracy", "Answer": "at-once"}
 
@@ -196,6 +198,7 @@ def _button(icon: str, description: str, act: Callable[[], None], *, changes: bo
     kind, style = pmui.IconButton, {}
     if changes:
         kind, style = pmui.Button, {"label": "", "variant": "text", "color": "default", "sx": ROUND}
-    button = kind(icon=icon, description=description, size="small", margin=(2, 2), **style)
+    style |= {"size": "small", "margin": (2, 2), "stylesheets": [PASSED]}
+    button = kind(icon=icon, description=description, **style)
     button.on_click(lambda event: act())
     return button
