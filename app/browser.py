@@ -119,8 +119,12 @@ class Display:
                     # The other views, and the page, outlive it.
                     log.exception("The view %s failed.", view.name)
             self._also()
+            is_seen = self.pulse.painted == self.pulse.sent
             self._count()
         self._took = time.monotonic() - began
+        if is_seen:
+            # The next frame is made while the browser paints this one.
+            state.send(Ready())
 
     def _count(self) -> None:
         self._sent_at = time.monotonic()
@@ -137,7 +141,8 @@ class Display:
     def _go_on(self) -> None:
         if self._is_due:
             self._paint()
-        self._state.send(Ready())
+        else:
+            self._state.send(Ready())
 
 
 class Keys(DataModel):

@@ -76,14 +76,33 @@ def test_of_many_pages_each_leaves_the_others_time(
     later: list[tuple[Callable[[], None], int]] = []
     document = SimpleNamespace(add_timeout_callback=lambda *call: later.append(call))
     state = PageState(answer.run.settings)
-    orders: list[object] = []
-    state.send = orders.append
     display = Display(state, document, lambda: time.sleep(0.002))
     monkeypatch.setattr(app.browser.PAGES, "count", 31)
     state.frame = answer
-    display.pulse.painted = display.pulse.sent
-    assert Ready() not in orders
+    state.frame = replace(answer)
+    sent = display.pulse.sent
+    display.pulse.painted = sent
+    assert display.pulse.sent == sent
     ((go_on, milliseconds),) = later
     assert milliseconds >= 60
     go_on()
-    assert Ready() in orders
+    assert display.pulse.sent == sent + 1
+
+
+def test_a_worker_makes_one_frame_ahead_and_none_for_a_page_that_is_hidden(
+    answer: Frame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = PageState(answer.run.settings)
+    orders: list[object] = []
+    state.send = orders.append
+    display = Display(state, None, lambda: None)
+    state.frame = answer
+    assert orders == [Ready()]
+    state.frame = replace(answer)
+    assert orders == [Ready()]
+    monkeypatch.setattr(app.browser, "LOST", 0.0)
+    display.catch_up()
+    assert display.pulse.sent == 2
+    assert orders == [Ready()]
+    display.pulse.painted = display.pulse.sent
+    assert orders == [Ready(), Ready()]
