@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
 from axe_playwright_python.sync_playwright import Axe
 from pages import ANSWER, Visit, button, close_dialog, figure, is_solved, status
 from playwright.sync_api import Page, expect
 
 WIDTH, HEIGHT = 390, 844
+LIGHT_TAB = "rgb(25, 118, 210)"
 BACKGROUND = "getComputedStyle(document.body).backgroundColor"
 
 OF_THE_WIDGETS = ("aria-prohibited-attr", "aria-progressbar-name", "button-name")
@@ -26,13 +26,31 @@ def violations(page: Page) -> list[str]:
     ]
 
 
-def test_it_is_dark_where_one_wants_it_dark(visit: Visit) -> None:
+def test_axe_finds_nothing_that_some_cannot_use_in_dark_and_light(visit: Visit) -> None:
     page = visit(f"?{ANSWER}&theme=dark")
+
+    def is_clean() -> None:
+        # No tooltip is on its way.
+        page.mouse.move(640.0, 5.0)
+        expect(page.get_by_role("tooltip")).to_have_count(0)
+        assert not (found := violations(page)), "\n".join(found)
+
     is_solved(page)
-    assert not (found := violations(page)), "\n".join(found)
+    is_clean()
     dark = page.evaluate(BACKGROUND)
     button(page, "Toggle theme").click()
     page.wait_for_function(f"(dark) => {BACKGROUND} !== dark", arg=dark)
+    # Tabs take their colour some frames later.
+    expect(page.get_by_text("Contact force", exact=True)).to_have_css("color", LIGHT_TAB)
+    is_clean()
+    button(page, "What if").click()
+    expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
+    is_clean()
+    button(page, "Live").click()
+    button(page, "Lessons").click()
+    page.get_by_role("button", name="Is a small indicator a small error?").click()
+    expect(button(page, "Show me")).to_be_visible()
+    is_clean()
 
 
 def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
@@ -47,33 +65,7 @@ def test_on_a_phone_nothing_is_wider_than_the_screen_and_the_scene_comes_first(
     assert box["y"] + box["height"] < HEIGHT
 
 
-def test_a_projector_has_the_scene_and_two_plots_and_nothing_else(visit: Visit) -> None:
-    page = visit(f"?{ANSWER}")
-    is_solved(page)
-    count = page.locator(".bk-Figure").count()
-    page.locator(".sentence").click()
-    page.keyboard.press("p")
-    expect(page.locator(".bk-Figure")).to_have_count(4)
-    expect(page.get_by_role("banner")).to_be_hidden()
-    expect(status(page)).to_contain_text("certified")
-    assert "view=present" in page.url
-    page.keyboard.press("p")
-    expect(page.locator(".bk-Figure")).to_have_count(count)
-
-
-@pytest.mark.parametrize("place", ["", "&tab=What if", "&lesson=best-k"])
-def test_axe_finds_nothing_that_some_cannot_use(visit: Visit, place: str) -> None:
-    page = visit(f"?{ANSWER}{place}" if "lesson" not in place else f"?{place[1:]}")
-    if "What if" in place:
-        expect(page.get_by_role("combobox", name="See what happens to")).to_be_visible()
-    elif "lesson" in place:
-        expect(button(page, "Show me")).to_be_visible()
-    else:
-        is_solved(page)
-    assert not (found := violations(page)), "\n".join(found)
-
-
-def test_dialogs_are_opened_and_closed_by_keys(visit: Visit) -> None:
+def test_keys_open_dialogs_and_the_view_for_a_projector(visit: Visit) -> None:
     page = visit(f"?{ANSWER}")
     is_solved(page)
     page.locator(".sentence").click()
@@ -85,3 +77,12 @@ def test_dialogs_are_opened_and_closed_by_keys(visit: Visit) -> None:
         page.keyboard.press("Enter")
         expect(page.get_by_role("dialog").locator("visible=true")).to_have_count(1)
         close_dialog(page)
+    count = page.locator(".bk-Figure").count()
+    page.locator(".sentence").click()
+    page.keyboard.press("p")
+    expect(page.locator(".bk-Figure")).to_have_count(4)
+    expect(page.get_by_role("banner")).to_be_hidden()
+    expect(status(page)).to_contain_text("certified")
+    assert "view=present" in page.url
+    page.keyboard.press("p")
+    expect(page.locator(".bk-Figure")).to_have_count(count)

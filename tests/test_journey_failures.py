@@ -27,6 +27,10 @@ FOOLISH = (
     "?peak=" + "9" * 4000,
     "?%3Cscript%3Ealert(1)%3C/script%3E=1",
 )
+BLOWS = {
+    signal.SIGKILL: "process ended; the run was started anew",
+    signal.SIGSTOP: "no sign of life for some seconds; the run was started anew",
+}
 SPEAK = """async (address) => {
   const [, token] = (await (await fetch(address)).text()).match(/"token":\\s*"([^"]+)"/)
   const socket = new WebSocket(address.replace("http", "ws") + "/ws", ["bokeh", token])
@@ -81,34 +85,19 @@ def test_a_reload_keeps_the_settings_and_back_undoes_them(visit: Visit) -> None:
     expect(field(page, "Peak load")).to_have_value("1100")
 
 
-@pytest.mark.parametrize(
-    ("blow", "said"),
-    [
-        (signal.SIGKILL, "process ended; the run was started anew"),
-        (signal.SIGSTOP, "no sign of life for some seconds; the run was started anew"),
-    ],
-    ids=["killed", "stopped"],
-)
-def test_a_worker_that_is_gone_is_said_and_its_run_begun_anew(
-    visit: Visit, server: Server, blow: signal.Signals, said: str
-) -> None:
-    before = server.processes()
-    page = visit(f"?{ENDLESS}")
-    expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
-    worker = newest_worker(server, before)
-    os.kill(worker, blow)
-    expect(page.locator(".status")).to_contain_text(said)
-    painted(page, 3)
-    wait_for(lambda: not is_alive(worker))
-
-
-def test_nothing_is_left_of_a_page_that_is_closed_in_the_midst_of_a_run(
+def test_a_worker_that_is_gone_is_said_and_none_is_left_of_a_page_that_is_closed(
     chrome: Chrome, server: Server
 ) -> None:
     before = server.processes()
     with visits(server, chrome) as visit:
         page = visit(f"?{ENDLESS}")
-        expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+        for blow, message in BLOWS.items():
+            expect(status(page)).to_contain_text(re.compile(r"iteration \d\d"))
+            worker = newest_worker(server, before)
+            os.kill(worker, blow)
+            expect(page.locator(".status")).to_contain_text(message)
+            painted(page, 3)
+            wait_for(lambda pid=worker: not is_alive(pid))
         worker = newest_worker(server, before)
     wait_for(lambda: not is_alive(worker))
     wait_for(lambda: set(server.processes()) <= set(before))
