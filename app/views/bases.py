@@ -16,7 +16,6 @@ from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scale
 from app.views.view import View, extent, hover, whole
 from app.worker.extras import MOST_MODES
 from solver.scenes import kind_of
-from solver.settings import Settings
 from solver.study.quantities.clip_measures import can_be_clipped
 
 LEAST, FEWEST = 1e-4, 8
@@ -43,13 +42,9 @@ class Spectra(View):
     name = "Singular values"
     needs = frozenset({"spectra"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are several instants: one has one singular value."""
-        return settings.instants > 1
+    applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0))
         whole(made.xaxis[0])
         lines = self.add("values", "multi_line", "xs ys color", width=1.8)
@@ -78,8 +73,7 @@ class ModePlot(View):
 
     needs = frozenset({"modes"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "vspan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
@@ -99,10 +93,8 @@ class SpaceModes(ModePlot):
 
     name = "Space modes"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are bases, of rods: those of plane bodies are no curves."""
-        return settings.applies("pgd_modes") and kind_of(settings) != "plane"
+    # Those of plane bodies are no curves.
+    applies = staticmethod(lambda given: given.applies("pgd_modes") and kind_of(given) != "plane")
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the modes over the places of the substructure."""
@@ -120,10 +112,7 @@ class TimeFunctions(ModePlot):
 
     name = "Time functions"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are bases, and several instants."""
-        return settings.applies("pgd_modes") and settings.instants > 1
+    applies = staticmethod(lambda settings: settings.applies("pgd_modes") and settings.instants > 1)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the time functions."""
@@ -145,13 +134,9 @@ class BasisSizes(View):
     name = "Basis size"
     needs = frozenset({"modes"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are bases."""
-        return settings.applies("pgd_modes")
+    applies = staticmethod(lambda settings: settings.applies("pgd_modes"))
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("iteration",), ("substructure",))
         made.grid.visible = False
         for axis in made.axis:
@@ -186,17 +171,11 @@ class Clips(View):
     name = "Clips"
     needs = frozenset({"clips"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are rods, whose friction bound is known, and not too many values."""
-        if not can_be_clipped(settings) or settings.instants < 2:
-            return False
-        values = settings.values()
-        interfaces = values.get("wires", 2) - 1
-        return bool(interfaces * (values["elements"] + 1) * settings.instants <= MOST_VALUES)
+    applies = staticmethod(
+        lambda given: can_be_clipped(given) and 1 < given.instants <= MOST_VALUES / given.n_nodes
+    )
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),

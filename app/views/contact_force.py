@@ -22,8 +22,7 @@ class ContactForce(View):
     name = "Contact force"
     needs = frozenset({"beside"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N/m"))
         both = "friction", "pressure"
         self.sources |= {name: source("x", "latin", "reference") for name in both}

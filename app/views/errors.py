@@ -9,7 +9,6 @@ from app.frame import Floats, Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
 from app.views.view import View, extent, hover, key_of, rounded_up, whole
 from app.worker.references import has_reference
-from solver.settings import Settings
 
 LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
 """What is seen at least, which indicators do not widen, and the smallest error that is seen."""
@@ -45,8 +44,7 @@ class Convergence(ErrorPlot):
 
     name = "Convergence"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST))
         whole(made.xaxis[0])
         self.add("shown", "vspan", "x", color=REFERENCE, line_width=1.5)
@@ -99,13 +97,9 @@ class ErrorTime(ErrorPlot):
 
     name = "Error over run time"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there is a reference."""
-        return has_reference(settings)
+    applies = staticmethod(has_reference)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(
             ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
             x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),

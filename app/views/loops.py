@@ -13,7 +13,6 @@ from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE,
 from app.views.view import View, extent, hover, key_of, whole
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
-from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in
 
 MOST_LOOPS = 12
@@ -26,13 +25,9 @@ class HysteresisLoop(View):
     name = "Loop"
     needs = frozenset({"beside"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are several instants."""
-        return settings.instants > 1
+    applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin()
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
@@ -83,11 +78,7 @@ class CyclePlot(View):
 
     needs = frozenset({"cycles"})
 
-    @staticmethod
-    @lru_cache(maxsize=64)
-    def applies(settings: Settings) -> bool:
-        """Whether there are cycles to compare."""
-        return cycles_in(settings) > 1
+    applies = staticmethod(lru_cache(maxsize=64)(lambda settings: cycles_in(settings) > 1))
 
     def _add_legend(self) -> None:
         """Name the first and the last cycle, and what becomes of slip."""
@@ -102,8 +93,7 @@ class Cycles(CyclePlot):
 
     name = "Cycles"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         self.begin()
         self.add("loops", "multi_line", "xs ys color", width=2)
         self.add("now", "scatter", color=ERROR, size=10)
@@ -134,8 +124,7 @@ class CycleEnergy(CyclePlot):
 
     name = "Energy a cycle"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("cycle",), ("energy", "J"))
         whole(made.xaxis[0])
         bars = self.add("bars", "vbar", "x top color", width=0.7)
@@ -162,8 +151,7 @@ class Fretting(CyclePlot):
 
     name = "Fretting"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
         work = self.add("work", color=ERROR, width=4, alpha=0.7)
         slip = self.add("slip", color=LATIN, width=2)

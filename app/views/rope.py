@@ -24,7 +24,6 @@ from app.views.colors import (
 from app.views.view import View, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
-from solver.settings import Settings
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
 EDGE = "#546E7A"
@@ -39,10 +38,7 @@ WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 class RopePlot(View):
     """A plot of a strand that is bent; a tap selects a wire."""
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there is a strand of helical wires."""
-        return kind_of(settings) == "helices"
+    applies = staticmethod(lambda settings: kind_of(settings) == "helices")
 
     def _select(self, number: int) -> None:
         frame = self.state.frame
@@ -56,8 +52,7 @@ class CrossSection(RopePlot):
     name = "Cross-section"
     needs = frozenset({"section"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(match_aspect=True, x_range=Range1d(-1, 1), y_range=Range1d(-1, 1))
         made.axis.visible = made.grid.visible = False
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
@@ -131,8 +126,7 @@ class Unrolled(RopePlot):
     name = "All wires"
     needs = frozenset({"all_wires"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin()
         colors = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=-1.5, high=1.5)
         self.add("status", "image", "image x y dw dh", color_mapper=colors)
@@ -173,8 +167,7 @@ class StressRanges(RopePlot):
     name = "Stress range"
     needs = frozenset({"wire_ranges"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("wire",), ("range", "Pa"))
         bars = self.add("bars", "vbar", "x top color", also="layer", width=0.8)
         hover(made, [bars], {"wire": "@x", "layer": "@layer", "range": "@top"})
@@ -199,13 +192,9 @@ class AxialForce(View):
     name = "Force in the wires"
     needs = frozenset({"axial force"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are wires."""
-        return kind_of(settings) in ("wires", "helices")
+    applies = staticmethod(lambda settings: kind_of(settings) in ("wires", "helices"))
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)

@@ -44,8 +44,7 @@ class Scene(View):
     name = "Scene"
     shows_status = True
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
         made.axis.visible = False
         self._draw(made)

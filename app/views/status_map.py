@@ -11,7 +11,6 @@ from bokeh.models import LinearColorMapper
 from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
 from app.views.colors import CUT, ERROR, EXACT, STATUS
 from app.views.view import View, extent, hover, joined
-from solver.settings import Settings
 
 ENTRIES = {"slip −": -1, "stick": 0, "slip +": 1, "open": 2}
 
@@ -21,13 +20,9 @@ class StatusMap(View):
 
     name = "Stick and slip"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are several instants."""
-        return settings.instants > 1
+    applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("t", "s"))
         made.grid.visible = False
         colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)

@@ -32,8 +32,7 @@ class Timeline(View):
 
     name = "Load path"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self._made = bare(40, (-0.01, 1.01), (LOW, TITLE + 0.6))
         made.x_range.bounds = (-0.01, 1.01)
         made.yaxis.visible = False

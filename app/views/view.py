@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -121,6 +121,8 @@ class View:
         What its tab is called.
     needs
         Names of the extras of a frame that it shows.
+    applies
+        Whether it says anything about a run with such settings.
     x, y
         The axes.
     sources
@@ -129,6 +131,7 @@ class View:
 
     name: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
+    applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
 
     def __init__(self, state: PageState) -> None:
         self.state, self._type = state, TEXT
@@ -137,15 +140,10 @@ class View:
         self._glyphs: dict[str, list[GlyphRenderer]] = {}
         self._items: dict[str, LegendItem] = {}
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
-        """Whether it says anything about such a run."""
-        return True
-
     @cached_property
     def figure(self) -> figure:
         """The figure."""
-        self.make()
+        self._make()
         # A page opens sooner without glyphs of what nobody selects or mutes.
         for renderer in self._made.renderers:
             renderer.update(nonselection_glyph=None, muted_glyph=None)
@@ -159,7 +157,7 @@ class View:
             for model in (self._made, *self._made.legend):
                 model.styles = {**model.styles, "font-size": size}
 
-    def make(self) -> None:
+    def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
         raise NotImplementedError
 
