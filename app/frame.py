@@ -67,6 +67,10 @@ class Geometry:
     """Contact points, shape (n_points, 2), m; NaN where a line of them is broken."""
     chains: NDArray[np.intp]
     """Number of the interface of each contact point, shape (n_points,)."""
+    outlines: NDArray[np.intp]
+    """Nodes of closed lines round substructures, -1 behind each line."""
+    rims: NDArray[np.intp]
+    """Nodes of the sides of bodies that nothing touches, the same way."""
 
 
 @dataclass(frozen=True, eq=False)

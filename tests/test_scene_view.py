@@ -9,7 +9,7 @@ import pytest
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.outlines import bands
+from app.views.picture import bands
 from app.views.rope import CrossSection, StressRanges, Unrolled
 from app.views.scene import HEIGHT, WIDTH, Scene, Stress
 from app.views.timeline import Timeline, paths_of
@@ -131,15 +131,16 @@ def test_the_magnification_holds_while_motion_is_seen() -> None:
 
 def test_bands_meet_between_points_of_different_status() -> None:
     points = np.stack([np.arange(4.0), np.zeros(4)], axis=1)
-    lines, kinds = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
-    assert kinds == [0, 1]
-    assert lines[0][-1, 0] == lines[1][0, 0] == 1.5
+    lines = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
+    assert np.allclose(lines[0][:3, 0], [0.0, 1.0, 1.5])
+    assert np.allclose(lines[1][:, 0], [1.5, 2.0, 3.0])
+    assert np.isnan(lines[0][3:]).all()
 
 
 def test_bands_end_where_a_wire_goes_behind() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, np.nan], [3.0, 0.0], [4.0, 0.0]])
-    lines, _ = bands(points, np.zeros(5, dtype=np.intp), np.zeros(5, dtype=np.int8))
-    assert [line[:, 0].tolist() for line in lines] == [[0.0, 1.0], [3.0, 4.0]]
+    lines = bands(points, np.zeros(5, dtype=np.intp), np.zeros(5, dtype=np.int8))
+    assert np.array_equal(lines[0], points, equal_nan=True)
 
 
 def test_other_views_show_every_instant(frame: Frame) -> None:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from app.units import Unit, unit_for
+from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
@@ -48,20 +50,31 @@ class Arrow:
         foot, half = tip - length * along, 0.5 * length * np.array([-along[1], along[0]])
         return np.array([tip, foot + half, foot - half])
 
-    def dragged(self, pointer: Array) -> float:
-        """The value at which its handle is under the pointer."""
+    @property
+    def shaft(self) -> Array:
+        """Its line, which ends inside its head."""
+        along = self.line[-1] - self.line[-2]
+        size = float(np.hypot(*along)) or 1.0
+        return np.append(self.line[:-1], [self.line[-1] - min(5.0 / size, 0.9) * along], axis=0)
+
+    def scaled(self, setting: float, pointer: Array) -> float:
+        """The setting behind its value at which its handle is under the pointer."""
         along = self.handle - self.base
-        return float(self.value * ((pointer - self.base) @ along) / (along @ along))
+        return float(setting * ((pointer - self.base) @ along) / (along @ along))
 
 
-@dataclass(frozen=True)
-class Word:
+class Word(NamedTuple):
     """A text, px from the middle of the bodies' foot, and on which side of it is its anchor."""
 
     text: str
     place: Array
     align: str
-    act: Act | None = None
+    color: str
+
+
+def color_of(act: Act) -> str:
+    """The colour of what is given: a displacement, or a force."""
+    return DISPLACEMENT if act.unit in ("m", "1/m") else FORCE
 
 
 def arrows_of(
@@ -100,11 +113,11 @@ def _bow(tail: Array, head: Array, away: Array) -> Array:
     return np.asarray(tail + share * (head - tail) + height * away)
 
 
-def beam_of(arrows: list[Arrow]) -> Array | None:
-    """The line over the arrows of what is spread along a side."""
+def beam_of(arrows: list[Arrow]) -> list[Array]:
+    """The line over the arrows of what is spread along a side, if it is."""
     if len(arrows) < 3 or arrows[0].act.unit == "N" or is_aside(arrows[0].act):
-        return None
-    return np.array([arrow.handle for arrow in arrows])
+        return []
+    return [np.array([arrow.handle for arrow in arrows])]
 
 
 def words_of(
@@ -116,7 +129,11 @@ def words_of(
     """What acts in words; what presses from above and below alike is said once."""
     above = [act for act in description.acts if act.where.startswith("top")]
     return [
-        Word(text_of(act, column), *_anchor(act, description, layout, places, arrows), act)
+        Word(
+            text_of(act, column),
+            *_anchor(act, description, layout, places, arrows),
+            color_of(act),
+        )
         for act, (places, arrows) in acts.items()
         if not act.where.startswith("bottom") or not any(is_opposite(act, each) for each in above)
     ]

@@ -12,11 +12,10 @@ from bokeh.models import ColorBar, LinearColorMapper
 from bokeh.palettes import Cividis256, diverging_palette
 from bokeh.plotting import figure
 
-from app.frame import Frame, Selection
-from app.units import unit_for
-from app.views.colors import BODY, EDGE, GHOST
+from app.frame import OPEN, Frame, Selection
+from app.units import number, unit_for
+from app.views.colors import BODY, EDGE, GHOST, STATUS
 from app.views.layout import Layout, layout_of
-from app.views.outlines import Outlines, outlines_of
 from app.views.picture import Handle, Picture
 from app.views.view import View, bare, rounded_up
 from solver.scenes import behind
@@ -27,6 +26,8 @@ NEAR, CLOSE = 22.0, 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
+KEYS = {"stick": 0, "slip →": 1, "slip ←": -1, "open": OPEN}
+"""Colours of what rubs."""
 SIGNED = diverging_palette(
     ("#053061", "#2166AC", "#67A9CF", "#D1E5F0", "#F2F2F2"),
     ("#67001F", "#B2182B", "#EF8A62", "#FDDBC7", "#F2F2F2"),
@@ -50,7 +51,6 @@ class Scene(View):
         self._draw(made)
         self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         self._layout: tuple[object, Layout] | None = None
-        self._outlines: dict[str, Outlines] = {}
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
@@ -64,15 +64,26 @@ class Scene(View):
             made.on_change(size, self._resize)
 
     def _draw(self, made: figure) -> None:
-        look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8}
-        self.add("bodies", "patches", "xs ys fill_alpha line_alpha", **look)
+        self.add("image", "patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
+        look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8, "line_alpha": 0.55}
+        self.add("bodies", "patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "multi_line", "xs ys line_color line_width")
         self.add("heads", "patches", "xs ys color")
-        self.add("marks", "scatter", "x y marker fill_color line_color line_width", size=11)
+        look = {"size": 11, "fill_color": "white", "line_width": 2.5}
+        self.add("marks", "scatter", "x y line_color", **look)
         self.add(
-            "words", "text", "x y text text_align text_color text_font_size text_font_style",
-            text_font=value("Roboto, sans-serif"), text_baseline="middle",
+            "words", "text", "x y text text_align text_color", text_font_size="14px",
+            text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
+        )  # fmt: skip
+        for name, status in KEYS.items() if self.shows_status else ():
+            self.mark(name, STATUS[status])
+        self.mark("note", EDGE, alpha=0.0)
+        names = [name for name in (*KEYS, "note") if name in self._glyphs]
+        self._keys = self.legend("center", **{name: name for name in names})
+        self._keys.update(
+            location="bottom_left", click_policy="none", background_fill_alpha=0.0,
+            label_text_font_size="12px", styles={},
         )  # fmt: skip
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -88,28 +99,27 @@ class Scene(View):
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
         self.picture = picture = Picture(
-            frame, run.column(selection.phase), layout, self._factor,
-            self._outlines_of("frame", frame), self._peaks, behind(run.settings), self.shows_status,
+            frame, run.column(selection.phase), layout, self._factor, self._peaks,
+            behind(run.settings),
         )  # fmt: skip
-        for name, columns in picture.columns().items():
+        for name, columns in picture.columns(with_status=self.shows_status).items():
             self.fill(name, **columns)
-        x, y = np.zeros((2, 0))
+        past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None and ghost.run.settings.scene == run.settings.scene:
-            column = ghost.run.column(selection.phase)
-            x, y = picture.ghost(ghost, column, self._outlines_of("ghost", ghost))
-        self.fill("ghost", x=x, y=y)
+            past = picture.ghost(ghost, ghost.run.column(selection.phase))
+        self.fill("ghost", **past)
+        self.show("open", any(each.bound is None for each in run.interfaces.values()))
+        is_rods = run.geometry.description.height is None
+        note = f"displacement × {number(self._factor)}"
+        self.show("note", note + ", thickness not to scale" * is_rods)
+        rows = layout.key_rows
+        self._keys.update(orientation="horizontal" if rows else "vertical", nrows=rows or "auto")
 
     def _layout_of(self, frame: Frame) -> Layout:
         key = frame.run.geometry, *self._size.values()
         if self._layout is None or self._layout[0] != key:
             self._layout = key, layout_of(*key)
         return self._layout[1]
-
-    def _outlines_of(self, role: str, frame: Frame) -> Outlines:
-        known, geometry = self._outlines.get(role), frame.run.geometry
-        if known is None or not (known.geometry is geometry or known.suits(geometry)):
-            self._outlines[role] = outlines_of(geometry)
-        return self._outlines[role]
 
     def _scale_arrows(self, frame: Frame) -> None:
         """Keep how long arrows are for their values, while they stay long enough and fit."""

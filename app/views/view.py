@@ -202,10 +202,12 @@ class View:
         look = {"marker": "square", "size": 10, "color": color} | look
         self._glyphs[name] = [self._made.scatter([np.nan], [np.nan], **look)]
 
-    def legend(self, **titles: str) -> None:
+    def legend(self, place: str = "above", /, **titles: str) -> Legend:
         """Name glyphs in a legend, in this order."""
-        box = legend(self._made, {title: self._glyphs[name] for name, title in titles.items()})
+        entries = {title: self._glyphs[name] for name, title in titles.items()}
+        box = legend(self._made, entries, place)
         self._items = dict(zip(titles, box.items, strict=True))
+        return box
 
     def show(self, name: str, wanted: bool | str) -> None:
         """Show or hide an entry of the legend, or give it another title."""
@@ -292,7 +294,7 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
     return np.concatenate(pieces[:-1] or [gap[:, :0]], axis=1)
 
 
-def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
+def legend(made: figure, entries: dict[str, list[GlyphRenderer]], place: str = "above") -> Legend:
     """A legend in one line above the plot, where it covers no curve; a click hides a curve."""
     box = Legend(
         items=list(entries.items()),
@@ -305,7 +307,7 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
         styles={"font-size": TEXT, "margin-left": "-44px", "top": "-3px"},
         stylesheets=[CLOSE],
     )
-    made.add_layout(box, "above")
+    made.add_layout(box, place)
     return box
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
+from app.worker.outlines import outlines_of
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
@@ -75,7 +76,9 @@ class Drawn:
         places = problem.positions[self._dofs[:, 0]]
         if heights is not None:
             places = np.stack([places, heights[self._dofs[:, 0]]], axis=1)
-        self.geometry = Geometry(description, *mesh, floats(places), np.concatenate(chains))
+        self.geometry = Geometry(
+            description, *mesh, floats(places), np.concatenate(chains), *outlines_of(*mesh)
+        )
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the bodies have moved."""
