@@ -104,8 +104,6 @@ class Run:
     across: tuple[str, str]
     up: tuple[str, str]
     """Title and SI unit of the loop's displacement and force."""
-    load: Floats | None
-    """The load path, shape (n_instants,), in the unit of `up`; None where frames have it."""
     exact: tuple[ExactCurve, ...] = ()
     """Closed forms of the scene, at the same instants."""
     reference: Mapping[str, ContactFields] = field(default_factory=dict)

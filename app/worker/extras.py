@@ -198,13 +198,10 @@ def _signed_size(space: Floats) -> Floats:
 
     The sign of the largest entry itself would flip whenever two lobes change places.
     """
-    sizes = np.ones(len(space))
-    for number, mode in enumerate(space):
-        largest = float(np.abs(mode).max(initial=0.0))
-        if largest > 0.0:
-            lobe = np.flatnonzero(np.abs(mode) >= 0.5 * largest)[-1]
-            sizes[number] = np.copysign(largest, mode[lobe])
-    return sizes
+    largest = np.abs(space).max(axis=1)
+    last = np.argmax(np.abs(space[:, ::-1]) >= 0.5 * largest[:, None], axis=1)
+    size = np.copysign(largest, space[np.arange(len(space)), -1 - last])
+    return np.where(largest > 0.0, size, 1.0)
 
 
 def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:

@@ -175,49 +175,35 @@ class DrawnMesh(Drawn):
 def thinned_mesh(
     inside: Inside,
 ) -> tuple[NDArray[np.intp], NDArray[np.int32], NDArray[np.intp]]:
-    """Nodes and quadrilaterals that are drawn of a mesh, and in which each element lies."""
-    bodies = np.unique(inside.bodies)
-    most = max(MOST_QUADS // len(bodies), 1)
+    """Nodes and quadrilaterals that are drawn of bodies, and in which each element lies.
+
+    The mesh of each body is a grid, of which some lines are left out.
+    """
     nodes, quads, quad_of = [], [], np.zeros(len(inside.elements), dtype=np.intp)
     n_nodes = n_quads = 0
-    for body in bodies:
+    most = max(MOST_QUADS // len(np.unique(inside.bodies)), 1)
+    for body in np.unique(inside.bodies):
         elements = np.flatnonzero(inside.bodies == body)
-        kept, corners, places = _thinned_body(inside.nodes, inside.elements[elements], most)
-        nodes.append(kept)
-        quads.append(corners + n_nodes)
-        quad_of[elements] = places + n_quads
-        n_nodes += len(kept)
-        n_quads += len(corners)
+        kept, corners = np.unique(inside.elements[elements], return_inverse=True)
+        (x, column), (y, row) = (
+            np.unique(values.round(9), return_inverse=True)
+            for values in inside.nodes[kept].T / np.ptp(inside.nodes)
+        )
+        grid = np.zeros((len(y), len(x)), dtype=np.intp)
+        grid[row, column] = kept
+        share = min(np.sqrt(most / len(elements)), 1.0)
+        rows = max(int(share * (len(y) - 1)), 1)
+        columns = max(min(int(share * (len(x) - 1)), most // rows), 1)
+        up, across = thinned(len(y), rows + 1), thinned(len(x), columns + 1)
+        drawn = n_nodes + np.arange(len(up) * len(across)).reshape(len(up), len(across))
+        around = drawn[:-1, :-1], drawn[:-1, 1:], drawn[1:, 1:], drawn[1:, :-1]
+        nodes.append(grid[np.ix_(up, across)].ravel())
+        quads.append(np.stack([corner.ravel() for corner in around], axis=1))
+        first_row, first_column = (
+            lines[corners.reshape(-1, 4)].min(axis=1) for lines in (row, column)
+        )
+        at = np.searchsorted(up, first_row, side="right") - 1
+        beside = np.searchsorted(across, first_column, side="right") - 1
+        quad_of[elements] = n_quads + at * (len(across) - 1) + beside
+        n_nodes, n_quads = n_nodes + len(nodes[-1]), n_quads + len(quads[-1])
     return np.concatenate(nodes), np.concatenate(quads).astype(np.int32), quad_of
-
-
-def _thinned_body(
-    nodes: Array, elements: NDArray[np.intp], most: int
-) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """The same of one body; a mesh that is no grid is drawn as it is."""
-    kept, corners = np.unique(elements, return_inverse=True)
-    corners = corners.reshape(-1, 4)
-    (x, column), (y, row) = (
-        np.unique(values.round(9), return_inverse=True) for values in nodes[kept].T / np.ptp(nodes)
-    )
-    columns, rows = len(x) - 1, len(y) - 1
-    if len(kept) != len(x) * len(y) or len(elements) != columns * rows:
-        return kept, corners, np.arange(len(elements))
-    across, up = _lines(columns, rows, most)
-    grid = np.zeros((rows + 1, columns + 1), dtype=np.intp)
-    grid[row, column] = kept
-    drawn = np.arange(len(up) * len(across)).reshape(len(up), len(across))
-    around = drawn[:-1, :-1], drawn[:-1, 1:], drawn[1:, 1:], drawn[1:, :-1]
-    first_row, first_column = row[corners].min(axis=1), column[corners].min(axis=1)
-    at = np.searchsorted(up, first_row, side="right") - 1
-    beside = np.searchsorted(across, first_column, side="right") - 1
-    quads = np.stack([corner.ravel() for corner in around], axis=1)
-    return grid[np.ix_(up, across)].ravel(), quads, at * (len(across) - 1) + beside
-
-
-def _lines(columns: int, rows: int, most: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Node lines of a body, so that few enough quadrilaterals lie between them."""
-    share = min(np.sqrt(most / (columns * rows)), 1.0)
-    up = rows if share == 1.0 else min(max(int(rows * share), 1), most)
-    across = columns if share == 1.0 else min(max(int(columns * share), 1), max(most // up, 1))
-    return thinned(columns + 1, across + 1), thinned(rows + 1, up + 1)

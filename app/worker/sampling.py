@@ -57,7 +57,6 @@ class Sampler:
         }
         self.loop = loop_of(settings, problem)
         self.drawn = _drawn(problem, structure_of(settings), self.columns)
-        load = self.loop.force
         self.run = Run(
             number=number,
             settings=settings,
@@ -67,7 +66,6 @@ class Sampler:
             geometry=self.drawn.geometry,
             across=self.loop.across,
             up=self.loop.up,
-            load=floats(load[self.columns]) if isinstance(load, np.ndarray) else None,
             is_idle=nothing_acts(problem),
         )
 
