@@ -13,7 +13,7 @@ from app.views.picture import bands
 from app.views.rope import CrossSection, StressRanges, Unrolled
 from app.views.scene import HEIGHT, WIDTH, Scene, Stress
 from app.views.timeline import Timeline, paths_of
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.scenes import CATALOGUE
@@ -39,7 +39,7 @@ def small(scene: str) -> Settings:
 
 @pytest.fixture(scope="module", params=SCENES)
 def frame(request: pytest.FixtureRequest) -> Frame:
-    return frame_of(small(request.param), extras=frozenset(EXTRAS))
+    return frame_of(small(request.param), extras=frozenset(EXTRAS | OF_ROPE))
 
 
 def shown(frame: Frame, phase: float = 0.75) -> Scene:

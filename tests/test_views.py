@@ -24,7 +24,7 @@ from app.views.loops import HysteresisLoop
 from app.views.rope import AxialForce
 from app.views.status_map import StatusMap
 from app.views.view import View
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.settings import Settings
@@ -61,7 +61,7 @@ def settings_of(case: str) -> Settings:
 @cache
 def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
     """First iterate, before any reference; one on the way; and the answer."""
-    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=frozenset(EXTRAS))
+    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=frozenset(EXTRAS | OF_ROPE))
     runner = Runner(start, ReferenceCache(), lambda: False)
     runner.advance()
     frames = [runner.frame(needs)]

@@ -6,34 +6,28 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import BasicTicker, ColorBar, LinearColorMapper, Range1d
+from bokeh.models import BasicTicker, LinearColorMapper, Range1d
 from bokeh.palettes import Viridis256
-from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.view import View, extent, hover, whole
-from app.worker.extras import MOST_MODES
+from app.views.view import View, color_bar, extent, hover, whole
+from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
+from app.worker.geometry import thinned
 from solver.scenes import kind_of
 from solver.study.quantities.clip_measures import can_be_clipped
 
 LEAST, FEWEST = 1e-4, 8
 """Of singular values, the least size and the fewest that the axes show."""
 MODES = [str(number) for number in range(MOST_MODES)]
-MOST_VALUES = 1_000_000
+WHOLE = {"desired_num_ticks": 4, "min_interval": 1, "num_minor_ticks": 0}
+"""Ticks of a bar of colours that mean whole numbers."""
+LARGEST = 1_000_000
 """Values of a field up to which all curves take no longer than a second, in which the worker obeys
 no order (measured: 0.9 s for 1001 x 999)."""
 FLOOR, EXACT = 1e-6, 1e-9
 """Smallest error that is shown, and error up to which clips are exact but for rounding."""
-
-
-def _whole_numbers(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A colour bar that says whole numbers, beside a figure."""
-    ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
-    bar = ColorBar(color_mapper=colors, ticker=ticker, **look)
-    made.add_layout(bar, "right")
-    return bar
 
 
 class Spectra(View):
@@ -47,11 +41,11 @@ class Spectra(View):
     def _make(self) -> None:
         made = self.begin(("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0))
         whole(made.xaxis[0])
-        lines = self.add("values", "multi_line", "xs ys color", width=1.8)
-        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
-        look = {"width": 8, "padding": 6, "major_tick_line_color": None}
-        self._bar = _whole_numbers(made, self._colors, **look)
+        color = {"field": "part", "transform": self._colors}
+        lines = self.add("values", "multi_line", "xs ys", also="part", color=color, width=1.8)
+        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
+        self._bar = color_bar(made, self._colors, ticker=BasicTicker(**WHOLE))
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the singular values, as far as the frame has them."""
@@ -60,8 +54,9 @@ class Spectra(View):
             return
         count = frame.run.settings.n_substructures
         ys = [values[values > 0.1 * LEAST] for values in spectra]
-        xs = [np.arange(1, len(values) + 1) for values in ys]
-        self.fill("values", xs=xs, ys=ys, color=scaled(len(ys)))
+        modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
+        xs = [modes[: len(values)] for values in ys]
+        self.fill("values", xs=xs, ys=ys, part=thinned(count, MOST_SPECTRA) + 1.0)
         self.x.rename("mode; the colour is the substructure" if count > 1 else "mode", "")
         self.x.hold(frame.run.number, 1.0, float(max([FEWEST, *map(len, ys)])))
         self._bar.visible = count > 1
@@ -144,7 +139,7 @@ class BasisSizes(View):
         self._colors = LinearColorMapper(palette=Viridis256, low=0, high=2)
         self.add("sizes", "image", "image x y dw dh", color_mapper=self._colors)
         self.add("chosen", "hspan", "y", color=ERROR, line_width=2)
-        _whole_numbers(made, self._colors, width=6, padding=4, title="modes")
+        color_bar(made, self._colors, title="modes", ticker=BasicTicker(**WHOLE))
         made.on_event(Tap, self._select)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -172,7 +167,7 @@ class Clips(View):
     needs = frozenset({"clips"})
 
     applies = staticmethod(
-        lambda given: can_be_clipped(given) and 1 < given.instants <= MOST_VALUES / given.n_nodes
+        lambda given: can_be_clipped(given) and 1 < given.instants <= LARGEST / given.n_nodes
     )
 
     def _make(self) -> None:

@@ -15,6 +15,8 @@ BESIDE = "#B58500"
 FORCE = "#D55E00"
 STICK, FORWARD, BACKWARD, OPENED = "#C9CDD1", "#E69F00", "#0072B2", "#4D4D4D"
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}
+KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENED}
+"""What a legend calls each status."""
 BODY, EDGE = "#8FAAC2", "#607D8B"
 CUT = "#8A8A8A"
 """Of the lines where substructures meet."""

@@ -6,30 +6,18 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import ColorBar, LinearColorMapper, Range1d
+from bokeh.models import DataRange1d, LinearColorMapper
 from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.colors import (
-    BACKWARD,
-    ERROR,
-    EXACT,
-    FORWARD,
-    RANKS,
-    REFERENCE,
-    STATUS,
-    STICK,
-)
-from app.views.view import View, extent, hover, joined, key_of
+from app.views.colors import ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
+from app.views.view import View, color_bar, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
 EDGE = "#546E7A"
-RINGS = {"slip +": FORWARD, "slip −": BACKWARD, "selected": ERROR}
-STATUSES = {"stick": STICK, "slip +": FORWARD, "slip −": BACKWARD}
-
 COLORS = [color for color in RANKS if color != ERROR]
 """Of wires; the broken one has a colour of its own."""
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
@@ -53,24 +41,18 @@ class CrossSection(RopePlot):
     needs = frozenset({"section"})
 
     def _make(self) -> None:
-        made = self.begin(match_aspect=True, x_range=Range1d(-1, 1), y_range=Range1d(-1, 1))
+        made = self.begin(match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d())
         made.axis.visible = made.grid.visible = False
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         self.add(
             "wires", "circle", "x y radius line_color line_width", also="stress",
             fill_color={"field": "stress", "transform": self.colors},
         )  # fmt: skip
-        self.bar = ColorBar(
-            color_mapper=self.colors, width=9, padding=2, title_text_font_size="11px",
-            title_text_font_style="normal", background_fill_alpha=0.0,
-        )  # fmt: skip
-        made.add_layout(self.bar, "right")
-        for name, color in RINGS.items():
+        self.bar = color_bar(made, self.colors)
+        rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
+        for name, color in rings.items():
             self.mark(name, "white", line_color=color, line_width=3, marker="circle")
-        self.legend(**{name: name for name in RINGS})
-        self._reach, self._size = 1.0, {"inner_width": 300.0, "inner_height": 200.0}
-        for size in self._size:
-            made.on_change(size, self._resize)
+        self.legend(**{name: name for name in rings})
         made.on_event(Tap, self._tap)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -82,8 +64,6 @@ class CrossSection(RopePlot):
         low, high = (end / unit.factor for end in extent([cut["stress"]]))
         self.colors.update(low=low, high=max(high, low + 1e-9))
         self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['place'])}"
-        self._reach = 1.05 * float((np.hypot(*cut["centres"].T) + cut["radii"]).max())
-        self._fit()
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
         slips, chosen = cut["slips"][:, column], cut["wires"] == number
         rings = [
@@ -99,17 +79,6 @@ class CrossSection(RopePlot):
             line_color=rings,
             line_width=np.where(slips != 0, 3.0, np.where(chosen, 2.5, 1.0)),
         )
-
-    def _resize(self, name: str, old: float, new: float) -> None:
-        self._size[name] = max(float(new), 20.0)
-        self._fit()
-
-    def _fit(self) -> None:
-        """Have circles round: as many pixels a metre across as up."""
-        width, height = self._size.values()
-        across, up = (self._reach * size / min(width, height) for size in (width, height))
-        self.x.span(-across, across)
-        self.y.span(-up, up)
 
     def _tap(self, event: Any) -> None:
         cut = self.state.frame and self.state.frame.extras.get("section")
@@ -128,14 +97,11 @@ class Unrolled(RopePlot):
 
     def _make(self) -> None:
         made = self.begin()
-        colors = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=-1.5, high=1.5)
-        self.add("status", "image", "image x y dw dh", color_mapper=colors)
+        self.add_status()
         self.add("wire_layers", "hspan", "y", color=EDGE, line_width=1.5)
         look = {"fill_alpha": 0, "line_color": ERROR, "line_width": 2}
         self.add("chosen", "rect", "x y width height", **look)
-        for name, color in STATUSES.items():
-            self.mark(name, color)
-        self.legend(**{name: name for name in STATUSES})
+        self.legend(**{key: key for key in KEYS if key != "open"})
         made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:

@@ -8,16 +8,16 @@ import numpy as np
 import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Pan, PanEnd, PanStart, Tap
-from bokeh.models import ColorBar, LinearColorMapper
+from bokeh.models import LinearColorMapper
 from bokeh.palettes import Cividis256, diverging_palette
 from bokeh.plotting import figure
 
-from app.frame import OPEN, Frame, Selection
+from app.frame import Frame, Selection
 from app.units import number, unit_for
-from app.views.colors import BODY, EDGE, GHOST, STATUS
+from app.views.colors import BODY, EDGE, GHOST, KEYS
 from app.views.layout import Layout, layout_of
 from app.views.picture import Handle, Picture
-from app.views.view import View, bare, rounded_up
+from app.views.view import View, bare, color_bar, rounded_up
 from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -26,8 +26,6 @@ NEAR, CLOSE = 22.0, 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
-KEYS = {"stick": 0, "slip →": 1, "slip ←": -1, "open": OPEN}
-"""Colours of what rubs."""
 SIGNED = diverging_palette(
     ("#053061", "#2166AC", "#67A9CF", "#D1E5F0", "#F2F2F2"),
     ("#67001F", "#B2182B", "#EF8A62", "#FDDBC7", "#F2F2F2"),
@@ -76,8 +74,8 @@ class Scene(View):
             "words", "text", "x y text text_align text_color", text_font_size="14px",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
-        for name, status in KEYS.items() if self.shows_status else ():
-            self.mark(name, STATUS[status])
+        for key, color in KEYS.items() if self.shows_status else ():
+            self.mark(key, color)
         self.mark("note", EDGE, alpha=0.0)
         names = [name for name in (*KEYS, "note") if name in self._glyphs]
         self._keys = self.legend("center", **{name: name for name in names})
@@ -186,12 +184,7 @@ class Stress(Scene):
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         color = {"field": "value", "transform": self.colors}
         self.add("quads", "patches", "xs ys", also="value", fill_color=color, line_color=color)
-        self.bar = ColorBar(
-            color_mapper=self.colors, width=9, padding=2, margin=0, title_standoff=4,
-            title_text_font_size="11px", title_text_font_style="normal",
-            major_label_text_font_size="11px", background_fill_alpha=0.0,
-        )  # fmt: skip
-        made.add_layout(self.bar, "right")
+        self.bar = color_bar(made, self.colors)
         super()._draw(made)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:

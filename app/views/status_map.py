@@ -6,13 +6,10 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import LinearColorMapper
 
 from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
-from app.views.colors import CUT, ERROR, EXACT, STATUS
+from app.views.colors import CUT, ERROR, EXACT, KEYS
 from app.views.view import View, extent, hover, joined
-
-ENTRIES = {"slip −": -1, "stick": 0, "slip +": 1, "open": 2}
 
 
 class StatusMap(View):
@@ -25,16 +22,13 @@ class StatusMap(View):
     def _make(self) -> None:
         made = self.begin(("x", "m"), ("t", "s"))
         made.grid.visible = False
-        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        image = self.add("status", "image", "image x y dw dh", color_mapper=colors)
+        image = self.add_status()
         self.add("cuts", "vspan", "x", color=CUT, alpha=0.6, line_width=1)
         self.add("front", color=EXACT, width=3)
         self.add("ghost", "segment", "x0 y0 x1 y1", color="#000000", width=1)
         self.add("now", "hspan", "y", color=ERROR, line_width=2)
         self.add("place", "vspan", "x", color=ERROR, alpha=0.7, line_width=1)
-        for title, status in ENTRIES.items():
-            self.mark(title, STATUS[status])
-        self.legend(**{title: title for title in ENTRIES}, front="closed form", ghost="ghost")
+        self.legend(**{key: key for key in KEYS}, front="closed form", ghost="ghost")
         hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         made.on_event(Tap, self._select)
         self._ghost_of: object = None

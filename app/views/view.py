@@ -11,12 +11,14 @@ from typing import Any, ClassVar
 import numpy as np
 from bokeh.core.properties import value
 from bokeh.models import (
+    ColorBar,
     ColumnDataSource,
     CrosshairTool,
     GlyphRenderer,
     HoverTool,
     Legend,
     LegendItem,
+    LinearColorMapper,
     NumeralTickFormatter,
     Range1d,
     Title,
@@ -27,7 +29,7 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Run, Selection
 from app.state import PageState
 from app.units import Unit, unit_for
-from app.views.colors import CUT
+from app.views.colors import CUT, KEYS, STATUS
 from solver.settings import Settings
 
 TOOLS = "pan,box_zoom,wheel_zoom,reset,save,fullscreen"
@@ -197,6 +199,13 @@ class View:
         self._glyphs.setdefault(name, []).append(renderer)
         return renderer
 
+    def add_status(self) -> GlyphRenderer:
+        """An image of statuses, and a mark for each in the legend."""
+        for key, color in KEYS.items():
+            self.mark(key, color)
+        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
+        return self.add("status", "image", "image x y dw dh", color_mapper=colors)
+
     def mark(self, name: str, color: str, **look: Any) -> None:
         """A square that stands in the legend only."""
         look = {"marker": "square", "size": 10, "color": color} | look
@@ -261,6 +270,17 @@ def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> fi
     made.outline_line_color = None
     made.background_fill_alpha = made.border_fill_alpha = 0.0
     return made
+
+
+def color_bar(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
+    """A bar beside a figure that says what its colours mean."""
+    bar = ColorBar(
+        color_mapper=colors, width=9, padding=2, margin=0, title_standoff=4,
+        title_text_font_size="11px", title_text_font_style="normal",
+        major_label_text_font_size="11px", background_fill_alpha=0.0, **look,
+    )  # fmt: skip
+    made.add_layout(bar, "right")
+    return bar
 
 
 def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:

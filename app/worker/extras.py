@@ -15,14 +15,13 @@ from app.worker.geometry import StressField, floats, thinned
 from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from solver.discrete import Problem
 from solver.discrete.probes import AxialForce
-from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
-from solver.scenes import kind_of, structure_of
+from solver.scenes import kind_of
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import Brought
 from solver.study.quantities.clip_measures import can_be_clipped, clips_in, products_in
@@ -33,7 +32,7 @@ from solver.study.quantities.slips import slips_of
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
 
-MOST_SPECTRA, MOST_VALUES = 60, 64
+MOST_SPECTRA, MOST_VALUES = 24, 64
 """Substructures, and singular values of each, that are shown at most."""
 MOST_WIRES, MOST_PLACES, MOST_MODES = 6, 201, 5
 """Wires, places along them, and modes that are shown at most."""
@@ -54,9 +53,8 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
     of a strand that is bent, else None.
     """
-    rope = structure_of(sampler.settings)
-    if isinstance(rope, Rope):
-        return axial_force_of_rope(rope, sampler, iterate, needs)
+    if sampler.rope is not None:
+        return axial_force_of_rope(sampler.rope, sampler, iterate, needs)
     if kind_of(sampler.settings) != "wires":
         return None
     force = _axial_of(sampler)
@@ -266,16 +264,6 @@ def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
 Extra = Callable[["Sampler", Iterate, Needs], Any]
 
 
-def _of_rope(extra: Callable[[Rope, Sampler, Iterate, Needs], Any]) -> Extra:
-    """An extra of a strand that is bent; None of all else."""
-
-    def of_rope(sampler: Sampler, iterate: Iterate, needs: Needs) -> Any:
-        rope = structure_of(sampler.settings)
-        return extra(rope, sampler, iterate, needs) if isinstance(rope, Rope) else None
-
-    return of_rope
-
-
 EXTRAS: dict[str, Extra] = {
     "spectra": spectra,
     "axial force": axial_force,
@@ -285,8 +273,7 @@ EXTRAS: dict[str, Extra] = {
     "clips": clips,
     "beside": beside,
     "stress": stress,
-    "section": _of_rope(section),
-    "all_wires": _of_rope(all_wires),
-    "wire_ranges": _of_rope(wire_ranges),
 }
 """By the name that a view needs them by."""
+OF_ROPE = {"section": section, "all_wires": all_wires, "wire_ranges": wire_ranges}
+"""Those of a strand that is bent, which have it as their first argument."""
