@@ -94,8 +94,9 @@ def test_an_arrow_has_the_length_of_its_value() -> None:
     for phase in (0.75, 0.5 + math.asin(0.5) / (2.0 * math.pi)):
         picture = shown(frame, phase).picture
         assert picture is not None
-        arrow = next(arrows[0] for act, (_, arrows) in picture.acts.items() if act.symbol == "F")
-        lengths.append((np.hypot(*(arrow.line[-1] - arrow.line[0])), arrow.value))
+        arrows = next(each for each in picture.arrows if each.act.symbol == "F")
+        (line,), value = arrows.lines, arrows.act.values[round(phase * 20)]
+        lengths.append((np.hypot(*(line[-1] - line[0])), value))
     (full, peak), (part, value) = lengths
     assert part / full == pytest.approx(value / peak, rel=1e-6)
 
@@ -111,8 +112,8 @@ def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     picture = view.picture
     assert picture is not None
     handle = next(one for one in picture.handles if one.setting == "peak")
-    arrow = next(arrows[0] for act, (_, arrows) in picture.acts.items() if act.symbol == "F")
-    half = picture.layout.page(0.5 * (arrow.base + arrow.handle), 0.0)
+    arrows = next(each for each in picture.arrows if each.act.symbol == "F")
+    half = picture.layout.page(0.5 * (arrows.base[0] + arrows.handles[0]), 0.0)
     start = picture.layout.page(handle.place, 0.0)
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
@@ -133,14 +134,14 @@ def test_bands_meet_between_points_of_different_status() -> None:
     points = np.stack([np.arange(4.0), np.zeros(4)], axis=1)
     lines = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
     assert np.allclose(lines[0][:3, 0], [0.0, 1.0, 1.5])
-    assert np.allclose(lines[1][:, 0], [1.5, 2.0, 3.0])
-    assert np.isnan(lines[0][3:]).all()
+    assert np.allclose(lines[1][:3, 0], [1.5, 2.0, 3.0])
+    assert all(np.isnan(line[3:]).all() for line in lines.values())
 
 
 def test_bands_end_where_a_wire_goes_behind() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, np.nan], [3.0, 0.0], [4.0, 0.0]])
     lines = bands(points, np.zeros(5, dtype=np.intp), np.zeros(5, dtype=np.int8))
-    assert np.array_equal(lines[0], points, equal_nan=True)
+    assert np.array_equal(lines[0][:5], points, equal_nan=True)
 
 
 def test_other_views_show_every_instant(frame: Frame) -> None:

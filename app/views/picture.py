@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,16 +11,14 @@ import numpy as np
 
 from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrow, Word, arrows_of, beam_of, color_of, gap_of, strokes_of, words_of
+from app.views.acts import Arrows, Word, arrows_of, color_of, gap_of, gapped, strokes_of, words_of
 from app.views.colors import EDGE, ERROR, FORCE, STATUS
 from app.views.layout import BAND, IMAGE, LETTER, Layout, turned
-from app.views.view import joined
 from solver.arrays import Array
-from solver.discrete.structure import Act
 
 Columns = dict[str, Any]
-Strokes = list[tuple[list[Array], str, float]]
-"""Lines on the page that have a colour and a width, px."""
+Strokes = list[tuple[Array, str, float]]
+"""Lines, NaN between them, with a colour and a width, px."""
 
 
 @dataclass(frozen=True)
@@ -67,35 +65,31 @@ class Picture:
 
     @cached_property
     def points(self) -> Array:
-        """Contact points on the page, px."""
+        """Contact points, px from the middle of the foot."""
         places = self._geometry.points
         local = self._moved(places, self.frame.deformed.points[:, :, self.column])
         if self._described.height is not None and self._described.bodies == 1:
             # Of rods, a band is thinner than the room that is left for it.
             local[places[:, 1] <= 1e-6 * self.layout.length, 1] -= 0.5 * BAND
-        return self._page(local)
+        return local
 
     @cached_property
-    def acts(self) -> dict[Act, tuple[Array, list[Arrow]]]:
-        """Where all that acts does, and its arrows."""
-        found = {}
-        for act in self._described.acts:
-            places = self._follow(act.places * [self.layout.length, self.layout.top])
-            arrows = arrows_of(
-                act, self._described, self.layout, self.peaks[act.where], self._now, places
-            )
-            found[act] = places, arrows
-        return found
+    def arrows(self) -> list[Arrows]:
+        """Those of all that acts."""
+        size, described = [self.layout.length, self.layout.top], self._described
+        places = [self._follow(act.places * size) for act in described.acts]
+        given = described, self.layout, self.peaks, self._now
+        return [arrows_of(*each, *given) for each in zip(described.acts, places, strict=True)]
 
     @cached_property
     def handles(self) -> list[Handle]:
         """All that can be dragged."""
         handles = []
-        for act, (_, arrows) in self.acts.items():
-            name = self.behind.get(act.where)
-            if name is not None and arrows:
-                arrow = max(arrows, key=lambda one: abs(one.value))
-                handles.append(Handle(name, arrow.handle, color_of(act), arrow.scaled))
+        for arrows in self.arrows:
+            name = self.behind.get(arrows.act.where)
+            if name is not None and len(arrows.handles):
+                place = arrows.handles[arrows.longest]
+                handles.append(Handle(name, place, color_of(arrows.act), arrows.scaled))
         gap = gap_of(self._described, self.layout, self.factor)
         if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
             depth = -float(gap[-1, 1])
@@ -110,18 +104,18 @@ class Picture:
 
     def columns(self, *, with_status: bool) -> dict[str, Columns]:
         """Columns of all sources, by their names, with the status of what rubs or without."""
-        parts = self._lines(self._geometry.outlines)
+        parts = _drawn(self._geometry.outlines, self.nodes)
         image = np.zeros((0, 2))
         if any(hold.kind == "image" for hold in self._described.holds):
             # The bodies go on below, turned by half a turn, as far as there is room.
             image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
         x, y = self._page(np.reshape([handle.place for handle in self.handles], (-1, 2))).T
-        heads = [[self._page(arrow.head) for arrow in arrows] for _, arrows in self.acts.values()]
+        heads = [(gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows]
         return {
             "image": _pair(self._page(image)),
             "bodies": _pair(self._page(parts)),
-            "strokes": self._strokes(self._bands() if with_status else []),
-            "heads": _joined(heads) | {"color": [color_of(act) for act in self.acts]},
+            "strokes": self._columns(self._strokes(self._bands() if with_status else [])),
+            "heads": self._columns(heads),
             "marks": {"x": x, "y": y, "line_color": [handle.color for handle in self.handles]},
             "words": self._words(),
         }
@@ -147,9 +141,6 @@ class Picture:
         away = ((self._geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
         return self._moved(places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column])
 
-    def _lines(self, nodes: Array) -> Array:
-        return _drawn(nodes, self.nodes)
-
     @cached_property
     def _at_break(self) -> Array:
         """Nodes of both sides of a break, (2, 2); none where no body is broken."""
@@ -164,23 +155,38 @@ class Picture:
     def _to_place(self, present: float, pointer: Array) -> float:
         return float(pointer[0]) / self.layout.scale[0] + 0.5 * self.layout.length
 
-    def _strokes(self, bands: Strokes) -> Columns:
-        """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
-        rims = self._page(self._lines(self._geometry.rims))
-        broken = list(self._page(self.nodes[self._at_break]))
-        strokes = [([rims], EDGE, 1.4), (self._holds(), EDGE, 1.3), *bands]
-        strokes += [(broken, ERROR, 3.0), *self._arrows()]
-        lines, colors, widths = zip(*strokes, strict=True)
-        return _joined(lines) | {"line_color": list(colors), "line_width": list(widths)}
+    def _columns(self, strokes: Strokes) -> Columns:
+        """On the page; binary arrays, which go fast to the browser."""
+        pages = [self._page(line).T.astype(np.float32) for line, _, _ in strokes]
+        return {
+            "xs": [x for x, _ in pages],
+            "ys": [y for _, y in pages],
+            "line_color": [color for _, color, _ in strokes],
+            "line_width": [width for _, _, width in strokes],
+        }
 
-    def _holds(self) -> list[Array]:
+    def _strokes(self, bands: Strokes) -> Strokes:
+        """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
+        acts: Strokes = [
+            (each.strokes, color_of(each.act), 1.6 if len(each.lines) > 3 else 3.2)
+            for each in self.arrows
+        ]
+        return [
+            (_drawn(self._geometry.rims, self.nodes), EDGE, 1.4),
+            (self._holds(), EDGE, 1.3),
+            *bands,
+            (gapped(self.nodes[self._at_break]), ERROR, 3.0),
+            *acts,
+        ]
+
+    def _holds(self) -> Array:
         foot = self._follow(np.array([[self.layout.length, 0.0]]))[0]
         strokes = strokes_of(self._described, self.layout, self.factor, self._now, foot)
         if self._described.tilt is not None:
             corner = np.array([-0.5 * self.layout.size[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * self.layout.size[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
-        return [self._page(stroke) for stroke in strokes]
+        return np.concatenate([np.zeros((0, 2)), *strokes])
 
     def _bands(self) -> Strokes:
         """What rubs, by its status, on a rim where there is contact."""
@@ -190,22 +196,14 @@ class Picture:
         if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
         rims = [line for kind, line in lines.items() if kind != OPEN]
-        return [(rims, EDGE, width + 2.0)] + [
-            ([line], STATUS[kind], 0.5 * width if kind == OPEN else width)
+        return [(np.concatenate([np.zeros((0, 2)), *rims]), EDGE, width + 2.0)] + [
+            (line, STATUS[kind], 0.5 * width if kind == OPEN else width)
             for kind, line in lines.items()
         ]
 
-    def _arrows(self) -> Strokes:
-        strokes = []
-        for act, (_, arrows) in self.acts.items():
-            lines = [arrow.shaft for arrow in arrows] + beam_of(arrows)
-            width = 1.6 if len(arrows) > 3 else 3.2
-            strokes.append(([self._page(line) for line in lines], color_of(act), width))
-        return strokes
-
     def _words(self) -> Columns:
         """What acts, and the slope; moved inwards where it would be cut."""
-        words, layout = words_of(self._described, self.layout, self.acts, self._now), self.layout
+        words, layout = words_of(self._described, self.layout, self.arrows, self._now), self.layout
         places = [self._page(word.place) for word in words]
         if self._described.tilt is not None:
             corner = np.array([0.5 * layout.size[0] + 30.0, 4.0])
@@ -227,17 +225,17 @@ class Picture:
 def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
     """Lines along contact points by their status, each to the middle between it and the next.
 
-    Points, shape (n, 2), are NaN where their chain is broken, and so are lines between stretches.
+    Points, shape (n, 2), are NaN where their chain is broken, and so are lines behind stretches.
     """
     is_joined = chains[1:] == chains[:-1]
     cuts = np.flatnonzero(~is_joined | (status[1:] != status[:-1]))
     middles = np.where(is_joined[cuts, None], 0.5 * (points[cuts + 1] + points[cuts]), np.nan)
-    path = np.insert(points, cuts + 1, middles, axis=0)
+    path = np.append(np.insert(points, cuts + 1, middles, axis=0), [[np.nan, np.nan]], axis=0)
     before, after = (np.insert(status, cuts + 1, status[side]) for side in (cuts, cuts + 1))
     lines = {}
     for kind in np.unique(status):
-        is_on = (before == kind) | (after == kind)
-        kept = is_on | np.append(False, is_on[:-1])
+        is_on = np.append((before == kind) | (after == kind), False)
+        kept = is_on | np.roll(is_on, 1)
         lines[int(kind)] = np.where(is_on[:, None], path, np.nan)[kept]
     return lines
 
@@ -250,9 +248,3 @@ def _drawn(lines: Array, nodes: Array) -> Array:
 def _pair(line: Array) -> Columns:
     x, y = line.T.astype(np.float32)
     return {"x": x, "y": y}
-
-
-def _joined(lines: Sequence[Sequence[Array]]) -> Columns:
-    """Lines, several as one; binary arrays, which go fast to the browser."""
-    both = [joined([line.T for line in some]).astype(np.float32) for some in lines]
-    return {"xs": [x for x, _ in both], "ys": [y for _, y in both]}

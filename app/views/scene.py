@@ -67,7 +67,7 @@ class Scene(View):
         self.add("bodies", "patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "multi_line", "xs ys line_color line_width")
-        self.add("heads", "patches", "xs ys color")
+        self.add("heads", "patches", "xs ys line_color", fill_color="line_color", also="line_width")
         look = {"size": 11, "fill_color": "white", "line_width": 2.5}
         self.add("marks", "scatter", "x y line_color", **look)
         self.add(
@@ -167,7 +167,7 @@ class Scene(View):
         picture = self.picture
         if picture is None:
             return
-        away = np.hypot(*(picture.points - [event.x, event.y]).T)
+        away = np.hypot(*(picture.points - picture.to_local(event.x, event.y)).T)
         if np.any(away <= CLOSE):
             chain = int(picture.frame.run.geometry.chains[int(np.nanargmin(away))])
             self.state.select(interface=list(picture.frame.run.interfaces)[chain])
