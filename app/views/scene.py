@@ -79,10 +79,7 @@ class Scene(View):
         self.mark("note", EDGE, alpha=0.0)
         names = [name for name in (*KEYS, "note") if name in self._glyphs]
         self._keys = self.legend("center", **{name: name for name in names})
-        self._keys.update(
-            location="bottom_left", click_policy="none", background_fill_alpha=0.0,
-            label_text_font_size="12px", styles={},
-        )  # fmt: skip
+        self._keys.location = "bottom_left"
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant."""

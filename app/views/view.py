@@ -37,13 +37,14 @@ TEXT = "12px"
 """Size of text in plots, of which the theme takes shares."""
 LONGEST = 16
 """Letters in a line of the title beside a plot: a small one is no higher."""
+ABOVE = {"margin-left": "-44px", "top": "-3px"}
+"""Has a legend begin at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 8px !important; }
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
-"""Lets a legend of seven entries stand in one line, from the left end of the figure on; the theme
-keeps them farther apart."""
+"""Lets a legend of seven entries stand in one line; the theme keeps them farther apart."""
 
 
 class Axis:
@@ -315,7 +316,7 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
 
 
 def legend(made: figure, entries: dict[str, list[GlyphRenderer]], place: str = "above") -> Legend:
-    """A legend in one line above the plot, where it covers no curve; a click hides a curve."""
+    """A legend in one line, above the plot it covers no curve; a click hides a curve."""
     box = Legend(
         items=list(entries.items()),
         orientation="horizontal",
@@ -324,7 +325,8 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]], place: str = "
         margin=2,
         label_height=12,
         click_policy="hide",
-        styles={"font-size": TEXT, "margin-left": "-44px", "top": "-3px"},
+        background_fill_alpha=0.0,
+        styles={"font-size": TEXT} | (ABOVE if place == "above" else {}),
         stylesheets=[CLOSE],
     )
     made.add_layout(box, place)
