@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from bokeh.events import Tap
 
-from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
+from app.frame import Floats, Frame, Selection
 from app.views.colors import CUT, ERROR, EXACT, KEYS
 from app.views.view import View, extent, hover, joined
 
@@ -31,7 +31,6 @@ class StatusMap(View):
         self.legend(**{key: key for key in KEYS}, front="closed form", ghost="ghost")
         hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         made.on_event(Tap, self._select)
-        self._ghost_of: object = None
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of every point at every instant."""
@@ -52,19 +51,7 @@ class StatusMap(View):
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
-        self._show_ghost(ghost, selection, key)
-
-    def _show_ghost(self, ghost: Frame | None, selection: Selection, key: object) -> None:
-        """Show the lines between points and instants of different status."""
-        name = selection.interface_of(ghost.run) if ghost is not None else ""
-        fields = ghost.contact.get(name) if ghost is not None else None
-        # What is many lines is found once.
-        if (fields, key, self.ghost_name) == self._ghost_of:
-            return
-        self._ghost_of = fields, key, self.ghost_name
-        lines = np.zeros((4, 0))
-        if ghost is not None and fields is not None:
-            lines = _boundary(ghost.run, ghost.run.interfaces[name], fields.status)
+        lines = np.zeros((4, 0)) if ghost is None else _boundary(ghost, selection)
         (x0, x1), (y0, y1) = self.x(lines[::2]), self.y(lines[1::2])
         self.fill("ghost", self.ghost_name, x0=x0, y0=y0, x1=x1, y1=y1)
 
@@ -77,9 +64,13 @@ class StatusMap(View):
         self.state.select(phase=phase, place=self.x.si(event.x))
 
 
-def _boundary(run: Run, interface: Interface, status: Bytes) -> Floats:
+def _boundary(frame: Frame, selection: Selection) -> Floats:
     """Ends x0, y0, x1, y1 of the lines between different status, (4, n_lines), m and s."""
-    x, t = _edges(interface.positions), _edges(run.instants)
+    name = selection.interface_of(frame.run)
+    if name not in frame.contact:
+        return np.zeros((4, 0))
+    status = frame.contact[name].status
+    x, t = _edges(frame.run.interfaces[name].positions), _edges(frame.run.instants)
     i, j = np.nonzero(status[1:] != status[:-1])
     upright = np.stack([x[i + 1], t[j], x[i + 1], t[j + 1]])
     i, j = np.nonzero(status[:, 1:] != status[:, :-1])

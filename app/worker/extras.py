@@ -11,10 +11,9 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import StressField, floats, thinned
+from app.worker.geometry import DrawnRods, StressField, floats, thinned
 from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from solver.discrete import Problem
-from solver.discrete.probes import AxialForce
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
@@ -55,26 +54,22 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     """
     if sampler.rope is not None:
         return axial_force_of_rope(sampler.rope, sampler, iterate, needs)
-    if kind_of(sampler.settings) != "wires":
+    drawn = sampler.drawn
+    if kind_of(sampler.settings) != "wires" or not isinstance(drawn, DrawnRods):
         return None
-    force = _axial_of(sampler)
+    force = drawn.axial
     count = int(force.wires.max()) + 1
     places = thinned(len(force.wires) // count, MOST_PLACES)
     broken = int(getattr(sampler.settings, "broken", 0))
     wires = sorted({*thinned(count, MOST_WIRES).tolist(), *([broken - 1] if broken else [])})
-    values = [force(iterate.displacement[:, column]) for column in sampler.columns]
-    shown = np.stack(values, axis=1).reshape(count, -1, len(values))[np.ix_(wires, places)]
+    values = drawn.axial_force(iterate)
+    shown = values.reshape(count, -1, values.shape[1])[np.ix_(wires, places)]
     return {
         "x": floats(force.positions[places]),
         "force": floats(shown),
         "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires],
         "stuck": None,
     }
-
-
-@lru_cache(maxsize=1)
-def _axial_of(sampler: Sampler) -> AxialForce:
-    return AxialForce(sampler.problem)
 
 
 def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:

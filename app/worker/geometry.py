@@ -22,6 +22,8 @@ THICKNESS, PITCH = 0.08, 0.1
 """Of a rod as it is drawn, which has none in the model, and between two rods; shares of length."""
 MOST_POINTS = 200
 """Contact points of an interface, and nodes of a rod, that are drawn at most."""
+NONE = -1
+"""In place of a degree of freedom."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
 
@@ -65,14 +67,15 @@ class Drawn:
             points, pairs = np.unique(law.points, return_index=True)
             kept = thinned(len(points), MOST_POINTS)
             chosen.append(first + kept)
-            tangent = law.tangent.above[pairs[kept]]
-            normal = law.normal.component.above[pairs[kept]] if law.normal else tangent
-            dofs.append(problem.row_dofs[np.stack([tangent, normal], axis=1)])
+            moving = [law.tangent, *([law.normal.component] if law.normal else [])]
+            rows = np.stack([component.above[pairs[kept]] for component in moving], axis=1)
+            # What does not move off its support has no degree of freedom there.
+            own = problem.row_dofs[rows]
+            dofs.append(np.pad(own, ((0, 0), (0, 2 - len(moving))), constant_values=NONE))
             chains.append(np.full(len(kept), number))
             first += len(points)
         self._points, self._columns = np.concatenate(chosen), columns
         self._dofs = np.concatenate(dofs)
-        self._moves = np.array([1.0, 0.0 if heights is not None else 1.0])[:, None]
         places = problem.positions[self._dofs[:, 0]]
         if heights is not None:
             places = np.stack([places, heights[self._dofs[:, 0]]], axis=1)
@@ -82,7 +85,8 @@ class Drawn:
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the bodies have moved."""
-        moved = iterate.displacement[self._dofs][:, :, self._columns] * self._moves
+        moved = iterate.displacement[self._dofs][:, :, self._columns]
+        moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
         return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
 
@@ -114,7 +118,7 @@ class DrawnRods(Drawn):
             size += 2 * len(places)
             first_element += len(part.dofs) - 1
         self._along = np.concatenate(kept)
-        self._force, self._elements = AxialForce(problem), np.concatenate(elements)
+        self.axial, self._elements = AxialForce(problem), np.concatenate(elements)
         nodes = np.stack([problem.positions[self._along], np.concatenate(lows)], axis=1)
         quads = np.concatenate(corners).astype(np.int32)
         mesh = floats(nodes), quads, np.concatenate(parts)
@@ -122,9 +126,12 @@ class DrawnRods(Drawn):
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Axial force, as rods have no height."""
+        return StressField("axial force", "N", floats(self.axial_force(iterate)[self._elements]))
+
+    def axial_force(self, iterate: Iterate) -> Array:
+        """That in all elements, shape (n_elements, n_instants), N."""
         moved = iterate.displacement[:, self._columns].T
-        force = np.stack([self._force(at_once)[self._elements] for at_once in moved], axis=1)
-        return StressField("axial force", "N", floats(force))
+        return np.stack([self.axial(at_once) for at_once in moved], axis=1)
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         """They move along themselves."""
