@@ -12,7 +12,7 @@ from bokeh.palettes import Viridis256
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.view import View, color_bar, extent, hover, whole
+from app.views.view import ExtraView, View, color_bar, extent, hover, whole
 from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
@@ -30,7 +30,7 @@ FLOOR, EXACT = 1e-6, 1e-9
 """Smallest error that is shown, and error up to which clips are exact but for rounding."""
 
 
-class Spectra(View):
+class Spectra(ExtraView):
     """One curve a substructure: how fast it falls says how many modes it needs."""
 
     name = "Singular values"
@@ -47,11 +47,7 @@ class Spectra(View):
         hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         self._bar = color_bar(made, self._colors, ticker=BasicTicker(**WHOLE))
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the singular values, as far as the frame has them."""
-        spectra = frame.extras.get("spectra")
-        if spectra is None:
-            return
+    def _show(self, spectra: Any, frame: Frame, selection: Selection) -> None:
         count = frame.run.settings.n_substructures
         ys = [values[values > 0.1 * LEAST] for values in spectra]
         modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
@@ -63,7 +59,7 @@ class Spectra(View):
         self._colors.high = max(count, 2)
 
 
-class ModePlot(View):
+class ModePlot(ExtraView):
     """Curves of the largest modes, one colour a rank."""
 
     needs = frozenset({"modes"})
@@ -91,11 +87,7 @@ class SpaceModes(ModePlot):
     # Those of plane bodies are no curves.
     applies = staticmethod(lambda given: given.applies("pgd_modes") and kind_of(given) != "plane")
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the modes over the places of the substructure."""
-        modes = frame.extras.get("modes")
-        if modes is None:
-            return
+    def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         self.x.rename(f"x ({modes['text']})", "m")
         self.x.hold((frame.run.number, modes["substructure"]), *extent([modes["x"]]))
         titles = ["mode 1", *(str(n + 1) for n in range(1, len(modes["space"])))]
@@ -109,11 +101,8 @@ class TimeFunctions(ModePlot):
 
     applies = staticmethod(lambda settings: settings.applies("pgd_modes") and settings.instants > 1)
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the time functions."""
-        modes, run = frame.extras.get("modes"), frame.run
-        if modes is None:
-            return
+    def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
+        run = frame.run
         self.x.rename(f"t (substructure {modes['substructure'] + 1})", "s")
         self.x.hold(run.number, *extent([run.instants]))
         self.fill("now", x=self.x(run.instants[[run.column(selection.phase)]]))
@@ -160,7 +149,7 @@ class BasisSizes(View):
         self.state.select(substructure=min(max(round(event.y) - 1, 0), total - 1))
 
 
-class Clips(View):
+class Clips(ExtraView):
     """Error of this iterate's friction over the numbers that are kept of it."""
 
     name = "Clips"
@@ -184,11 +173,7 @@ class Clips(View):
         self.legend(SVD="SVD", PGD="PGD", clips="clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show how the error falls with each way to keep the friction."""
-        clips = frame.extras.get("clips")
-        if clips is None:
-            return
+    def _show(self, clips: Any, frame: Frame, selection: Selection) -> None:
         table = float(clips["table"])
         kept = {n: clips[n] for n in ("SVD", "PGD", "clips") if clips[n] is not None}
         numbers = np.concatenate([way[0] for way in kept.values()])

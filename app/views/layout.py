@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from app.frame import Geometry
+from app.views.view import rounded_up
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 
@@ -82,10 +84,7 @@ class Layout:
             return factor or 1.0
         if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
-        power = 10.0 ** math.floor(math.log10(1.0 / share))
-        return float(
-            f"{max(step * power for step in (1, 2, 5) if step * power <= 1.001 / share):.6g}"
-        )
+        return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
 
 
 def turned(points: Array, angle: float) -> Array:
@@ -106,6 +105,7 @@ def is_opposite(act: Act, other: Act) -> bool:
     return act.unit == other.unit and np.array_equal(act.values, -other.values)
 
 
+@lru_cache(maxsize=16)
 def layout_of(geometry: Geometry, width: float, height: float) -> Layout:
     """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
     below = _layout(geometry, width, height, 2 if width < NARROW else 1)

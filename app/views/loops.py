@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from bokeh.models import Range1d
@@ -10,7 +11,7 @@ from bokeh.models import Range1d
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE, SCALE, scaled
-from app.views.view import View, extent, hover, key_of, whole
+from app.views.view import ExtraView, View, extent, hover, key_of, whole
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
 from solver.study.quantities.cycles import cycles_in
@@ -73,7 +74,7 @@ def _beside(frame: Frame) -> tuple[Floats, Floats]:
     return beside["values"][rows], np.interp(t[rows], instants, frame.loop[1])
 
 
-class CyclePlot(View):
+class CyclePlot(ExtraView):
     """A plot of what cycles of the load do."""
 
     needs = frozenset({"cycles"})
@@ -99,11 +100,8 @@ class Cycles(CyclePlot):
         self.add("now", "scatter", color=ERROR, size=10)
         self._add_legend()
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the loop of each cycle."""
-        cycles, run, loop = frame.extras.get("cycles"), frame.run, frame.loop
-        if cycles is None:
-            return
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        run, loop = frame.run, frame.loop
         self.x.rename(*run.across)
         self.y.rename(*run.up)
         for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
@@ -131,11 +129,7 @@ class CycleEnergy(CyclePlot):
         self._add_legend()
         hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show a bar for each cycle."""
-        cycles = frame.extras.get("cycles")
-        if cycles is None:
-            return
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
@@ -158,11 +152,9 @@ class Fretting(CyclePlot):
         self.legend(work="work", slip="slip")
         hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
         """Show both, each over its largest value, which the legend has."""
-        cycles, run = frame.extras.get("cycles"), frame.run
-        if cycles is None:
-            return
+        run = frame.run
         name = selection.interface_of(run)
         x = run.interfaces[name].positions
         if len(x) != len(cycles["slip"]):

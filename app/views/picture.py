@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,17 +21,16 @@ Strokes = list[tuple[Array, str, float]]
 """Lines, NaN between them, with a colour and a width, px."""
 
 
-@dataclass(frozen=True)
-class Handle:
-    """What can be dragged: its place, px from the middle of the foot, and what it sets."""
+class Handle(NamedTuple):
+    """What can be dragged: the setting's name, and its place, px from the middle of the foot.
+
+    The value is the setting, by the one at present and where the pointer is.
+    """
 
     setting: str
-    """Its name."""
     place: Array
     color: str
-    """Of what it belongs to."""
     value: Callable[[float, Array], float]
-    """The setting, by the one at present and where the pointer is."""
 
 
 @dataclass(eq=False)

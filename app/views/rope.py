@@ -12,7 +12,7 @@ from bokeh.palettes import Cividis256
 from app.frame import Frame, Selection
 from app.units import unit_for
 from app.views.colors import ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
-from app.views.view import View, color_bar, extent, hover, joined, key_of
+from app.views.view import ExtraView, color_bar, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
 
@@ -23,7 +23,7 @@ COLORS = [color for color in RANKS if color != ERROR]
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
-class RopePlot(View):
+class RopePlot(ExtraView):
     """A plot of a strand that is bent; a tap selects a wire."""
 
     applies = staticmethod(lambda settings: kind_of(settings) == "helices")
@@ -55,11 +55,8 @@ class CrossSection(RopePlot):
         self.legend(**{name: name for name in rings})
         made.on_event(Tap, self._tap)
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the section at the selected instant."""
-        cut, column = frame.extras.get("section"), frame.run.column(selection.phase)
-        if cut is None:
-            return
+    def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
+        column = frame.run.column(selection.phase)
         unit = unit_for(float(np.abs(cut["stress"]).max()), "Pa")
         low, high = (end / unit.factor for end in extent([cut["stress"]]))
         self.colors.update(low=low, high=max(high, low + 1e-9))
@@ -104,11 +101,8 @@ class Unrolled(RopePlot):
         self.legend(**{key: key for key in KEYS if key != "open"})
         made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the status of all wires."""
-        wires, column = frame.extras.get("all_wires"), frame.run.column(selection.phase)
-        if wires is None:
-            return
+    def _show(self, wires: Any, frame: Frame, selection: Selection) -> None:
+        column = frame.run.column(selection.phase)
         count, places = len(wires["wire_layers"]), wires["places"]
         self.x.rename(*(("x", "m") if wires["is_clamped"] else ("polar angle", "°")))
         self.y.rename("wire" if wires["is_clamped"] else "layer", "")
@@ -139,11 +133,7 @@ class StressRanges(RopePlot):
         hover(made, [bars], {"wire": "@x", "layer": "@layer", "range": "@top"})
         made.on_event(Tap, lambda event: self._select(round(event.x) - 1))
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the ranges, coloured by layer."""
-        found = frame.extras.get("wire_ranges")
-        if found is None:
-            return
+    def _show(self, found: Any, frame: Frame, selection: Selection) -> None:
         count = len(found["wire_layers"])
         self.x.span(0.5, count + 0.5)
         self.y.hold(key_of(frame.run), 0.0, 1.08 * float(found["ranges"].max()))
@@ -152,7 +142,7 @@ class StressRanges(RopePlot):
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
 
 
-class AxialForce(View):
+class AxialForce(ExtraView):
     """Force along each wire; a broken one regains it from its break on."""
 
     name = "Force in the wires"
@@ -168,11 +158,9 @@ class AxialForce(View):
         self.legend(**{wire: wire for wire in WIRES}, stuck="all stick", exact="closed form")
         hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+    def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
         """Show the force in each wire, the broken one in its own colour."""
-        axial, run = frame.extras.get("axial force"), frame.run
-        if axial is None:
-            return
+        run = frame.run
         column, known = run.column(selection.phase), run.known("axial force")
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
         key = (*key_of(run), *names)

@@ -9,13 +9,13 @@ import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Pan, PanEnd, PanStart, Tap
 from bokeh.models import LinearColorMapper
-from bokeh.palettes import Cividis256, diverging_palette
+from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
 from app.units import number, unit_for
 from app.views.colors import BODY, EDGE, GHOST, KEYS
-from app.views.layout import Layout, layout_of
+from app.views.layout import layout_of
 from app.views.picture import Handle, Picture
 from app.views.view import View, bare, color_bar, rounded_up
 from solver.scenes import behind
@@ -26,12 +26,6 @@ NEAR, CLOSE = 22.0, 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
-SIGNED = diverging_palette(
-    ("#053061", "#2166AC", "#67A9CF", "#D1E5F0", "#F2F2F2"),
-    ("#67001F", "#B2182B", "#EF8A62", "#FDDBC7", "#F2F2F2"),
-    n=9,
-    midpoint=0.5,
-)
 
 
 class Scene(View):
@@ -47,8 +41,6 @@ class Scene(View):
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
         made.axis.visible = False
         self._draw(made)
-        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
-        self._layout: tuple[object, Layout] | None = None
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
@@ -58,6 +50,7 @@ class Scene(View):
             (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
         ):  # fmt: skip
             made.on_event(event, react)
+        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         for size in self._size:
             made.on_change(size, self._resize)
 
@@ -85,7 +78,7 @@ class Scene(View):
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        layout = self._layout_of(frame)
+        layout = layout_of(run.geometry, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
@@ -109,12 +102,6 @@ class Scene(View):
         self.show("note", note + ", thickness not to scale" * is_rods)
         rows = layout.key_rows
         self._keys.update(orientation="horizontal" if rows else "vertical", nrows=rows or "auto")
-
-    def _layout_of(self, frame: Frame) -> Layout:
-        key = frame.run.geometry, *self._size.values()
-        if self._layout is None or self._layout[0] != key:
-            self._layout = key, layout_of(*key)
-        return self._layout[1]
 
     def _scale_arrows(self, frame: Frame) -> None:
         """Keep how long arrows are for their values, while they stay long enough and fit."""
@@ -197,7 +184,7 @@ class Stress(Scene):
         high = rounded_up(0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
         signed = float(stress.values.min()) < -1e-3 * largest
         self.colors.update(
-            palette=SIGNED if signed else Cividis256, low=-high if signed else 0.0, high=high
+            palette=RdBu11 if signed else Cividis256, low=-high if signed else 0.0, high=high
         )
         self.bar.title = f"{stress.title}, {unit.name}"
         corners = picture.layout.page(picture.nodes[frame.run.geometry.quads], picture.tilt)

@@ -229,12 +229,29 @@ class View:
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
         """Fill a source; the legend has it, by a title, if there is anything in it."""
-        put(self.sources[name], **columns)
+        target = self.sources[name]
+        # What is the same is not sent again.
+        if not all(_equal(target.data[column], new) for column, new in columns.items()):
+            target.data = columns
         self.show(name, any(map(len, columns.values())) and (title or True))
 
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI."""
         self.fill(name, title, x=self.x(x), y=self.y(y))
+
+
+class ExtraView(View):
+    """A view of the one extra that it needs, which the worker sends once the view is in sight."""
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show what a frame has of it."""
+        (name,) = self.needs
+        extra = frame.extras.get(name)
+        if extra is not None:
+            self._show(extra, frame, selection)
+
+    def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
+        raise NotImplementedError
 
 
 def plot(**more: Any) -> figure:
@@ -294,12 +311,6 @@ def source(*columns: str) -> ColumnDataSource:
     return ColumnDataSource({name: [] for name in columns})
 
 
-def put(target: ColumnDataSource, **columns: Any) -> None:
-    """Fill a source, where anything has changed: what is the same is not sent again."""
-    if not all(_equal(target.data[name], new) for name, new in columns.items()):
-        target.data = columns
-
-
 def _equal(old: Any, new: Any) -> bool:
     if isinstance(new, np.ndarray):
         return np.array_equal(old, new, equal_nan=new.dtype.kind == "f")
@@ -347,11 +358,9 @@ def whole(axis: Any) -> None:
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
     """Smallest and largest value of all, as far as they are finite; zeros where there is none."""
     parts = [part for curve in curves if (part := np.asarray(curve)).size]
-    lows, highs = ([float(end(part)) for part in parts] for end in (np.min, np.max))
-    return (
-        min(filter(math.isfinite, lows), default=0.0),
-        max(filter(math.isfinite, highs), default=0.0),
-    )
+    ends = [(float(part.min()), float(part.max())) for part in parts]
+    lows, highs = zip(*[e for e in ends if all(map(math.isfinite, e))] or [(0.0, 0.0)], strict=True)
+    return min(lows), max(highs)
 
 
 def rounded_up(size: float, steps: Iterable[float] = (1.0, 2.0, 5.0, 10.0)) -> float:
