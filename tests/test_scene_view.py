@@ -153,8 +153,8 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
             for phase in (0.0, 0.6):
                 view.update(frame, Selection(phase), None)
     assert all(np.isfinite(values).all() for _, values, _ in paths_of(frame.run))
-    stress = frame.extras["stress"]
-    assert stress.values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
+    _, _, values = frame.extras["stress"]
+    assert values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
 
 
 def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:

@@ -174,20 +174,20 @@ class Stress(Scene):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the stress at the selected instant, as far as the frame has it."""
         super().update(frame, selection, ghost)
-        stress, picture = frame.extras.get("stress"), self.picture
-        if stress is None or picture is None:
+        if frame.extras.get("stress") is None or self.picture is None:
             self.fill("quads", xs=[], ys=[], value=[])
             return
-        largest = float(np.abs(stress.values).max())
-        unit = unit_for(largest, stress.unit)
+        (title, si, values), picture = frame.extras["stress"], self.picture
+        largest = float(np.abs(values).max())
+        unit = unit_for(largest, si)
         # It seldom changes.
         high = rounded_up(0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
-        signed = float(stress.values.min()) < -1e-3 * largest
+        signed = float(values.min()) < -1e-3 * largest
         self.colors.update(
             palette=RdBu11 if signed else Cividis256, low=-high if signed else 0.0, high=high
         )
-        self.bar.title = f"{stress.title}, {unit.name}"
+        self.bar.title = f"{title}, {unit.name}"
         corners = picture.layout.page(picture.nodes[frame.run.geometry.quads], picture.tilt)
         across, up = np.moveaxis(np.round(corners, 1), -1, 0)
-        values = stress.values[:, picture.column] / unit.factor
-        self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=values)
+        now = values[:, picture.column] / unit.factor
+        self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=now)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,12 +26,8 @@ MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
 
 
-class StressField(NamedTuple):
-    """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
-
-    title: str
-    unit: str
-    values: Floats
+StressField = tuple[str, str, Floats]
+"""What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
@@ -126,7 +120,7 @@ class DrawnRods(Drawn):
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Axial force, as rods have no height."""
-        return StressField("axial force", "N", floats(self.axial_force(iterate)[self._elements]))
+        return "axial force", "N", floats(self.axial_force(iterate)[self._elements])
 
     def axial_force(self, iterate: Iterate) -> Array:
         """That in all elements, shape (n_elements, n_instants), N."""
@@ -160,17 +154,16 @@ class DrawnMesh(Drawn):
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """A component of stress, or von Mises' equivalent, its mean in every quadrilateral."""
-        moved, values = self._moved(iterate), settings.values()
-        means = []
-        for place in range(len(self._columns)):
-            stress = self._inside.stress(moved[:, :, place])
+        values, means = settings.values(), []
+        for moved in np.moveaxis(self._moved(iterate), -1, 0):
+            stress = self._inside.stress(moved)
             if component in STRESSES:
                 shown = stress[:, STRESSES[component]]
             else:
                 shown = von_mises(stress, values["poisson"], values["plane"])
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
         title = component if component in STRESSES else "von Mises stress"
-        return StressField(title, "Pa", floats(np.stack(means, axis=1)))
+        return title, "Pa", floats(np.stack(means, axis=1))
 
     def _moved(self, iterate: Iterate) -> Array:
         return self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]

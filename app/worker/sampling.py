@@ -58,7 +58,12 @@ class Sampler:
         self.loop = loop_of(settings, problem)
         structure = structure_of(settings)
         self.rope = structure if isinstance(structure, Rope) else None
-        self.drawn = _drawn(problem, structure, self.columns)
+        self.drawn: DrawnRods | DrawnMesh | DrawnRope
+        if self.rope is not None:
+            self.drawn = DrawnRope(self.rope, self.columns)
+        else:
+            kind = DrawnRods if problem.inside is None else DrawnMesh
+            self.drawn = kind(problem, structure.described(), self.columns)
         self.run = Run(
             number=number,
             settings=settings,
@@ -163,14 +168,6 @@ class Sampler:
         )
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
-
-
-def _drawn(problem: Problem, structure: Any, columns: Array) -> DrawnRods | DrawnMesh | DrawnRope:
-    """The bodies of a structure as they are drawn."""
-    if isinstance(structure, Rope):
-        return DrawnRope(structure, columns)
-    kind = DrawnRods if problem.inside is None else DrawnMesh
-    return kind(problem, structure.described(), columns)
 
 
 def _columns(history: Sequence[Record]) -> dict[str, Floats]:

@@ -78,7 +78,7 @@ class DrawnRope:
         stress = self._forces(iterate.displacement, self._columns)
         stress = stress / self._forces.areas[:, None, None]
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
-        return StressField("wire stress", "Pa", floats(stress[self._quad_wires, element]))
+        return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
     def _angle(self, wire: Array, place: Array) -> Array:
         """Polar angle of outer wires by their number, and at places along the strand."""
