@@ -69,7 +69,7 @@ class ModePlot(ExtraView):
         self.add("now", "vspan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
             self.add(mode, color=color, width=2)
-        self.legend(**{mode: mode for mode in MODES})
+        self.legend(*MODES)
 
     def _draw(self, x: Floats, values: Floats, titles: list[str]) -> None:
         for number, mode in enumerate(MODES):
@@ -170,7 +170,7 @@ class Clips(ExtraView):
         lines.append(self.add("alone", "scatter", size=11, **ring))
         self.add("table", "vspan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
         self._glyphs["clips"].append(lines[-1])
-        self.legend(SVD="SVD", PGD="PGD", clips="clips", table="whole table")
+        self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 
     def _show(self, clips: Any, frame: Frame, selection: Selection) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.frame import ContactFields, Floats, Frame, Interface, Run, Selection
+from app.frame import ContactFields, Floats, Frame, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
 from app.views.view import View, extent, hover, joined, key_of, source
 from solver.scenes import kind_of
@@ -70,7 +70,9 @@ class ContactForce(View):
             self.fill(quantity, title, x=self.x(places[: len(latin)]), **forces)
         self.draw("reference", *_curves(places, reference, column))
         self.show("error", reference is not None)
-        bound = _bound(interface, fields)
+        bound = interface.bound
+        if bound is None:
+            bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
         bound = bound[:, min(column, bound.shape[1] - 1)]
         self.draw("bound", *joined([(places, bound), (places, -bound)]))
         self.fill("cuts", x=self.x(interface.cuts))
@@ -118,12 +120,3 @@ def _curves(places: Floats, fields: ContactFields | None, column: int) -> Floats
     """Friction, and pressure where it is not given, as one curve, shape (2, n)."""
     both = [] if fields is None else [fields.friction, fields.pressure]
     return joined([(places, field[:, column]) for field in both if field is not None])
-
-
-def _bound(interface: Interface, fields: ContactFields) -> Floats:
-    """Largest friction, shape (n_points, n_instants) or (n_points, 1)."""
-    if interface.bound is not None:
-        return interface.bound
-    assert interface.coefficient is not None
-    assert fields.pressure is not None
-    return interface.coefficient * np.maximum(fields.pressure, 0.0)

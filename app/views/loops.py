@@ -34,12 +34,9 @@ class HysteresisLoop(View):
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)
         self.add("beside", color=BESIDE, width=2, dash="dashed")
-        latin = self.add("latin", color=LATIN, width=2.5)
+        latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "scatter", color=ERROR, size=10)
-        self.legend(
-            latin="LATIN", reference="reference", exact="closed form", ghost="ghost",
-            beside="beside",
-        )  # fmt: skip
+        self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
         hover(made, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -53,7 +50,7 @@ class HysteresisLoop(View):
             low, high = extent([frame.loop[row], exact[row], reference[row]])
             axis.hold(key_of(run), min(low, 0.0), max(high, 0.0), 0.08)
         is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
-        self.draw("latin", *frame.loop)
+        self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
         self.draw("exact", *exact)
         self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
@@ -88,6 +85,10 @@ class CyclePlot(ExtraView):
         self.mark("text", CUT, alpha=0.0)
         self.legend(first="cycle 1", last="last", text="text")
 
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        self.show("last", f"cycle {len(cycles['energy'])}")
+        self.show("text", cycles["text"])
+
 
 class Cycles(CyclePlot):
     """Force over displacement from the first cycle to the last, and what becomes of slip."""
@@ -101,6 +102,7 @@ class Cycles(CyclePlot):
         self._add_legend()
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        super()._show(cycles, frame, selection)
         run, loop = frame.run, frame.loop
         self.x.rename(*run.across)
         self.y.rename(*run.up)
@@ -113,8 +115,6 @@ class Cycles(CyclePlot):
         colors = np.array(scaled(count))[shown].tolist()
         self.fill("loops", xs=[x[p] for p in parts], ys=[y[p] for p in parts], color=colors)
         self.draw("now", *loop[:, [run.column(selection.phase)]])
-        self.show("last", f"cycle {count}")
-        self.show("text", cycles["text"])
 
 
 class CycleEnergy(CyclePlot):
@@ -130,14 +130,13 @@ class CycleEnergy(CyclePlot):
         hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        super()._show(cycles, frame, selection)
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
         low, high = extent([energy])
         self.y.hold(key_of(frame.run), min(low, 0.0), max(1.1 * high, 0.0))
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
-        self.show("last", f"cycle {count}")
-        self.show("text", cycles["text"])
 
 
 class Fretting(CyclePlot):
@@ -149,7 +148,7 @@ class Fretting(CyclePlot):
         made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
         work = self.add("work", color=ERROR, width=4, alpha=0.7)
         slip = self.add("slip", color=LATIN, width=2)
-        self.legend(work="work", slip="slip")
+        self.legend("work", "slip")
         hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
 
     def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:

@@ -52,7 +52,7 @@ class CrossSection(RopePlot):
         rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
         for name, color in rings.items():
             self.mark(name, "white", line_color=color, line_width=3, marker="circle")
-        self.legend(**{name: name for name in rings})
+        self.legend(*rings)
         made.on_event(Tap, self._tap)
 
     def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
@@ -98,7 +98,7 @@ class Unrolled(RopePlot):
         self.add("wire_layers", "hspan", "y", color=EDGE, line_width=1.5)
         look = {"fill_alpha": 0, "line_color": ERROR, "line_width": 2}
         self.add("chosen", "rect", "x y width height", **look)
-        self.legend(**{key: key for key in KEYS if key != "open"})
+        self.legend("stick", "slip →", "slip ←")
         made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
 
     def _show(self, wires: Any, frame: Frame, selection: Selection) -> None:
@@ -155,7 +155,7 @@ class AxialForce(ExtraView):
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
-        self.legend(**{wire: wire for wire in WIRES}, stuck="all stick", exact="closed form")
+        self.legend(*WIRES, stuck="all stick", exact="closed form")
         hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
     def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:

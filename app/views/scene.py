@@ -67,11 +67,11 @@ class Scene(View):
             "words", "text", "x y text text_align text_color", text_font_size="14px",
             text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
-        for key, color in KEYS.items() if self.shows_status else ():
+        for key, color in KEYS.items():
             self.mark(key, color)
         self.mark("note", EDGE, alpha=0.0)
-        names = [name for name in (*KEYS, "note") if name in self._glyphs]
-        self._keys = self.legend("center", **{name: name for name in names})
+        keys = KEYS if self.shows_status else ()
+        self._keys = self.legend(*keys, "note", place="center")
         self._keys.location = "bottom_left"
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:

@@ -28,7 +28,7 @@ class StatusMap(View):
         self.add("ghost", "segment", "x0 y0 x1 y1", color="#000000", width=1)
         self.add("now", "hspan", "y", color=ERROR, line_width=2)
         self.add("place", "vspan", "x", color=ERROR, alpha=0.7, line_width=1)
-        self.legend(**{key: key for key in KEYS}, front="closed form", ghost="ghost")
+        self.legend(*KEYS, "ghost", front="closed form")
         hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         made.on_event(Tap, self._select)
 

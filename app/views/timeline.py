@@ -43,7 +43,7 @@ class Timeline(View):
         self.add("instant", "ray", "x", **look)
         self.add("now", "scatter", color=FORCE, size=13)
         self.mark("time", FORCE, alpha=0.0)
-        self.legend("center", **{name: name for name in (*PATHS, "time")})
+        self.legend(*PATHS, "time", place="center")
         # The range has bounds, so that the tool only keeps a touch from scrolling the page.
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
@@ -105,7 +105,6 @@ def _path(
     low, high = float(values.min()) / factor + 0.0, float(values.max()) / factor + 0.0
     changes = high - low > 1e-6 * max(abs(low), abs(high))
     separator = "" if unit == "°" else " "
-    largest = number(low if abs(low) > abs(high) else high)
-    text = f"{number(low)} to {number(high)}" if changes else largest
+    text = f"{number(low)} to {number(high)}" if changes else number(high)
     sampled = np.interp(run.instants, instants, values)
     return f"{symbol} = {text}{separator}{unit}", sampled, changes

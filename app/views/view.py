@@ -212,8 +212,9 @@ class View:
         look = {"marker": "square", "size": 10, "color": color} | look
         self._glyphs[name] = [self._made.scatter([np.nan], [np.nan], **look)]
 
-    def legend(self, place: str = "above", /, **titles: str) -> Legend:
-        """Name glyphs in a legend, in this order."""
+    def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
+        """Name glyphs in a legend, in this order, by their own names or by titles."""
+        titles = {name: name for name in names} | titles
         entries = {title: self._glyphs[name] for name, title in titles.items()}
         box = legend(self._made, entries, place)
         self._items = dict(zip(titles, box.items, strict=True))
