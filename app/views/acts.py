@@ -48,7 +48,7 @@ class Arrows:
     def _along(self) -> Array:
         """Directions at the tips, shape (n, 2)."""
         along = self.lines[:, -1] - self.lines[:, -2]
-        return along / (np.hypot(*along.T)[:, None] + 1e-12)
+        return np.asarray(along / np.hypot(*along.T)[:, None])
 
     @property
     def heads(self) -> Array:

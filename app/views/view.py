@@ -328,7 +328,10 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
 
 
 def legend(made: figure, entries: dict[str, list[GlyphRenderer]], place: str = "above") -> Legend:
-    """A legend in one line, above the plot it covers no curve; a click hides a curve."""
+    """A legend in one line, above the plot, where it covers no curve, or in it.
+
+    A click hides a curve.
+    """
     box = Legend(
         items=list(entries.items()),
         orientation="horizontal",

@@ -24,8 +24,6 @@ NONE = -1
 """In place of a degree of freedom."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
-
-
 StressField = tuple[str, str, Floats]
 """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 
