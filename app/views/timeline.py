@@ -31,6 +31,7 @@ class Timeline(View):
     def _make(self) -> None:
         made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
         made.yaxis.visible = False
+        self._number = 0
         axis = made.xaxis
         axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
@@ -55,6 +56,14 @@ class Timeline(View):
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
         run = frame.run
+        if run.number != self._number:
+            self._number = run.number
+            self._show_paths(run)
+        column, area = [run.column(selection.phase)], self.sources["area"].data
+        self.fill("instant", x=area["x"][column])
+        self.fill("now", x=area["x"][column], y=area["y2"][column])
+
+    def _show_paths(self, run: Run) -> None:
         unit = unit_for(float(run.instants[-1]), "s")
         times = run.instants / np.float32(unit.factor)
         ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
@@ -63,12 +72,8 @@ class Timeline(View):
         for path, (title, values, _) in zip_longest(PATHS, given, fillvalue=("", times[:0], False)):
             y = np.float32(values / (np.abs(values).max(initial=0.0) or 1.0))
             self.fill(path, title, x=times[: len(y)], y=y)
-        first = self.sources["first"].data["y"]
-        self.fill("area", x=times, y2=first)
+        self.fill("area", x=times, y2=self.sources["first"].data["y"])
         self.show("time", f"t in {unit.name}")
-        column = [run.column(selection.phase)]
-        self.fill("instant", x=times[column])
-        self.fill("now", x=times[column], y=first[column])
 
     def _select(self, event: Any) -> None:
         end = self.figure.x_range.end / 1.01
