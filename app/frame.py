@@ -67,6 +67,10 @@ class Geometry:
     """Contact points, shape (n_points, 2), m; NaN where a line of them is broken."""
     chains: NDArray[np.intp]
     """Number of the interface of each contact point, shape (n_points,)."""
+    outlines: NDArray[np.intp]
+    """Nodes of closed lines round substructures, -1 behind each line."""
+    rims: NDArray[np.intp]
+    """Nodes of the sides of bodies that nothing touches, the same way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,8 +104,6 @@ class Run:
     across: tuple[str, str]
     up: tuple[str, str]
     """Title and SI unit of the loop's displacement and force."""
-    load: Floats | None
-    """The load path, shape (n_instants,), in the unit of `up`; None where frames have it."""
     exact: tuple[ExactCurve, ...] = ()
     """Closed forms of the scene, at the same instants."""
     reference: Mapping[str, ContactFields] = field(default_factory=dict)

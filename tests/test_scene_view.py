@@ -9,11 +9,11 @@ import pytest
 from app.frame import Frame, Selection
 from app.messages import Needs, Start
 from app.state import PageState, default_settings
-from app.views.outlines import bands
+from app.views.picture import bands
 from app.views.rope import CrossSection, StressRanges, Unrolled
 from app.views.scene import HEIGHT, WIDTH, Scene, Stress
 from app.views.timeline import Timeline, paths_of
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.scenes import CATALOGUE
@@ -39,7 +39,7 @@ def small(scene: str) -> Settings:
 
 @pytest.fixture(scope="module", params=SCENES)
 def frame(request: pytest.FixtureRequest) -> Frame:
-    return frame_of(small(request.param), extras=frozenset(EXTRAS))
+    return frame_of(small(request.param), extras=frozenset(EXTRAS | OF_ROPE))
 
 
 def shown(frame: Frame, phase: float = 0.75) -> Scene:
@@ -94,8 +94,9 @@ def test_an_arrow_has_the_length_of_its_value() -> None:
     for phase in (0.75, 0.5 + math.asin(0.5) / (2.0 * math.pi)):
         picture = shown(frame, phase).picture
         assert picture is not None
-        arrow = next(arrows[0] for act, (_, arrows) in picture.acts.items() if act.symbol == "F")
-        lengths.append((np.hypot(*(arrow.line[-1] - arrow.line[0])), arrow.value))
+        arrows = next(each for each in picture.arrows if each.act.symbol == "F")
+        (line,), value = arrows.lines, arrows.act.values[round(phase * 20)]
+        lengths.append((np.hypot(*(line[-1] - line[0])), value))
     (full, peak), (part, value) = lengths
     assert part / full == pytest.approx(value / peak, rel=1e-6)
 
@@ -111,8 +112,8 @@ def test_dragging_an_arrow_sets_what_is_behind_it() -> None:
     picture = view.picture
     assert picture is not None
     handle = next(one for one in picture.handles if one.setting == "peak")
-    arrow = next(arrows[0] for act, (_, arrows) in picture.acts.items() if act.symbol == "F")
-    half = picture.layout.page(0.5 * (arrow.base + arrow.handle), 0.0)
+    arrows = next(each for each in picture.arrows if each.act.symbol == "F")
+    half = picture.layout.page(0.5 * (arrows.base[0] + arrows.handles[0]), 0.0)
     start = picture.layout.page(handle.place, 0.0)
     view._hold(SimpleNamespace(x=start[0], y=start[1]))
     view._drag(SimpleNamespace(x=half[0], y=half[1]))
@@ -131,15 +132,16 @@ def test_the_magnification_holds_while_motion_is_seen() -> None:
 
 def test_bands_meet_between_points_of_different_status() -> None:
     points = np.stack([np.arange(4.0), np.zeros(4)], axis=1)
-    lines, kinds = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
-    assert kinds == [0, 1]
-    assert lines[0][-1, 0] == lines[1][0, 0] == 1.5
+    lines = bands(points, np.zeros(4, dtype=np.intp), np.array([0, 0, 1, 1], dtype=np.int8))
+    assert np.allclose(lines[0][:3, 0], [0.0, 1.0, 1.5])
+    assert np.allclose(lines[1][:3, 0], [1.5, 2.0, 3.0])
+    assert all(np.isnan(line[3:]).all() for line in lines.values())
 
 
 def test_bands_end_where_a_wire_goes_behind() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, np.nan], [3.0, 0.0], [4.0, 0.0]])
-    lines, _ = bands(points, np.zeros(5, dtype=np.intp), np.zeros(5, dtype=np.int8))
-    assert [line[:, 0].tolist() for line in lines] == [[0.0, 1.0], [3.0, 4.0]]
+    lines = bands(points, np.zeros(5, dtype=np.intp), np.zeros(5, dtype=np.int8))
+    assert np.array_equal(lines[0][:5], points, equal_nan=True)
 
 
 def test_other_views_show_every_instant(frame: Frame) -> None:
@@ -151,8 +153,8 @@ def test_other_views_show_every_instant(frame: Frame) -> None:
             for phase in (0.0, 0.6):
                 view.update(frame, Selection(phase), None)
     assert all(np.isfinite(values).all() for _, values, _ in paths_of(frame.run))
-    stress = frame.extras["stress"]
-    assert stress.values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
+    _, _, values = frame.extras["stress"]
+    assert values.shape == (len(frame.run.geometry.quads), len(frame.run.instants))
 
 
 def test_wires_in_front_fill_the_strand_from_edge_to_edge() -> None:

@@ -25,7 +25,7 @@ from app.views.catalogue import CARDS
 from app.views.contact_force import ContactForce
 from app.views.scene import Scene
 from app.views.timeline import Timeline
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner, fclib_file
 from solver.checked import dump
@@ -46,7 +46,7 @@ def ended(scene: str) -> tuple[Runner, Frame]:
     runner = Runner(Start(1, settings, math.inf), ReferenceCache(), lambda: False)
     while runner.rest() is not None:
         runner.advance()
-    return runner, runner.frame(Needs(extras=frozenset(EXTRAS)))
+    return runner, runner.frame(Needs(extras=frozenset(EXTRAS | OF_ROPE)))
 
 
 def page(scene: str) -> TakeAway:

@@ -24,7 +24,7 @@ from app.views.loops import HysteresisLoop
 from app.views.rope import AxialForce
 from app.views.status_map import StatusMap
 from app.views.view import View
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
 from solver.settings import Settings
@@ -61,7 +61,7 @@ def settings_of(case: str) -> Settings:
 @cache
 def frames_of(case: str) -> tuple[Frame, Frame, Frame]:
     """First iterate, before any reference; one on the way; and the answer."""
-    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=frozenset(EXTRAS))
+    start, needs = Start(1, settings_of(case), math.inf), Needs(extras=frozenset(EXTRAS | OF_ROPE))
     runner = Runner(start, ReferenceCache(), lambda: False)
     runner.advance()
     frames = [runner.frame(needs)]
@@ -236,7 +236,7 @@ def test_the_dot_of_the_instant_lies_on_the_loop() -> None:
     frame = frames_of("bar")[1]
     view = view_of(HysteresisLoop, frame)
     column = frame.run.column(Selection().phase)
-    now, loop = view.sources["now"].data, view.sources["latin"].data
+    now, loop = view.sources["now"].data, view.sources["LATIN"].data
     assert (now["x"][0], now["y"][0]) == (loop["x"][column], loop["y"][column])
 
 
@@ -272,4 +272,4 @@ def test_a_view_that_comes_in_sight_shows_the_present_frame_at_once() -> None:
     card.fit()
     card.tabs.active = 1
     assert isinstance(card.seen, HysteresisLoop)
-    assert len(card.seen.sources["latin"].data["x"]) == len(frame.run.instants)
+    assert len(card.seen.sources["LATIN"].data["x"]) == len(frame.run.instants)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from app.units import Unit, unit_for
+from app.views.colors import DISPLACEMENT, FORCE
 from app.views.layout import BAND, DEEPEST, WALL, Layout, beside, is_aside, is_opposite
 from app.worker.geometry import PITCH, THICKNESS
 from solver.arrays import Array
@@ -26,112 +29,131 @@ RING = np.stack([f(np.linspace(0.0, 2.0 * np.pi, 13)) for f in (np.cos, np.sin)]
 
 
 @dataclass(frozen=True, eq=False)
-class Arrow:
-    """An arrow, px from the middle of the bodies' foot."""
+class Arrows:
+    """Those of what acts, at an instant, px from the middle of the bodies' foot.
+
+    There are n of them: none where its value is nearly zero.
+    """
 
     act: Act
-    """What it shows."""
-    line: Array
-    """From its tail to its head, shape (n, 2)."""
+    places: Array
+    """Where it acts, shape (m, 2)."""
     base: Array
-    handle: Array
-    """Where it would be at the value 0, and the end that moves with the value."""
-    value: float
-    """Now."""
+    handles: Array
+    """Where an end would be at the value 0, and where this end is, shape (n, 2)."""
+    lines: Array
+    """From tails to heads, shape (n, k, 2)."""
+
+    @cached_property
+    def _along(self) -> Array:
+        """Directions at the tips, shape (n, 2)."""
+        along = self.lines[:, -1] - self.lines[:, -2]
+        return np.asarray(along / np.hypot(*along.T)[:, None])
 
     @property
-    def head(self) -> Array:
-        """Corners of its head."""
-        tip, along = self.line[-1], self.line[-1] - self.line[-2]
-        along = along / (float(np.hypot(*along)) or 1.0)
-        length = min(HEAD, float(np.hypot(*(tip - self.line[0]))))
-        foot, half = tip - length * along, 0.5 * length * np.array([-along[1], along[0]])
-        return np.array([tip, foot + half, foot - half])
+    def heads(self) -> Array:
+        """Corners of the heads, shape (n, 3, 2)."""
+        tips, along = self.lines[:, -1], self._along
+        length = np.minimum(HEAD, np.hypot(*(tips - self.lines[:, 0]).T))[:, None]
+        half = 0.5 * length * along[:, ::-1] * [-1.0, 1.0]
+        return np.stack([tips, tips - length * along + half, tips - length * along - half], axis=1)
 
-    def dragged(self, pointer: Array) -> float:
-        """The value at which its handle is under the pointer."""
-        along = self.handle - self.base
-        return float(self.value * ((pointer - self.base) @ along) / (along @ along))
+    @property
+    def strokes(self) -> Array:
+        """Lines that end inside their heads, and one over them of what is spread along a side."""
+        shafts = self.lines.copy()
+        size = np.hypot(*(self.lines[:, -1] - self.lines[:, -2]).T)[:, None]
+        shafts[:, -1] -= np.minimum(5.0, 0.9 * size) * self._along
+        is_spread = len(shafts) > 2 and self.act.unit != "N" and not is_aside(self.act)
+        return np.concatenate([gapped(shafts), self.handles if is_spread else self.handles[:0]])
+
+    @property
+    def longest(self) -> int:
+        """The one that is dragged."""
+        return int(np.hypot(*(self.handles - self.base).T).argmax())
+
+    def scaled(self, setting: float, pointer: Array) -> float:
+        """The setting behind the value with which the handle of the longest is under a pointer."""
+        base = self.base[self.longest]
+        along = self.handles[self.longest] - base
+        return float(setting * ((pointer - base) @ along) / (along @ along))
 
 
-@dataclass(frozen=True)
-class Word:
+class Word(NamedTuple):
     """A text, px from the middle of the bodies' foot, and on which side of it is its anchor."""
 
     text: str
     place: Array
     align: str
-    act: Act | None = None
+    color: str
+
+
+def gapped(lines: Array) -> Array:
+    """Lines of as many points each, shape (n, k, 2), as one, with NaN behind each."""
+    gaps = np.full((len(lines), 1, 2), np.nan)
+    return np.concatenate([lines, gaps], axis=1).reshape(-1, 2)
+
+
+def color_of(act: Act) -> str:
+    """The colour of what is given: a displacement, or a force."""
+    return DISPLACEMENT if act.unit in ("m", "1/m") else FORCE
 
 
 def arrows_of(
-    act: Act, description: Description, layout: Layout, peak: float, column: int, moved: Array
-) -> list[Arrow]:
+    act: Act,
+    places: Array,
+    description: Description,
+    layout: Layout,
+    peaks: Mapping[str, float],
+    column: int,
+) -> Arrows:
     """The arrows of what acts at an instant, the column of its values.
 
-    An arrow of the value `peak` has full length; `moved` is where the act's places have gone,
-    shape (n, 2), px from the middle of the foot.
+    An arrow of the value in `peaks` has full length; `places` is where the act's have gone, shape
+    (m, 2), px from the middle of the foot.
     """
     towards = np.asarray(act.towards)
     towards = towards[:, column] if towards.ndim > 1 else towards
     away, aside = np.array(act.away), is_aside(act)
     side = act.where.partition(" ")[0]
-    is_inside, distance = side == "body", beside(description, side)
-    now = np.broadcast_to(act.values.T[column], len(moved))
-    arrows = []
-    for place, value in zip(moved, now, strict=True):
-        share = float(np.clip(value / peak, -1.6, 1.6))
-        if abs(share) < LEAST:
-            continue
-        base = place + distance * away if aside else place
-        span = layout.arrow * share * towards
-        pushes = not aside and not is_inside and span @ away < 0.0
-        tail, head = (base - span, base) if pushes else (base, base + span)
-        line = np.array([tail, head])
-        if act.unit == "1/m":
-            line = _bow(tail, head, away)
-        arrows.append(Arrow(act, line, base, tail if pushes else head, float(value)))
-    return arrows
-
-
-def _bow(tail: Array, head: Array, away: Array) -> Array:
-    share = np.linspace(0.0, 1.0, 9)[:, None]
-    height = BOW * np.hypot(*(head - tail)) * 4.0 * share * (1.0 - share)
-    return np.asarray(tail + share * (head - tail) + height * away)
-
-
-def beam_of(arrows: list[Arrow]) -> Array | None:
-    """The line over the arrows of what is spread along a side."""
-    if len(arrows) < 3 or arrows[0].act.unit == "N" or is_aside(arrows[0].act):
-        return None
-    return np.array([arrow.handle for arrow in arrows])
+    now = np.broadcast_to(act.values.T[column], len(places))
+    share = np.clip(now / peaks[act.where], -1.6, 1.6)
+    is_shown = np.abs(share) >= LEAST
+    base = places[is_shown] + (beside(description, side) * away if aside else 0.0)
+    span = layout.arrow * share[is_shown, None] * towards
+    pushes = (span @ away < 0.0)[:, None] & (not aside) & (side != "body")
+    handles = np.where(pushes, base - span, base + span)
+    lines = np.stack([np.where(pushes, handles, base), np.where(pushes, base, handles)], axis=1)
+    if act.unit == "1/m":
+        # What bends is a bow.
+        along = np.linspace(0.0, 1.0, 9)[:, None]
+        height = BOW * np.hypot(*span.T)[:, None, None] * 4.0 * along * (1.0 - along)
+        lines = lines[:, :1] + along * (lines[:, 1:] - lines[:, :1]) + height * away
+    return Arrows(act, places, base, handles, lines)
 
 
 def words_of(
-    description: Description,
-    layout: Layout,
-    acts: Mapping[Act, tuple[Array, list[Arrow]]],
-    column: int,
+    description: Description, layout: Layout, acts: Sequence[Arrows], column: int
 ) -> list[Word]:
     """What acts in words; what presses from above and below alike is said once."""
     above = [act for act in description.acts if act.where.startswith("top")]
     return [
-        Word(text_of(act, column), *_anchor(act, description, layout, places, arrows), act)
-        for act, (places, arrows) in acts.items()
-        if not act.where.startswith("bottom") or not any(is_opposite(act, each) for each in above)
+        Word(text_of(act, column), *_anchor(arrows, description, layout), color_of(act))
+        for arrows in acts
+        if not (act := arrows.act).where.startswith("bottom")
+        or not any(is_opposite(act, each) for each in above)
     ]
 
 
-def _anchor(
-    act: Act, description: Description, layout: Layout, places: Array, arrows: list[Arrow]
-) -> tuple[Array, str]:
+def _anchor(arrows: Arrows, description: Description, layout: Layout) -> tuple[Array, str]:
     """Where the words of what acts stand, and on which side of them that is."""
+    act, places = arrows.act, arrows.places
     side, aside, (away, up) = act.where.partition(" ")[0], is_aside(act), act.away
     if side in ("top", "bottom"):
         is_left = float(np.mean(act.places[:, 0])) < 0.45
         place = places[0 if is_left else -1]
-        ends = [place[0], *(end[0] for arrow in arrows for end in arrow.line)]
-        x = min(ends) - 10.0 if is_left else max(ends) + 10.0
+        ends = np.append(arrows.lines[:, :, 0], place[0])
+        x = ends.min() - 10.0 if is_left else ends.max() + 10.0
         above = beside(description, side) if aside else 0.75 * layout.arrow
         return np.array([x, place[1] + above * up]), "right" if is_left else "left"
     if side == "body":
@@ -161,7 +183,7 @@ def unit_of(act: Act) -> Unit:
 def strokes_of(
     description: Description, layout: Layout, factor: float, column: int, foot: Array
 ) -> list[Array]:
-    """Lines of what holds the bodies at an instant, px from the middle of their foot.
+    """Lines of what holds the bodies at an instant, px from the middle of their foot, NaN between.
 
     `column` is that of the instant in the description's values; `foot` is where the right end of
     the foot has gone, to which a spring is fixed.
@@ -175,17 +197,17 @@ def strokes_of(
             along = (last - first) / np.hypot(*(last - first)) * BEYOND
             moved = 0.0 if hold.moved is None else hold.moved[column]
             edge = edge + layout.shift(np.array([moved, 0.0]), factor) + [-along, along]
-            lines += hatched(edge, away)
+            lines.append(hatched(edge, away))
         elif hold.kind == "rollers":
-            lines += _rollers(edge, away)
+            lines.append(_rollers(edge, away))
         elif hold.kind == "support":
-            lines += hatched(_support(description, hold, layout, factor, edge), away)
+            lines.append(hatched(_support(description, hold, layout, factor, edge), away))
         elif hold.kind == "spring":
-            lines += _spring(foot, edge[0, 0] + WALL)
+            lines.append(_spring(foot, edge[0, 0] + WALL))
     return lines
 
 
-def hatched(edge: Array, away: Array) -> list[Array]:
+def hatched(edge: Array, away: Array) -> Array:
     """A line, (n, 2), and strokes behind it."""
     steps = np.hypot(*np.diff(edge, axis=0).T)
     arc = np.concatenate([[0.0], np.cumsum(steps)])
@@ -193,7 +215,7 @@ def hatched(edge: Array, away: Array) -> list[Array]:
     points = np.stack([np.interp(places, arc, values) for values in edge.T], axis=1)
     along = np.array([-away[1], away[0]])
     ends = points + DEPTH * (0.8 * away - 0.6 * np.abs(along))
-    return [edge, *np.stack([points, ends], axis=1)]
+    return np.concatenate([gapped(edge[None]), gapped(np.stack([points, ends], axis=1))])
 
 
 def gap_of(description: Description, layout: Layout, factor: float) -> Array | None:
@@ -222,15 +244,15 @@ def _support(
     return np.concatenate([beyond[:1], edge, beyond[1:]]) - [0.0, 0.5 * BAND + 1.5]
 
 
-def _rollers(edge: Array, away: Array) -> list[Array]:
+def _rollers(edge: Array, away: Array) -> Array:
     count = max(int(np.hypot(*(edge[1] - edge[0])) / 30.0), 2)
     shares = (np.arange(count) + 0.5) / count
     centres = edge[0] + shares[:, None] * (edge[1] - edge[0]) + RADIUS * away
     behind = edge + 2.0 * RADIUS * away
-    return [*(centre + RADIUS * RING for centre in centres), *hatched(behind, away)[:1]]
+    return np.concatenate([gapped(centres[:, None] + RADIUS * RING), gapped(behind[None])])
 
 
-def _spring(foot: Array, wall: float) -> list[Array]:
+def _spring(foot: Array, wall: float) -> Array:
     """A coil from the foot to its wall."""
     y, coils = foot[1] + 12.0, 6
     x = np.linspace(foot[0] + 8.0, wall - 6.0, 2 * coils)
@@ -238,4 +260,4 @@ def _spring(foot: Array, wall: float) -> list[Array]:
     coil = np.stack([x, y + swing], axis=1)
     line = np.concatenate([[[foot[0], y]], coil, [[wall, y]]])
     upright = np.array([[wall, y - 16.0], [wall, y + 18.0]])
-    return [line, *hatched(upright, np.array([1.0, 0.0]))]
+    return np.concatenate([gapped(line[None]), hatched(upright, np.array([1.0, 0.0]))])

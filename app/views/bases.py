@@ -6,85 +6,70 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import BasicTicker, ColorBar, LinearColorMapper, Range1d
+from bokeh.models import BasicTicker, LinearColorMapper, Range1d
 from bokeh.palettes import Viridis256
-from bokeh.plotting import figure
 
 from app.frame import Floats, Frame, Selection
 from app.units import percent, unit_for
 from app.views.colors import DISPLACEMENT, ERROR, LATIN, RANKS, REFERENCE, scaled
-from app.views.view import View, extent, hover, whole
-from app.worker.extras import MOST_MODES
+from app.views.view import ExtraView, View, color_bar, extent, hover, whole
+from app.worker.extras import MOST_MODES, MOST_SPECTRA, MOST_VALUES
+from app.worker.geometry import thinned
 from solver.scenes import kind_of
-from solver.settings import Settings
 from solver.study.quantities.clip_measures import can_be_clipped
 
 LEAST, FEWEST = 1e-4, 8
 """Of singular values, the least size and the fewest that the axes show."""
 MODES = [str(number) for number in range(MOST_MODES)]
-MOST_VALUES = 1_000_000
+WHOLE = {"desired_num_ticks": 4, "min_interval": 1, "num_minor_ticks": 0}
+"""Ticks of a bar of colours that mean whole numbers."""
+LARGEST = 1_000_000
 """Values of a field up to which all curves take no longer than a second, in which the worker obeys
 no order (measured: 0.9 s for 1001 x 999)."""
 FLOOR, EXACT = 1e-6, 1e-9
 """Smallest error that is shown, and error up to which clips are exact but for rounding."""
 
 
-def _whole_numbers(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
-    """A colour bar that says whole numbers, beside a figure."""
-    ticker = BasicTicker(desired_num_ticks=4, min_interval=1, num_minor_ticks=0)
-    bar = ColorBar(color_mapper=colors, ticker=ticker, **look)
-    made.add_layout(bar, "right")
-    return bar
-
-
-class Spectra(View):
+class Spectra(ExtraView):
     """One curve a substructure: how fast it falls says how many modes it needs."""
 
     name = "Singular values"
     needs = frozenset({"spectra"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are several instants: one has one singular value."""
-        return settings.instants > 1
+    applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("mode",), ("size / largest",), y_axis_type="log", y_range=(LEAST, 2.0))
         whole(made.xaxis[0])
-        lines = self.add("values", "multi_line", "xs ys color", width=1.8)
-        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
         self._colors = LinearColorMapper(palette=scaled(64), low=1, high=2)
-        look = {"width": 8, "padding": 6, "major_tick_line_color": None}
-        self._bar = _whole_numbers(made, self._colors, **look)
+        color = {"field": "part", "transform": self._colors}
+        lines = self.add("values", "multi_line", "xs ys", also="part", color=color, width=1.8)
+        hover(made, [lines], {"mode": "$x{0}", "size": "$y{0.00e+0}"})
+        self._bar = color_bar(made, self._colors, ticker=BasicTicker(**WHOLE))
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the singular values, as far as the frame has them."""
-        spectra = frame.extras.get("spectra")
-        if spectra is None:
-            return
+    def _show(self, spectra: Any, frame: Frame, selection: Selection) -> None:
         count = frame.run.settings.n_substructures
         ys = [values[values > 0.1 * LEAST] for values in spectra]
-        xs = [np.arange(1, len(values) + 1) for values in ys]
-        self.fill("values", xs=xs, ys=ys, color=scaled(len(ys)))
+        modes = np.arange(1.0, MOST_VALUES + 1.0, dtype=np.float32)
+        xs = [modes[: len(values)] for values in ys]
+        self.fill("values", xs=xs, ys=ys, part=thinned(count, MOST_SPECTRA) + 1.0)
         self.x.rename("mode; the colour is the substructure" if count > 1 else "mode", "")
         self.x.hold(frame.run.number, 1.0, float(max([FEWEST, *map(len, ys)])))
         self._bar.visible = count > 1
         self._colors.high = max(count, 2)
 
 
-class ModePlot(View):
+class ModePlot(ExtraView):
     """Curves of the largest modes, one colour a rank."""
 
     needs = frozenset({"modes"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         self.begin(y=("value / largest",), y_range=Range1d(-1.12, 1.12))
         self.add("now", "vspan", "x", color=ERROR, line_width=2)
         for mode, color in reversed(list(zip(MODES, RANKS, strict=False))):
             self.add(mode, color=color, width=2)
-        self.legend(**{mode: mode for mode in MODES})
+        self.legend(*MODES)
 
     def _draw(self, x: Floats, values: Floats, titles: list[str]) -> None:
         for number, mode in enumerate(MODES):
@@ -99,16 +84,10 @@ class SpaceModes(ModePlot):
 
     name = "Space modes"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are bases, of rods: those of plane bodies are no curves."""
-        return settings.applies("pgd_modes") and kind_of(settings) != "plane"
+    # Those of plane bodies are no curves.
+    applies = staticmethod(lambda given: given.applies("pgd_modes") and kind_of(given) != "plane")
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the modes over the places of the substructure."""
-        modes = frame.extras.get("modes")
-        if modes is None:
-            return
+    def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
         self.x.rename(f"x ({modes['text']})", "m")
         self.x.hold((frame.run.number, modes["substructure"]), *extent([modes["x"]]))
         titles = ["mode 1", *(str(n + 1) for n in range(1, len(modes["space"])))]
@@ -120,16 +99,10 @@ class TimeFunctions(ModePlot):
 
     name = "Time functions"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are bases, and several instants."""
-        return settings.applies("pgd_modes") and settings.instants > 1
+    applies = staticmethod(lambda settings: settings.applies("pgd_modes") and settings.instants > 1)
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the time functions."""
-        modes, run = frame.extras.get("modes"), frame.run
-        if modes is None:
-            return
+    def _show(self, modes: Any, frame: Frame, selection: Selection) -> None:
+        run = frame.run
         self.x.rename(f"t (substructure {modes['substructure'] + 1})", "s")
         self.x.hold(run.number, *extent([run.instants]))
         self.fill("now", x=self.x(run.instants[[run.column(selection.phase)]]))
@@ -145,13 +118,9 @@ class BasisSizes(View):
     name = "Basis size"
     needs = frozenset({"modes"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are bases."""
-        return settings.applies("pgd_modes")
+    applies = staticmethod(lambda settings: settings.applies("pgd_modes"))
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("iteration",), ("substructure",))
         made.grid.visible = False
         for axis in made.axis:
@@ -159,7 +128,7 @@ class BasisSizes(View):
         self._colors = LinearColorMapper(palette=Viridis256, low=0, high=2)
         self.add("sizes", "image", "image x y dw dh", color_mapper=self._colors)
         self.add("chosen", "hspan", "y", color=ERROR, line_width=2)
-        _whole_numbers(made, self._colors, width=6, padding=4, title="modes")
+        color_bar(made, self._colors, title="modes", ticker=BasicTicker(**WHOLE))
         made.on_event(Tap, self._select)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -180,23 +149,17 @@ class BasisSizes(View):
         self.state.select(substructure=min(max(round(event.y) - 1, 0), total - 1))
 
 
-class Clips(View):
+class Clips(ExtraView):
     """Error of this iterate's friction over the numbers that are kept of it."""
 
     name = "Clips"
     needs = frozenset({"clips"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are rods, whose friction bound is known, and not too many values."""
-        if not can_be_clipped(settings) or settings.instants < 2:
-            return False
-        values = settings.values()
-        interfaces = values.get("wires", 2) - 1
-        return bool(interfaces * (values["elements"] + 1) * settings.instants <= MOST_VALUES)
+    applies = staticmethod(
+        lambda given: can_be_clipped(given) and 1 < given.instants <= LARGEST / given.n_nodes
+    )
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(
             ("numbers kept",), ("error",), x_axis_type="log", y_axis_type="log",
             x_range=(10.0, 1e5), y_range=(FLOOR, 1.0),
@@ -207,14 +170,10 @@ class Clips(View):
         lines.append(self.add("alone", "scatter", size=11, **ring))
         self.add("table", "vspan", "x", color=REFERENCE, line_dash="dashed", line_width=1.5)
         self._glyphs["clips"].append(lines[-1])
-        self.legend(SVD="SVD", PGD="PGD", clips="clips", table="whole table")
+        self.legend("SVD", "PGD", "clips", table="whole table")
         hover(made, lines, {"numbers": "@x", "error": "@y"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show how the error falls with each way to keep the friction."""
-        clips = frame.extras.get("clips")
-        if clips is None:
-            return
+    def _show(self, clips: Any, frame: Frame, selection: Selection) -> None:
         table = float(clips["table"])
         kept = {n: clips[n] for n in ("SVD", "PGD", "clips") if clips[n] is not None}
         numbers = np.concatenate([way[0] for way in kept.values()])

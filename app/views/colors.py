@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
+from bokeh.palettes import interp_palette
 
 LATIN = "#0072B2"
 PRESSURE = "#B0609A"
@@ -15,6 +15,8 @@ BESIDE = "#B58500"
 FORCE = "#D55E00"
 STICK, FORWARD, BACKWARD, OPENED = "#C9CDD1", "#E69F00", "#0072B2", "#4D4D4D"
 STATUS = {-1: BACKWARD, 0: STICK, 1: FORWARD, 2: OPENED}
+KEYS = {"stick": STICK, "slip →": FORWARD, "slip ←": BACKWARD, "open": OPENED}
+"""What a legend calls each status."""
 BODY, EDGE = "#8FAAC2", "#607D8B"
 CUT = "#8A8A8A"
 """Of the lines where substructures meet."""
@@ -26,7 +28,4 @@ SCALE = ("#7A4FB5", "#0072B2", "#008577", "#5C8700", "#B07A00", "#C24E00")
 
 def scaled(count: int) -> list[str]:
     """As many colours of the scale."""
-    anchors = np.array([[int(color[i : i + 2], 16) for i in (1, 3, 5)] for color in SCALE])
-    places = np.linspace(0, len(SCALE) - 1, max(count, 2))[:count]
-    mixed = [np.interp(places, range(len(SCALE)), channel) for channel in anchors.T]
-    return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in np.array(mixed).T.round().astype(int)]
+    return list(interp_palette(SCALE, count))

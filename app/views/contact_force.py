@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.frame import ContactFields, Floats, Frame, Interface, Run, Selection
+from app.frame import ContactFields, Floats, Frame, Run, Selection
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, PRESSURE, REFERENCE
-from app.views.view import View, extent, hover, joined, key_of, put, source
+from app.views.view import View, extent, hover, joined, key_of, source
 from solver.scenes import kind_of
 
 ROOM, MOST = 1.15, 2.0
@@ -22,8 +22,7 @@ class ContactForce(View):
     name = "Contact force"
     needs = frozenset({"beside"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N/m"))
         both = "friction", "pressure"
         self.sources |= {name: source("x", "latin", "reference") for name in both}
@@ -62,15 +61,18 @@ class ContactForce(View):
         exact = [curve for curve in curves if curve.across.ndim == 1 and curve.up.ndim == 2]
         self._scale(run, name, fields, [curve.up for curve in exact])
         places = interface.positions
-        x = self.x(places)
-        put(self.sources["friction"], x=x, **self._both(fields, reference, "friction", column))
-        pressure = self._both(fields, reference, "pressure", column)
-        put(self.sources["pressure"], x=x if has_pressure else x[:0], **pressure)
+        # The error is nothing where there is no reference.
+        for quantity in ("friction", "pressure"):
+            both = [getattr(each, quantity) for each in (fields, reference or fields)]
+            latin, known = both if both[0] is not None else np.zeros((2, 0, column + 1))
+            forces = {"latin": self.y(latin[:, column]), "reference": self.y(known[:, column])}
+            title = quantity if has_pressure else "LATIN"
+            self.fill(quantity, title, x=self.x(places[: len(latin)]), **forces)
         self.draw("reference", *_curves(places, reference, column))
-        self.show("friction", "friction" if has_pressure else "LATIN")
-        self.show("pressure", has_pressure)
         self.show("error", reference is not None)
-        bound = _bound(interface, fields)
+        bound = interface.bound
+        if bound is None:
+            bound = interface.coefficient * np.maximum(fields.pressure, 0.0)
         bound = bound[:, min(column, bound.shape[1] - 1)]
         self.draw("bound", *joined([(places, bound), (places, -bound)]))
         self.fill("cuts", x=self.x(interface.cuts))
@@ -84,16 +86,6 @@ class ContactForce(View):
             column = ghost.run.column(selection.phase)
         self.draw("ghost", *_curves(places, past, column), self.ghost_name)
         self._show_beside(frame, float(run.instants[run.column(selection.phase)]))
-
-    def _both(
-        self, fields: ContactFields, reference: ContactFields | None, quantity: str, column: int
-    ) -> dict[str, Floats]:
-        """A contact force of an iterate and its reference, or twice that where there is none."""
-        latin, known = getattr(fields, quantity), getattr(reference, quantity, None)
-        if latin is None:
-            return {"latin": np.zeros(0), "reference": np.zeros(0)}
-        known = latin if known is None else known
-        return {"latin": self.y(latin[:, column]), "reference": self.y(known[:, column])}
 
     def _scale(self, run: Run, name: str, fields: ContactFields, exact: list[Floats]) -> None:
         """Hold all that is known, and of iterates what does not dwarf it."""
@@ -128,12 +120,3 @@ def _curves(places: Floats, fields: ContactFields | None, column: int) -> Floats
     """Friction, and pressure where it is not given, as one curve, shape (2, n)."""
     both = [] if fields is None else [fields.friction, fields.pressure]
     return joined([(places, field[:, column]) for field in both if field is not None])
-
-
-def _bound(interface: Interface, fields: ContactFields) -> Floats:
-    """Largest friction, shape (n_points, n_instants) or (n_points, 1)."""
-    if interface.bound is not None:
-        return interface.bound
-    assert interface.coefficient is not None
-    assert fields.pressure is not None
-    return interface.coefficient * np.maximum(fields.pressure, 0.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from bokeh.models import FixedTicker, PrintfTickFormatter
 
@@ -9,7 +11,6 @@ from app.frame import Floats, Frame, Selection
 from app.views.colors import BESIDE, DISPLACEMENT, ERROR, GHOST, PRESSURE, REFERENCE
 from app.views.view import View, extent, hover, key_of, rounded_up, whole
 from app.worker.references import has_reference
-from solver.settings import Settings
 
 LEAST, MOST, FLOOR = 1e-4, 10.0, 1e-15
 """What is seen at least, which indicators do not widen, and the smallest error that is seen."""
@@ -34,8 +35,11 @@ class ErrorPlot(View):
         is_known = newest is not None and newest.run.number == frame.run.number
         return newest if newest is not None and is_known else frame
 
-    def _plot(self, name: str, x: Floats, y: Floats, title: str = "") -> None:
-        """Draw what is positive and finite."""
+    def _plot(
+        self, name: str, history: Mapping[str, Floats], across: str, up: str, title: str = ""
+    ) -> None:
+        """Draw a column of a history over another one, as far as both are positive and finite."""
+        x, y = (history.get(column, np.zeros(0)) for column in (across, up))
         shown = (y > 0.0) & np.isfinite(y) & np.isfinite(x)
         self.draw(name, x[shown], y[shown], title)
 
@@ -45,8 +49,7 @@ class Convergence(ErrorPlot):
 
     name = "Convergence"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("iteration",), ("error",), y_axis_type="log", y_range=(LEAST, MOST))
         whole(made.xaxis[0])
         self.add("shown", "vspan", "x", color=REFERENCE, line_width=1.5)
@@ -67,15 +70,12 @@ class Convergence(ErrorPlot):
         newest = self._newest(frame)
         run, history = newest.run, _searched(newest)
         for column in CURVES:
-            self._plot(column, history["iteration"], history[column])
+            self._plot(column, history, "iteration", column)
         error = self.sources["error_force"].data
         self.draw("newest", error["x"][-1:], error["y"][-1:])
         past = {} if ghost is None else _searched(ghost)
         column = "error_force" if len(error["x"]) else "estimated_error"
-        nothing = np.zeros(0)
-        self._plot(
-            "ghost", past.get("iteration", nothing), past.get(column, nothing), self.ghost_name
-        )
+        self._plot("ghost", past, "iteration", column, self.ghost_name)
         ghosts = self.sources["ghost"].data
         low, high = extent([[LEAST, MOST], error["y"], ghosts["y"]])
         self.y.decades(run.number, max(low, FLOOR), high)
@@ -99,13 +99,9 @@ class ErrorTime(ErrorPlot):
 
     name = "Error over run time"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there is a reference."""
-        return has_reference(settings)
+    applies = staticmethod(has_reference)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(
             ("run time, s",), ("force error",), x_axis_type="log", y_axis_type="log",
             x_range=(1e-3, 1.0), y_range=(LEAST_IN_TIME, MOST_IN_TIME),
@@ -125,9 +121,8 @@ class ErrorTime(ErrorPlot):
         """Show the errors of the search so far."""
         newest = self._newest(frame)
         run, past = newest.run, ghost.history if ghost is not None else {}
-        self._plot("now", newest.history["seconds"], newest.history["error_force"])
-        columns = (past.get(name, np.zeros(0)) for name in ("seconds", "error_force"))
-        self._plot("ghost", *columns, title=self.ghost_name)
+        self._plot("now", newest.history, "seconds", "error_force")
+        self._plot("ghost", past, "seconds", "error_force", self.ghost_name)
         now, ghosts = self.sources["now"].data, self.sources["ghost"].data
         self.draw("newest", now["x"][-1:], now["y"][-1:])
         seconds = [run.reference_seconds] if np.isfinite(run.reference_seconds) else []

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from app.frame import Geometry
+from app.views.view import rounded_up
 from solver.arrays import Array
 from solver.discrete.structure import Act, Description
 
@@ -47,8 +49,8 @@ class Layout:
     """Length of an arrow at its largest value, px."""
     motion: tuple[float, float]
     """Pixels that the largest displacement takes at most, along x and y."""
-    keys_beside: bool
-    """Whether keys stand at the left of the bodies, and not below them."""
+    key_rows: int
+    """Of the keys below the bodies; 0 where these stand at their left."""
 
     @property
     def size(self) -> Array:
@@ -82,10 +84,7 @@ class Layout:
             return factor or 1.0
         if factor is not None and 0.2 <= factor * share <= 1.8:
             return factor
-        power = 10.0 ** math.floor(math.log10(1.0 / share))
-        return float(
-            f"{max(step * power for step in (1, 2, 5) if step * power <= 1.001 / share):.6g}"
-        )
+        return float(f"{1.0 / rounded_up(share / 1.001):.6g}")
 
 
 def turned(points: Array, angle: float) -> Array:
@@ -106,18 +105,19 @@ def is_opposite(act: Act, other: Act) -> bool:
     return act.unit == other.unit and np.array_equal(act.values, -other.values)
 
 
+@lru_cache(maxsize=16)
 def layout_of(geometry: Geometry, width: float, height: float) -> Layout:
     """The layout of bodies in a figure of so many pixels, keys below them or at their left."""
-    below = _layout(geometry, width, height, 0.0, FOOT * (2 if width < NARROW else 1))
-    beside = _layout(geometry, width, height, COLUMN, 0.0)
+    below = _layout(geometry, width, height, 2 if width < NARROW else 1)
+    beside = _layout(geometry, width, height, 0)
     return beside if beside.scale[0] > below.scale[0] else below
 
 
-def _layout(geometry: Geometry, width: float, height: float, column: float, foot: float) -> Layout:
+def _layout(geometry: Geometry, width: float, height: float, key_rows: int) -> Layout:
     description, top = geometry.description, float(geometry.nodes[:, 1].max())
     arrow = min(max(0.19 * height, 18.0), 38.0)
     left, right, below, above = _margins(description, arrow)
-    left, below = left + column, below + foot
+    left, below = left + (0.0 if key_rows else COLUMN), below + FOOT * key_rows
     room = np.maximum([width - left - right, height - below - above], 24.0)
     low, high = _extent(description.length, top, description.tilt)
     is_long = description.length > LONG * top
@@ -134,7 +134,7 @@ def _layout(geometry: Geometry, width: float, height: float, column: float, foot
     motion[0] = min(motion[0], 0.12 * description.length * across)
     return Layout(
         width, height, description.length, top, (float(across), float(up)), (x, y), arrow,
-        (float(motion[0]), float(motion[1])), column > 0.0,
+        (float(motion[0]), float(motion[1])), key_rows,
     )  # fmt: skip
 
 

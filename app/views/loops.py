@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from bokeh.models import Range1d
@@ -10,10 +11,9 @@ from bokeh.models import Range1d
 from app.frame import Floats, Frame, Selection
 from app.units import unit_for
 from app.views.colors import BESIDE, CUT, ERROR, EXACT, GHOST, LATIN, REFERENCE, SCALE, scaled
-from app.views.view import View, extent, hover, key_of, whole
+from app.views.view import ExtraView, View, extent, hover, key_of, whole
 from app.worker.geometry import thinned
 from solver.scenes import kind_of
-from solver.settings import Settings
 from solver.study.quantities.cycles import cycles_in
 
 MOST_LOOPS = 12
@@ -26,24 +26,17 @@ class HysteresisLoop(View):
     name = "Loop"
     needs = frozenset({"beside"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are several instants."""
-        return settings.instants > 1
+    applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin()
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("ghost", color=GHOST, width=2, dash="dotted")
         self.add("reference", color=REFERENCE, width=1.5)
         self.add("beside", color=BESIDE, width=2, dash="dashed")
-        latin = self.add("latin", color=LATIN, width=2.5)
+        latin = self.add("LATIN", color=LATIN, width=2.5)
         self.add("now", "scatter", color=ERROR, size=10)
-        self.legend(
-            latin="LATIN", reference="reference", exact="closed form", ghost="ghost",
-            beside="beside",
-        )  # fmt: skip
+        self.legend("LATIN", "reference", "ghost", "beside", exact="closed form")
         hover(made, [latin], {"displacement": "@x{0.000}", "force": "@y{0.000}"})
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
@@ -57,7 +50,7 @@ class HysteresisLoop(View):
             low, high = extent([frame.loop[row], exact[row], reference[row]])
             axis.hold(key_of(run), min(low, 0.0), max(high, 0.0), 0.08)
         is_alike = ghost is not None and (ghost.run.across, ghost.run.up) == (run.across, run.up)
-        self.draw("latin", *frame.loop)
+        self.draw("LATIN", *frame.loop)
         self.draw("reference", *reference)
         self.draw("exact", *exact)
         self.draw("ghost", *(ghost.loop if ghost and is_alike else nothing), self.ghost_name)
@@ -78,16 +71,12 @@ def _beside(frame: Frame) -> tuple[Floats, Floats]:
     return beside["values"][rows], np.interp(t[rows], instants, frame.loop[1])
 
 
-class CyclePlot(View):
+class CyclePlot(ExtraView):
     """A plot of what cycles of the load do."""
 
     needs = frozenset({"cycles"})
 
-    @staticmethod
-    @lru_cache(maxsize=64)
-    def applies(settings: Settings) -> bool:
-        """Whether there are cycles to compare."""
-        return cycles_in(settings) > 1
+    applies = staticmethod(lru_cache(maxsize=64)(lambda settings: cycles_in(settings) > 1))
 
     def _add_legend(self) -> None:
         """Name the first and the last cycle, and what becomes of slip."""
@@ -96,24 +85,25 @@ class CyclePlot(View):
         self.mark("text", CUT, alpha=0.0)
         self.legend(first="cycle 1", last="last", text="text")
 
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        self.show("last", f"cycle {len(cycles['energy'])}")
+        self.show("text", cycles["text"])
+
 
 class Cycles(CyclePlot):
     """Force over displacement from the first cycle to the last, and what becomes of slip."""
 
     name = "Cycles"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         self.begin()
         self.add("loops", "multi_line", "xs ys color", width=2)
         self.add("now", "scatter", color=ERROR, size=10)
         self._add_legend()
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the loop of each cycle."""
-        cycles, run, loop = frame.extras.get("cycles"), frame.run, frame.loop
-        if cycles is None:
-            return
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        super()._show(cycles, frame, selection)
+        run, loop = frame.run, frame.loop
         self.x.rename(*run.across)
         self.y.rename(*run.up)
         for axis, values in ((self.x, loop[0]), (self.y, loop[1])):
@@ -125,8 +115,6 @@ class Cycles(CyclePlot):
         colors = np.array(scaled(count))[shown].tolist()
         self.fill("loops", xs=[x[p] for p in parts], ys=[y[p] for p in parts], color=colors)
         self.draw("now", *loop[:, [run.column(selection.phase)]])
-        self.show("last", f"cycle {count}")
-        self.show("text", cycles["text"])
 
 
 class CycleEnergy(CyclePlot):
@@ -134,27 +122,21 @@ class CycleEnergy(CyclePlot):
 
     name = "Energy a cycle"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("cycle",), ("energy", "J"))
         whole(made.xaxis[0])
         bars = self.add("bars", "vbar", "x top color", width=0.7)
         self._add_legend()
         hover(made, [bars], {"cycle": "@x", "energy": "@top{0.000}"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show a bar for each cycle."""
-        cycles = frame.extras.get("cycles")
-        if cycles is None:
-            return
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
+        super()._show(cycles, frame, selection)
         energy = cycles["energy"]
         count = len(energy)
         self.x.span(0.5, count + 0.5)
         low, high = extent([energy])
         self.y.hold(key_of(frame.run), min(low, 0.0), max(1.1 * high, 0.0))
         self.fill("bars", x=np.arange(1, count + 1), top=self.y(energy), color=scaled(count))
-        self.show("last", f"cycle {count}")
-        self.show("text", cycles["text"])
 
 
 class Fretting(CyclePlot):
@@ -162,19 +144,16 @@ class Fretting(CyclePlot):
 
     name = "Fretting"
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("share of peak",), y_range=Range1d(0.0, 1.1))
         work = self.add("work", color=ERROR, width=4, alpha=0.7)
         slip = self.add("slip", color=LATIN, width=2)
-        self.legend(work="work", slip="slip")
+        self.legend("work", "slip")
         hover(made, [work, slip], {"x": "@x{0.000}", "share": "@y{0.000}"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+    def _show(self, cycles: Any, frame: Frame, selection: Selection) -> None:
         """Show both, each over its largest value, which the legend has."""
-        cycles, run = frame.extras.get("cycles"), frame.run
-        if cycles is None:
-            return
+        run = frame.run
         name = selection.interface_of(run)
         x = run.interfaces[name].positions
         if len(x) != len(cycles["slip"]):

@@ -1,41 +1,36 @@
-"""All that one picture shows, as columns of its sources, px."""
+"""All that one picture of the scene shows, as columns of its sources, px."""
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.frame import OPEN, Frame
+from app.frame import OPEN, Bytes, Frame, Geometry
 from app.units import number
-from app.views.acts import Arrow, Word, arrows_of, beam_of, gap_of, strokes_of, words_of
-from app.views.colors import DISPLACEMENT, EDGE, ERROR, FORCE, STATUS
-from app.views.layout import BAND, FOOT, IMAGE, LETTER, NARROW, Layout, turned
-from app.views.outlines import Outlines, bands, drawn
-from app.views.view import joined
+from app.views.acts import Arrows, Word, arrows_of, color_of, gap_of, gapped, strokes_of, words_of
+from app.views.colors import EDGE, ERROR, FORCE, STATUS
+from app.views.layout import BAND, IMAGE, LETTER, Layout, turned
 from solver.arrays import Array
-from solver.discrete.structure import Act
 
 Columns = dict[str, Any]
-Strokes = list[tuple[list[Array], str, float]]
-"""Lines on the page that have a colour and a width, px."""
+Strokes = list[tuple[Array, str, float]]
+"""Lines, NaN between them, with a colour and a width, px."""
 
 
-@dataclass(frozen=True)
-class Handle:
-    """What can be dragged: its place, px from the middle of the foot, and what it sets."""
+class Handle(NamedTuple):
+    """What can be dragged: the setting's name, and its place, px from the middle of the foot.
+
+    The value is the setting, by the one at present and where the pointer is.
+    """
 
     setting: str
-    """Its name."""
     place: Array
     color: str
-    """Of what it belongs to."""
     value: Callable[[float, Array], float]
-    """The setting, by the one at present and where the pointer is."""
 
 
 @dataclass(eq=False)
@@ -47,14 +42,11 @@ class Picture:
     """Of the instant in it."""
     layout: Layout
     factor: float
-    outlines: Outlines
-    """Where bodies lie, how much displacements are magnified, and the lines of the bodies."""
+    """Where bodies lie, and how much displacements are magnified."""
     peaks: Mapping[str, float]
     """Values of arrows of full length, by what acts."""
     behind: Mapping[str, str]
     """Settings behind what acts, by where it does."""
-    shows_status: bool
-    """Whether there are keys to the colours of what rubs."""
 
     def __post_init__(self) -> None:
         self._geometry = self.frame.run.geometry
@@ -68,43 +60,35 @@ class Picture:
     @cached_property
     def nodes(self) -> Array:
         """Deformed nodes, px from the middle of the foot."""
-        moved = self.frame.deformed.nodes[:, :, self.column]
-        return self.layout.local(self._geometry.nodes) + self.layout.shift(moved, self.factor)
+        return self._moved(self._geometry.nodes, self.frame.deformed.nodes[:, :, self.column])
 
     @cached_property
     def points(self) -> Array:
-        """Contact points on the page, px."""
-        moved = self.frame.deformed.points[:, :, self.column]
-        local = self.layout.local(self._geometry.points) + self.layout.shift(moved, self.factor)
-        if self._described.height is None:
-            # A band is thinner than the room that is left for it.
-            return self.layout.page(local, self.tilt)
-        beside = [0.0, -0.5 * BAND if self._described.bodies == 1 else 0.0]
-        is_above = self._geometry.points[:, 1:] <= 1e-6 * self.layout.length
-        return self.layout.page(local + is_above * beside, self.tilt)
+        """Contact points, px from the middle of the foot."""
+        places = self._geometry.points
+        local = self._moved(places, self.frame.deformed.points[:, :, self.column])
+        if self._described.height is not None and self._described.bodies == 1:
+            # Of rods, a band is thinner than the room that is left for it.
+            local[places[:, 1] <= 1e-6 * self.layout.length, 1] -= 0.5 * BAND
+        return local
 
     @cached_property
-    def acts(self) -> dict[Act, tuple[Array, list[Arrow]]]:
-        """Where all that acts does, and its arrows."""
-        size = np.array([self.layout.length, self.layout.top])
-        found = {}
-        for act in self._described.acts:
-            places = self._follow(act.places * size)
-            arrows = arrows_of(
-                act, self._described, self.layout, self.peaks[act.where], self._now, places
-            )
-            found[act] = places, arrows
-        return found
+    def arrows(self) -> list[Arrows]:
+        """Those of all that acts."""
+        size, described = [self.layout.length, self.layout.top], self._described
+        places = [self._follow(act.places * size) for act in described.acts]
+        given = described, self.layout, self.peaks, self._now
+        return [arrows_of(*each, *given) for each in zip(described.acts, places, strict=True)]
 
     @cached_property
     def handles(self) -> list[Handle]:
         """All that can be dragged."""
         handles = []
-        for act, (_, arrows) in self.acts.items():
-            name = self.behind.get(act.where)
-            if name is not None and arrows:
-                arrow = max(arrows, key=lambda one: abs(one.value))
-                handles.append(Handle(name, arrow.handle, _color(act), _scaled_by(arrow)))
+        for arrows in self.arrows:
+            name = self.behind.get(arrows.act.where)
+            if name is not None and len(arrows.handles):
+                place = arrows.handles[arrows.longest]
+                handles.append(Handle(name, place, color_of(arrows.act), arrows.scaled))
         gap = gap_of(self._described, self.layout, self.factor)
         if "gap" in self.behind and gap is not None and -gap[-1, 1] > 1.0:
             depth = -float(gap[-1, 1])
@@ -112,35 +96,34 @@ class Picture:
             handles.append(
                 Handle("radius", gap[-1], EDGE, lambda r, at: r * depth / max(-float(at[1]), 2.0))
             )
-        if "break" in self.behind and self._described.broken is not None:
-            ends = self.nodes[self.outlines.broken.ravel()]
-            if len(ends):
-                place = ends.mean(axis=0)
-                handles.append(Handle(self.behind["break"], place, FORCE, self._to_place))
+        if "break" in self.behind and len(self._at_break):
+            place = self.nodes[self._at_break].mean(axis=(0, 1))
+            handles.append(Handle(self.behind["break"], place, FORCE, self._to_place))
         return handles
 
-    def columns(self) -> dict[str, Columns]:
-        """Columns of all sources, by their names."""
-        marks, keys = self._keys()
-        for handle in self.handles:
-            marks.append((self._page(handle.place), "circle", "white", handle.color, 2.5))
-        places, *looks = zip(*marks, strict=True) if marks else [()] * 5
-        names = "marker", "fill_color", "line_color", "line_width"
-        columns = dict(zip(names, map(list, looks), strict=True))
-        x, y = np.reshape(places, (-1, 2)).T
+    def columns(self, *, with_status: bool) -> dict[str, Columns]:
+        """Columns of all sources, by their names, with the status of what rubs or without."""
+        parts = _drawn(self._geometry.outlines, self.nodes)
+        image = np.zeros((0, 2))
+        if any(hold.kind == "image" for hold in self._described.holds):
+            # The bodies go on below, turned by half a turn, as far as there is room.
+            image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
+        x, y = self._page(np.reshape([handle.place for handle in self.handles], (-1, 2))).T
+        heads = [(gapped(arrows.heads), color_of(arrows.act), 1.0) for arrows in self.arrows]
         return {
-            "bodies": self._bodies(),
-            "strokes": self._strokes(),
-            "heads": self._heads(),
-            "marks": {"x": x, "y": y, **columns},
-            "words": _texts(keys, self._words(), self.layout),
+            "image": _pair(self._page(image)),
+            "bodies": _pair(self._page(parts)),
+            "strokes": self._columns(self._strokes(self._bands() if with_status else [])),
+            "heads": self._columns(heads),
+            "marks": {"x": x, "y": y, "line_color": [handle.color for handle in self.handles]},
+            "words": self._words(),
         }
 
-    def ghost(self, frame: Frame, column: int, outlines: Outlines) -> Array:
-        """Outline of another run's bodies at the same scale, on the page, (2, n), px."""
-        nodes = self.layout.local(frame.run.geometry.nodes)
-        nodes = nodes + self.layout.shift(frame.deformed.nodes[:, :, column], self.factor)
-        return self._page(drawn(outlines.rims, nodes)).T.astype(np.float32)
+    def ghost(self, frame: Frame, column: int) -> Columns:
+        """Outline of another run's bodies at the same scale, on the page."""
+        geometry: Geometry = frame.run.geometry
+        nodes = self._moved(geometry.nodes, frame.deformed.nodes[:, :, column])
+        return _pair(self._page(_drawn(geometry.rims, nodes)))
 
     def to_local(self, x: float, y: float) -> Array:
         """A place on the page from the middle of the foot, along the bodies, px."""
@@ -149,154 +132,118 @@ class Picture:
     def _page(self, local: Array) -> Array:
         return self.layout.page(local, self.tilt)
 
-    def _follow(self, places: Array) -> Array:
-        """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
-        nodes = self._geometry.nodes
-        nearest = np.argmin(((nodes[None] - places[:, None]) ** 2).sum(axis=-1), axis=1)
-        moved = self.frame.deformed.nodes[nearest, :, self.column]
+    def _moved(self, places: Array, moved: Array) -> Array:
         return self.layout.local(places) + self.layout.shift(moved, self.factor)
 
-    def _to_place(self, present: float, pointer: Array) -> float:
-        return float(pointer[0]) / self.layout.scale[0] + 0.5 * self.layout.length
+    def _follow(self, places: Array) -> Array:
+        """Where places on the bodies, in m, have gone with the nearest nodes, local px."""
+        away = ((self._geometry.nodes - places[:, None]) ** 2).sum(axis=-1)
+        return self._moved(places, self.frame.deformed.nodes[away.argmin(axis=1), :, self.column])
+
+    @cached_property
+    def _at_break(self) -> Array:
+        """Nodes of both sides of a break, (2, 2); none where no body is broken."""
+        if self._described.broken is None:
+            return np.zeros((0, 2), dtype=np.intp)
+        body, place = self._described.broken
+        x, y = self._geometry.nodes.T
+        is_there = np.abs(x - place) < 1e-4 * self._described.length
+        row = np.floor(y * self._described.bodies / self.layout.top)
+        return np.flatnonzero(is_there & (row == body)).reshape(-1, 2)
 
     def _to_place(self, present: float, pointer: Array) -> float:
         return float(pointer[0]) / self.layout.scale[0] + 0.5 * self.layout.length
 
-    def _bodies(self) -> Columns:
-        """Substructures, and below them, as far as there is room, what goes on there: their image.
+    def _columns(self, strokes: Strokes) -> Columns:
+        """On the page; binary arrays, which go fast to the browser."""
+        pages = [self._page(line).T.astype(np.float32) for line, _, _ in strokes]
+        return {
+            "xs": [x for x, _ in pages],
+            "ys": [y for _, y in pages],
+            "line_color": [color for _, color, _ in strokes],
+            "line_width": [width for _, _, width in strokes],
+        }
 
-        That is turned by half a turn.
-        """
-        parts = drawn(self.outlines.parts, self.nodes)
-        shown = [(parts, 0.5 if self.shows_status else 0.0, 0.55)]
-        if any(hold.kind == "image" for hold in self._described.holds):
-            image = np.stack([-parts[:, 0], np.maximum(-parts[:, 1], -IMAGE)], axis=1)
-            shown.insert(0, (image, 0.22, 0.0))
-        lines, fills, edges = zip(*shown, strict=True)
-        pages = _joined([[self._page(line)] for line in lines])
-        return pages | {"fill_alpha": list(fills), "line_alpha": list(edges)}
-
-    def _strokes(self) -> Columns:
+    def _strokes(self, bands: Strokes) -> Strokes:
         """Lines of bodies, of what holds them, of what rubs, and of what acts; the last on top."""
-        rims = self._page(drawn(self.outlines.rims, self.nodes))
-        strokes = [([rims], EDGE, 1.4), (self._holds(), EDGE, 1.3)]
-        if self.shows_status:
-            strokes += self._bands()
-        broken = self._page(self.nodes[self.outlines.broken])
-        strokes += [(list(broken), ERROR, 3.0), *self._arrows()]
-        lines, colors, widths = zip(*strokes, strict=True)
-        return _joined(lines) | {"line_color": list(colors), "line_width": list(widths)}
+        acts: Strokes = [
+            (each.strokes, color_of(each.act), 1.6 if len(each.lines) > 3 else 3.2)
+            for each in self.arrows
+        ]
+        return [
+            (_drawn(self._geometry.rims, self.nodes), EDGE, 1.4),
+            (self._holds(), EDGE, 1.3),
+            *bands,
+            (gapped(self.nodes[self._at_break]), ERROR, 3.0),
+            *acts,
+        ]
 
-    def _holds(self) -> list[Array]:
+    def _holds(self) -> Array:
         foot = self._follow(np.array([[self.layout.length, 0.0]]))[0]
         strokes = strokes_of(self._described, self.layout, self.factor, self._now, foot)
         if self._described.tilt is not None:
             corner = np.array([-0.5 * self.layout.size[0] - 21.0, -5.0])
             level = turned(np.array([0.9 * self.layout.size[0], 0.0]), -self.tilt)
             strokes.append(np.array([corner, corner + level]))
-        return [self._page(stroke) for stroke in strokes]
+        return np.concatenate([np.zeros((0, 2)), *strokes])
 
     def _bands(self) -> Strokes:
         """What rubs, by its status, on a rim where there is contact."""
-        status = self.frame.deformed.status[:, self.column]
-        lines, kinds = bands(self.points, self._geometry.chains, status)
+        status, chains = self.frame.deformed.status[:, self.column], self._geometry.chains
+        lines = bands(self.points, chains, status)
         width = min(BAND, 0.35 * self.layout.size[1] / self._described.bodies)
-        if len(np.unique(self._geometry.chains)) > self._described.bodies:
+        if chains.max() >= self._described.bodies:
             width = min(width, 5.0)
-        of_kind: dict[int, list[Array]] = defaultdict(list)
-        for line, kind in zip(lines, kinds, strict=True):
-            of_kind[kind].append(line)
-        rims = [line for kind, some in of_kind.items() if kind != OPEN for line in some]
-        return [(rims, EDGE, width + 2.0)] + [
-            (some, STATUS[kind], 0.5 * width if kind == OPEN else width)
-            for kind, some in of_kind.items()
+        rims = [line for kind, line in lines.items() if kind != OPEN]
+        return [(np.concatenate([np.zeros((0, 2)), *rims]), EDGE, width + 2.0)] + [
+            (line, STATUS[kind], 0.5 * width if kind == OPEN else width)
+            for kind, line in lines.items()
         ]
 
-    def _arrows(self) -> Strokes:
-        strokes = []
-        for act, (_, arrows) in self.acts.items():
-            lines, beam = [_shortened(arrow.line) for arrow in arrows], beam_of(arrows)
-            lines += [] if beam is None else [beam]
-            width = 1.6 if len(arrows) > 3 else 3.2
-            strokes.append(([self._page(line) for line in lines], _color(act), width))
-        return strokes
-
-    def _heads(self) -> Columns:
-        heads = [[self._page(arrow.head) for arrow in arrows] for _, arrows in self.acts.values()]
-        return _joined(heads) | {"color": [_color(act) for act in self.acts]}
-
-    def _words(self) -> list[tuple[Word, Array]]:
-        """What acts, and the slope, with their places on the page."""
-        words = words_of(self._described, self.layout, self.acts, self._now)
-        shown = [(word, self._page(word.place)) for word in words]
+    def _words(self) -> Columns:
+        """What acts, and the slope; moved inwards where it would be cut."""
+        words, layout = words_of(self._described, self.layout, self.arrows, self._now), self.layout
+        places = [self._page(word.place) for word in words]
         if self._described.tilt is not None:
-            corner = np.array([0.5 * self.layout.size[0] + 30.0, 4.0])
+            corner = np.array([0.5 * layout.size[0] + 30.0, 4.0])
             angle = number(float(np.degrees(self.tilt)))
-            shown.append((Word(f"slope {angle}°", corner, "left"), corner + self.layout.origin))
-        return shown
-
-    def _keys(self) -> tuple[list[Any], list[Word]]:
-        """What colours mean, squares and words; and how much displacements are magnified."""
-        run, layout = self.frame.run, self.layout
-        kinds = {0: "stick", 1: "slip →", -1: "slip ←"} if self.shows_status else {}
-        if kinds and any(interface.bound is None for interface in run.interfaces.values()):
-            kinds[OPEN] = "open"
-        note = f"displacement × {number(self.factor)}"
-        if self._described.height is None:
-            note += ", thickness not to scale"
-        if layout.keys_beside:
-            places = [(14.0, 30.0 + 18.0 * row) for row in reversed(range(len(kinds)))]
-            last = Word(note, np.array([8.0, 11.0]), "left")
-        else:
-            sizes = [26.0 + LETTER * len(text) for text in kinds.values()]
-            places = [(14.0 + sum(sizes[:n]), 0.5 * FOOT) for n in range(len(kinds))]
-            last = Word(note, np.array([layout.width - 12.0, 0.5 * FOOT]), "right")
-            if layout.width < NARROW:
-                last = Word(note, np.array([8.0, 1.5 * FOOT]), "left")
-        marks, words = [], []
-        for (kind, text), place in zip(kinds.items(), places, strict=True):
-            marks.append((np.array(place), "square", STATUS[kind], STATUS[kind], 1.0))
-            words.append(Word(text, np.array([place[0] + 11.0, place[1]]), "left"))
-        return marks, [*words, last]
+            words.append(Word(f"slope {angle}°", corner, "left", FORCE))
+            places.append(corner + layout.origin)
+        x, y = np.reshape(places, (-1, 2)).T
+        widths = np.array([LETTER * len(word.text) + 4.0 for word in words])
+        left = widths * [{"left": 0.0, "center": 0.5, "right": 1.0}[word.align] for word in words]
+        return {
+            "x": np.clip(x, left, np.maximum(layout.width - widths + left, left)),
+            "y": np.clip(y, 8.0, layout.height - 8.0),
+            "text": [word.text for word in words],
+            "text_align": [word.align for word in words],
+            "text_color": [word.color for word in words],
+        }
 
 
-def _color(act: Act) -> str:
-    return DISPLACEMENT if act.unit in ("m", "1/m") else FORCE
+def bands(points: Array, chains: Array, status: Bytes) -> dict[int, Array]:
+    """Lines along contact points by their status, each to the middle between it and the next.
+
+    Points, shape (n, 2), are NaN where their chain is broken, and so are lines behind stretches.
+    """
+    is_joined = chains[1:] == chains[:-1]
+    cuts = np.flatnonzero(~is_joined | (status[1:] != status[:-1]))
+    middles = np.where(is_joined[cuts, None], 0.5 * (points[cuts + 1] + points[cuts]), np.nan)
+    path = np.append(np.insert(points, cuts + 1, middles, axis=0), [[np.nan, np.nan]], axis=0)
+    before, after = (np.insert(status, cuts + 1, status[side]) for side in (cuts, cuts + 1))
+    lines = {}
+    for kind in np.unique(status):
+        is_on = np.append((before == kind) | (after == kind), False)
+        kept = is_on | np.roll(is_on, 1)
+        lines[int(kind)] = np.where(is_on[:, None], path, np.nan)[kept]
+    return lines
 
 
-def _scaled_by(arrow: Arrow) -> Callable[[float, Array], float]:
-    return lambda present, at: present * arrow.dragged(at) / arrow.value
+def _drawn(lines: Array, nodes: Array) -> Array:
+    """Places of lines, (n, 2), NaN behind each."""
+    return np.append(nodes, [[np.nan, np.nan]], axis=0)[lines]
 
 
-def _shortened(line: Array) -> Array:
-    """A line that ends inside its head."""
-    along = line[-1] - line[-2]
-    size = float(np.hypot(*along)) or 1.0
-    return np.concatenate([line[:-1], [line[-1] - min(5.0, 0.9 * size) / size * along]])
-
-
-def _joined(lines: Sequence[Sequence[Array]]) -> Columns:
-    """Lines, several as one; binary arrays, which go fast to the browser."""
-    both = [joined([line.T for line in some]).astype(np.float32) for some in lines]
-    return {"xs": [x for x, _ in both], "ys": [y for _, y in both]}
-
-
-def _texts(keys: list[Word], shown: list[tuple[Word, Array]], layout: Layout) -> Columns:
-    """Keys, and texts that are whole: moved inwards where they would be cut."""
-    x, y = ([float(key.place[axis]) for key in keys] for axis in (0, 1))
-    for word, place in shown:
-        width = LETTER * len(word.text) + 4.0
-        left = {"left": 0.0, "center": 0.5, "right": 1.0}[word.align] * width
-        x.append(float(np.clip(place[0], left, max(layout.width - width + left, left))))
-        y.append(float(np.clip(place[1], 8.0, layout.height - 8.0)))
-    words = [word for word, _ in shown]
-    colors = [FORCE if word.act is None else _color(word.act) for word in words]
-    return {
-        "x": x,
-        "y": y,
-        "text": [word.text for word in keys + words],
-        "text_align": [word.align for word in keys + words],
-        "text_color": ["#78858C"] * len(keys) + colors,
-        "text_font_size": ["12px"] * len(keys) + ["14px"] * len(words),
-        "text_font_style": ["normal"] * len(keys) + ["bold"] * len(words),
-    }
+def _pair(line: Array) -> Columns:
+    x, y = line.T.astype(np.float32)
+    return {"x": x, "y": y}

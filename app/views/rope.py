@@ -6,43 +6,27 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import ColorBar, LinearColorMapper, Range1d
+from bokeh.models import DataRange1d, LinearColorMapper
 from bokeh.palettes import Cividis256
 
 from app.frame import Frame, Selection
 from app.units import unit_for
-from app.views.colors import (
-    BACKWARD,
-    ERROR,
-    EXACT,
-    FORWARD,
-    RANKS,
-    REFERENCE,
-    STATUS,
-    STICK,
-)
-from app.views.view import View, extent, hover, joined, key_of
+from app.views.colors import ERROR, EXACT, KEYS, RANKS, REFERENCE, STATUS
+from app.views.view import ExtraView, color_bar, extent, hover, joined, key_of
 from app.worker.extras import MOST_WIRES
 from solver.scenes import kind_of
-from solver.settings import Settings
 
 LAYERS = ("#0072B2", "#E69F00", "#CC79A7", "#56B4E9", "#009E73", "#7A7A7A")
 EDGE = "#546E7A"
-RINGS = {"slip +": FORWARD, "slip −": BACKWARD, "selected": ERROR}
-STATUSES = {"stick": STICK, "slip +": FORWARD, "slip −": BACKWARD}
-
 COLORS = [color for color in RANKS if color != ERROR]
 """Of wires; the broken one has a colour of its own."""
 WIRES = [str(number) for number in range(MOST_WIRES + 1)]
 
 
-class RopePlot(View):
+class RopePlot(ExtraView):
     """A plot of a strand that is bent; a tap selects a wire."""
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there is a strand of helical wires."""
-        return kind_of(settings) == "helices"
+    applies = staticmethod(lambda settings: kind_of(settings) == "helices")
 
     def _select(self, number: int) -> None:
         frame = self.state.frame
@@ -56,39 +40,27 @@ class CrossSection(RopePlot):
     name = "Cross-section"
     needs = frozenset({"section"})
 
-    def make(self) -> None:
-        """Make the figure."""
-        made = self.begin(match_aspect=True, x_range=Range1d(-1, 1), y_range=Range1d(-1, 1))
+    def _make(self) -> None:
+        made = self.begin(match_aspect=True, x_range=DataRange1d(), y_range=DataRange1d())
         made.axis.visible = made.grid.visible = False
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         self.add(
             "wires", "circle", "x y radius line_color line_width", also="stress",
             fill_color={"field": "stress", "transform": self.colors},
         )  # fmt: skip
-        self.bar = ColorBar(
-            color_mapper=self.colors, width=9, padding=2, title_text_font_size="11px",
-            title_text_font_style="normal", background_fill_alpha=0.0,
-        )  # fmt: skip
-        made.add_layout(self.bar, "right")
-        for name, color in RINGS.items():
+        self.bar = color_bar(made, self.colors)
+        rings = {key: KEYS[key] for key in ("slip →", "slip ←")} | {"selected": ERROR}
+        for name, color in rings.items():
             self.mark(name, "white", line_color=color, line_width=3, marker="circle")
-        self.legend(**{name: name for name in RINGS})
-        self._reach, self._size = 1.0, {"inner_width": 300.0, "inner_height": 200.0}
-        for size in self._size:
-            made.on_change(size, self._resize)
+        self.legend(*rings)
         made.on_event(Tap, self._tap)
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the section at the selected instant."""
-        cut, column = frame.extras.get("section"), frame.run.column(selection.phase)
-        if cut is None:
-            return
+    def _show(self, cut: Any, frame: Frame, selection: Selection) -> None:
+        column = frame.run.column(selection.phase)
         unit = unit_for(float(np.abs(cut["stress"]).max()), "Pa")
         low, high = (end / unit.factor for end in extent([cut["stress"]]))
         self.colors.update(low=low, high=max(high, low + 1e-9))
         self.bar.title = f"{unit.name} at x = {unit_for(1.0, 'm')(cut['place'])}"
-        self._reach = 1.05 * float((np.hypot(*cut["centres"].T) + cut["radii"]).max())
-        self._fit()
         number = list(frame.run.interfaces).index(selection.interface_of(frame.run))
         slips, chosen = cut["slips"][:, column], cut["wires"] == number
         rings = [
@@ -105,17 +77,6 @@ class CrossSection(RopePlot):
             line_width=np.where(slips != 0, 3.0, np.where(chosen, 2.5, 1.0)),
         )
 
-    def _resize(self, name: str, old: float, new: float) -> None:
-        self._size[name] = max(float(new), 20.0)
-        self._fit()
-
-    def _fit(self) -> None:
-        """Have circles round: as many pixels a metre across as up."""
-        width, height = self._size.values()
-        across, up = (self._reach * size / min(width, height) for size in (width, height))
-        self.x.span(-across, across)
-        self.y.span(-up, up)
-
     def _tap(self, event: Any) -> None:
         cut = self.state.frame and self.state.frame.extras.get("section")
         if cut is None:
@@ -131,24 +92,17 @@ class Unrolled(RopePlot):
     name = "All wires"
     needs = frozenset({"all_wires"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin()
-        colors = LinearColorMapper(palette=[BACKWARD, STICK, FORWARD], low=-1.5, high=1.5)
-        self.add("status", "image", "image x y dw dh", color_mapper=colors)
+        self.add_status()
         self.add("wire_layers", "hspan", "y", color=EDGE, line_width=1.5)
         look = {"fill_alpha": 0, "line_color": ERROR, "line_width": 2}
         self.add("chosen", "rect", "x y width height", **look)
-        for name, color in STATUSES.items():
-            self.mark(name, color)
-        self.legend(**{name: name for name in STATUSES})
+        self.legend("stick", "slip →", "slip ←")
         made.on_event(Tap, lambda event: self._select(round(event.y) - 1))
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the status of all wires."""
-        wires, column = frame.extras.get("all_wires"), frame.run.column(selection.phase)
-        if wires is None:
-            return
+    def _show(self, wires: Any, frame: Frame, selection: Selection) -> None:
+        column = frame.run.column(selection.phase)
         count, places = len(wires["wire_layers"]), wires["places"]
         self.x.rename(*(("x", "m") if wires["is_clamped"] else ("polar angle", "°")))
         self.y.rename("wire" if wires["is_clamped"] else "layer", "")
@@ -173,18 +127,13 @@ class StressRanges(RopePlot):
     name = "Stress range"
     needs = frozenset({"wire_ranges"})
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("wire",), ("range", "Pa"))
         bars = self.add("bars", "vbar", "x top color", also="layer", width=0.8)
         hover(made, [bars], {"wire": "@x", "layer": "@layer", "range": "@top"})
         made.on_event(Tap, lambda event: self._select(round(event.x) - 1))
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
-        """Show the ranges, coloured by layer."""
-        found = frame.extras.get("wire_ranges")
-        if found is None:
-            return
+    def _show(self, found: Any, frame: Frame, selection: Selection) -> None:
         count = len(found["wire_layers"])
         self.x.span(0.5, count + 0.5)
         self.y.hold(key_of(frame.run), 0.0, 1.08 * float(found["ranges"].max()))
@@ -193,31 +142,25 @@ class StressRanges(RopePlot):
         self.fill("bars", x=np.arange(count) + 1.0, top=top, color=colors, layer=layer)
 
 
-class AxialForce(View):
+class AxialForce(ExtraView):
     """Force along each wire; a broken one regains it from its break on."""
 
     name = "Force in the wires"
     needs = frozenset({"axial force"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are wires."""
-        return kind_of(settings) in ("wires", "helices")
+    applies = staticmethod(lambda settings: kind_of(settings) in ("wires", "helices"))
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("force", "N"))
         self.add("exact", color=EXACT, width=8, alpha=0.35)
         self.add("stuck", color=REFERENCE, dash="dashed", width=1.5)
         self._lines = [self.add(wire, width=2) for wire in WIRES]
-        self.legend(**{wire: wire for wire in WIRES}, stuck="all stick", exact="closed form")
+        self.legend(*WIRES, stuck="all stick", exact="closed form")
         hover(made, self._lines, {"x": "@x{0.000}", "force": "@y{0.000}"})
 
-    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+    def _show(self, axial: Any, frame: Frame, selection: Selection) -> None:
         """Show the force in each wire, the broken one in its own colour."""
-        axial, run = frame.extras.get("axial force"), frame.run
-        if axial is None:
-            return
+        run = frame.run
         column, known = run.column(selection.phase), run.known("axial force")
         x, names, stuck = axial["x"], axial["names"], axial["stuck"]
         key = (*key_of(run), *names)

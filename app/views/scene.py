@@ -8,17 +8,16 @@ import numpy as np
 import panel as pn
 from bokeh.core.properties import value
 from bokeh.events import Pan, PanEnd, PanStart, Tap
-from bokeh.models import ColorBar, LinearColorMapper
-from bokeh.palettes import Cividis256, diverging_palette
+from bokeh.models import LinearColorMapper
+from bokeh.palettes import Cividis256, RdBu11
 from bokeh.plotting import figure
 
 from app.frame import Frame, Selection
-from app.units import unit_for
-from app.views.colors import BODY, EDGE, GHOST
-from app.views.layout import Layout, layout_of
-from app.views.outlines import Outlines, outlines_of
+from app.units import number, unit_for
+from app.views.colors import BODY, EDGE, GHOST, KEYS
+from app.views.layout import layout_of
 from app.views.picture import Handle, Picture
-from app.views.view import View, bare, rounded_up
+from app.views.view import View, bare, color_bar, rounded_up
 from solver.scenes import behind
 
 WIDTH, HEIGHT = 950.0, 190.0
@@ -27,12 +26,6 @@ NEAR, CLOSE = 22.0, 14.0
 """Pixels within which a handle is held, and an interface is tapped."""
 KEPT = 0.3, 1.5
 """Shares of the full length between which arrows stay as they are scaled."""
-SIGNED = diverging_palette(
-    ("#053061", "#2166AC", "#67A9CF", "#D1E5F0", "#F2F2F2"),
-    ("#67001F", "#B2182B", "#EF8A62", "#FDDBC7", "#F2F2F2"),
-    n=9,
-    midpoint=0.5,
-)
 
 
 class Scene(View):
@@ -44,14 +37,10 @@ class Scene(View):
     name = "Scene"
     shows_status = True
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self._made = bare(90, (0, WIDTH), (0, HEIGHT))
         made.axis.visible = False
         self._draw(made)
-        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
-        self._layout: tuple[object, Layout] | None = None
-        self._outlines: dict[str, Outlines] = {}
         self._peaks: dict[str, float] = {}
         self._factor: float | None = None
         self._shown: tuple[Frame, Selection, Frame | None] | None = None
@@ -61,26 +50,35 @@ class Scene(View):
             (PanStart, self._hold), (Pan, self._drag), (PanEnd, self._let_go), (Tap, self._select),
         ):  # fmt: skip
             made.on_event(event, react)
+        self._size = {"inner_width": WIDTH, "inner_height": HEIGHT}
         for size in self._size:
             made.on_change(size, self._resize)
 
     def _draw(self, made: figure) -> None:
-        look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8}
-        self.add("bodies", "patches", "xs ys fill_alpha line_alpha", **look)
+        self.add("image", "patch", color=BODY, fill_alpha=0.22, line_alpha=0.0)
+        look = {"fill_color": BODY, "line_color": EDGE, "line_width": 0.8, "line_alpha": 0.55}
+        self.add("bodies", "patch", fill_alpha=0.5 if self.shows_status else 0.0, **look)
         self.add("ghost", color=GHOST, width=1.2, dash="dashed")
         self.add("strokes", "multi_line", "xs ys line_color line_width")
-        self.add("heads", "patches", "xs ys color")
-        self.add("marks", "scatter", "x y marker fill_color line_color line_width", size=11)
+        self.add("heads", "patches", "xs ys line_color", fill_color="line_color", also="line_width")
+        look = {"size": 11, "fill_color": "white", "line_width": 2.5}
+        self.add("marks", "scatter", "x y line_color", **look)
         self.add(
-            "words", "text", "x y text text_align text_color text_font_size text_font_style",
-            text_font=value("Roboto, sans-serif"), text_baseline="middle",
+            "words", "text", "x y text text_align text_color", text_font_size="14px",
+            text_font_style="bold", text_font=value("Roboto, sans-serif"), text_baseline="middle",
         )  # fmt: skip
+        for key, color in KEYS.items():
+            self.mark(key, color)
+        self.mark("note", EDGE, alpha=0.0)
+        keys = KEYS if self.shows_status else ()
+        self._keys = self.legend(*keys, "note", place="center")
+        self._keys.location = "bottom_left"
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the bodies at the selected instant."""
         made, run, shown = self.figure, frame.run, self._shown
         self._shown = frame, selection, ghost
-        layout = self._layout_of(frame)
+        layout = layout_of(run.geometry, *self._size.values())
         if shown is None or shown[0].run.settings.scene != run.settings.scene:
             self._factor, self._peaks = None, {}
         if self._factor is None or shown is None or shown[0] is not frame:
@@ -89,28 +87,21 @@ class Scene(View):
             self._scale_arrows(frame)
         made.x_range.end, made.y_range.end = layout.width, layout.height
         self.picture = picture = Picture(
-            frame, run.column(selection.phase), layout, self._factor,
-            self._outlines_of("frame", frame), self._peaks, behind(run.settings), self.shows_status,
+            frame, run.column(selection.phase), layout, self._factor, self._peaks,
+            behind(run.settings),
         )  # fmt: skip
-        for name, columns in picture.columns().items():
+        for name, columns in picture.columns(with_status=self.shows_status).items():
             self.fill(name, **columns)
-        x, y = np.zeros((2, 0))
+        past: dict[str, Any] = {"x": [], "y": []}
         if ghost is not None and ghost.run.settings.scene == run.settings.scene:
-            column = ghost.run.column(selection.phase)
-            x, y = picture.ghost(ghost, column, self._outlines_of("ghost", ghost))
-        self.fill("ghost", x=x, y=y)
-
-    def _layout_of(self, frame: Frame) -> Layout:
-        key = frame.run.geometry, *self._size.values()
-        if self._layout is None or self._layout[0] != key:
-            self._layout = key, layout_of(*key)
-        return self._layout[1]
-
-    def _outlines_of(self, role: str, frame: Frame) -> Outlines:
-        known, geometry = self._outlines.get(role), frame.run.geometry
-        if known is None or not (known.geometry is geometry or known.suits(geometry)):
-            self._outlines[role] = outlines_of(geometry)
-        return self._outlines[role]
+            past = picture.ghost(ghost, ghost.run.column(selection.phase))
+        self.fill("ghost", **past)
+        self.show("open", any(each.bound is None for each in run.interfaces.values()))
+        is_rods = run.geometry.description.height is None
+        note = f"displacement × {number(self._factor)}"
+        self.show("note", note + ", thickness not to scale" * is_rods)
+        rows = layout.key_rows
+        self._keys.update(orientation="horizontal" if rows else "vertical", nrows=rows or "auto")
 
     def _scale_arrows(self, frame: Frame) -> None:
         """Keep how long arrows are for their values, while they stay long enough and fit."""
@@ -160,7 +151,7 @@ class Scene(View):
         picture = self.picture
         if picture is None:
             return
-        away = np.hypot(*(picture.points - [event.x, event.y]).T)
+        away = np.hypot(*(picture.points - picture.to_local(event.x, event.y)).T)
         if np.any(away <= CLOSE):
             chain = int(picture.frame.run.geometry.chains[int(np.nanargmin(away))])
             self.state.select(interface=list(picture.frame.run.interfaces)[chain])
@@ -177,31 +168,26 @@ class Stress(Scene):
         self.colors = LinearColorMapper(palette=Cividis256, low=0.0, high=1.0)
         color = {"field": "value", "transform": self.colors}
         self.add("quads", "patches", "xs ys", also="value", fill_color=color, line_color=color)
-        self.bar = ColorBar(
-            color_mapper=self.colors, width=9, padding=2, margin=0, title_standoff=4,
-            title_text_font_size="11px", title_text_font_style="normal",
-            major_label_text_font_size="11px", background_fill_alpha=0.0,
-        )  # fmt: skip
-        made.add_layout(self.bar, "right")
+        self.bar = color_bar(made, self.colors)
         super()._draw(made)
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the stress at the selected instant, as far as the frame has it."""
         super().update(frame, selection, ghost)
-        stress, picture = frame.extras.get("stress"), self.picture
-        if stress is None or picture is None:
+        if frame.extras.get("stress") is None or self.picture is None:
             self.fill("quads", xs=[], ys=[], value=[])
             return
-        largest = float(np.abs(stress.values).max())
-        unit = unit_for(largest, stress.unit)
+        (title, si, values), picture = frame.extras["stress"], self.picture
+        largest = float(np.abs(values).max())
+        unit = unit_for(largest, si)
         # It seldom changes.
         high = rounded_up(0.999 * largest / unit.factor, (1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
-        signed = float(stress.values.min()) < -1e-3 * largest
+        signed = float(values.min()) < -1e-3 * largest
         self.colors.update(
-            palette=SIGNED if signed else Cividis256, low=-high if signed else 0.0, high=high
+            palette=RdBu11 if signed else Cividis256, low=-high if signed else 0.0, high=high
         )
-        self.bar.title = f"{stress.title}, {unit.name}"
+        self.bar.title = f"{title}, {unit.name}"
         corners = picture.layout.page(picture.nodes[frame.run.geometry.quads], picture.tilt)
         across, up = np.moveaxis(np.round(corners, 1), -1, 0)
-        values = stress.values[:, picture.column] / unit.factor
-        self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=values)
+        now = values[:, picture.column] / unit.factor
+        self.fill("quads", xs=across.tolist(), ys=up.tolist(), value=now)

@@ -7,7 +7,6 @@ import numpy as np
 from app.frame import Floats, Frame, Selection
 from app.views.colors import CUT, DISPLACEMENT, ERROR, FORWARD, LATIN, REFERENCE
 from app.views.view import View, extent
-from solver.settings import Settings
 
 FAR = 10.0
 """Times the plot by which a line goes beyond it."""
@@ -19,14 +18,16 @@ class SlipPlane(View):
     name = "Slip plane"
     needs = frozenset({"slips"})
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether two points rub, whose friction follows from what presses them."""
-        law = settings.values().get("friction_law")
-        return settings.opens and law == "coulomb" and settings.n_jumps == 4
+    # Two points rub, whose friction follows from what presses them.
+    applies = staticmethod(
+        lambda settings: (
+            settings.opens
+            and settings.n_jumps == 4
+            and settings.values().get("friction_law") == "coulomb"
+        )
+    )
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         self.begin(("left slip", "m"), ("right slip", "m"))
         self.add("room", "patch", color=DISPLACEMENT, alpha=0.3)
         self.add("left", color=LATIN, width=1.5)

@@ -6,14 +6,10 @@ from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import LinearColorMapper
 
-from app.frame import Bytes, Floats, Frame, Interface, Run, Selection
-from app.views.colors import CUT, ERROR, EXACT, STATUS
+from app.frame import Floats, Frame, Selection
+from app.views.colors import CUT, ERROR, EXACT, KEYS
 from app.views.view import View, extent, hover, joined
-from solver.settings import Settings
-
-ENTRIES = {"slip −": -1, "stick": 0, "slip +": 1, "open": 2}
 
 
 class StatusMap(View):
@@ -21,28 +17,20 @@ class StatusMap(View):
 
     name = "Stick and slip"
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:
-        """Whether there are several instants."""
-        return settings.instants > 1
+    applies = staticmethod(lambda settings: settings.instants > 1)
 
-    def make(self) -> None:
-        """Make the figure."""
+    def _make(self) -> None:
         made = self.begin(("x", "m"), ("t", "s"))
         made.grid.visible = False
-        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
-        image = self.add("status", "image", "image x y dw dh", color_mapper=colors)
+        image = self.add_status()
         self.add("cuts", "vspan", "x", color=CUT, alpha=0.6, line_width=1)
         self.add("front", color=EXACT, width=3)
         self.add("ghost", "segment", "x0 y0 x1 y1", color="#000000", width=1)
         self.add("now", "hspan", "y", color=ERROR, line_width=2)
         self.add("place", "vspan", "x", color=ERROR, alpha=0.7, line_width=1)
-        for title, status in ENTRIES.items():
-            self.mark(title, STATUS[status])
-        self.legend(**{title: title for title in ENTRIES}, front="closed form", ghost="ghost")
+        self.legend(*KEYS, "ghost", front="closed form")
         hover(made, [image], {"x": "$x{0.000}", "t": "$y{0.000}"})
         made.on_event(Tap, self._select)
-        self._ghost_of: object = None
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the status of every point at every instant."""
@@ -63,19 +51,7 @@ class StatusMap(View):
         self.fill("cuts", x=self.x(interface.cuts))
         fronts = [(curve.across, curve.up) for curve in run.known("front")[:1]]
         self.draw("front", *joined(fronts))
-        self._show_ghost(ghost, selection, key)
-
-    def _show_ghost(self, ghost: Frame | None, selection: Selection, key: object) -> None:
-        """Show the lines between points and instants of different status."""
-        name = selection.interface_of(ghost.run) if ghost is not None else ""
-        fields = ghost.contact.get(name) if ghost is not None else None
-        # What is many lines is found once.
-        if (fields, key, self.ghost_name) == self._ghost_of:
-            return
-        self._ghost_of = fields, key, self.ghost_name
-        lines = np.zeros((4, 0))
-        if ghost is not None and fields is not None:
-            lines = _boundary(ghost.run, ghost.run.interfaces[name], fields.status)
+        lines = np.zeros((4, 0)) if ghost is None else _boundary(ghost, selection)
         (x0, x1), (y0, y1) = self.x(lines[::2]), self.y(lines[1::2])
         self.fill("ghost", self.ghost_name, x0=x0, y0=y0, x1=x1, y1=y1)
 
@@ -88,9 +64,13 @@ class StatusMap(View):
         self.state.select(phase=phase, place=self.x.si(event.x))
 
 
-def _boundary(run: Run, interface: Interface, status: Bytes) -> Floats:
+def _boundary(frame: Frame, selection: Selection) -> Floats:
     """Ends x0, y0, x1, y1 of the lines between different status, (4, n_lines), m and s."""
-    x, t = _edges(interface.positions), _edges(run.instants)
+    name = selection.interface_of(frame.run)
+    if name not in frame.contact:
+        return np.zeros((4, 0))
+    status = frame.contact[name].status
+    x, t = _edges(frame.run.interfaces[name].positions), _edges(frame.run.instants)
     i, j = np.nonzero(status[1:] != status[:-1])
     upright = np.stack([x[i + 1], t[j], x[i + 1], t[j + 1]])
     i, j = np.nonzero(status[:, 1:] != status[:, :-1])

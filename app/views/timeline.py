@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
-from bokeh.core.properties import value
 from bokeh.events import Pan, Tap
 from bokeh.models import PanTool
 
@@ -17,14 +17,10 @@ from app.views.layout import is_opposite
 from app.views.view import View, bare
 from solver.arrays import Array
 
-THIN = ("#7A7A7A", "#A0A0A0", "#56B4E9")
-"""Colours of paths beside the first."""
-LOW, TITLE = -1.5, 1.62
+PATHS = {"first": FORCE, "second": "#7A7A7A", "third": "#A0A0A0", "fourth": "#56B4E9"}
+"""Colours of the paths."""
+LOW, HIGH = -1.5, 2.7
 """Of the axis up: the paths lie between -1 and 1, their names above."""
-LETTER = 7.9
-"""Pixels that a letter is wide, about."""
-WIDTH = 930
-"""Pixels of the axis until the browser tells."""
 
 
 class Timeline(View):
@@ -32,65 +28,52 @@ class Timeline(View):
 
     name = "Load path"
 
-    def make(self) -> None:
-        """Make the figure."""
-        made = self._made = bare(40, (-0.01, 1.01), (LOW, TITLE + 0.6))
-        made.x_range.bounds = (-0.01, 1.01)
+    def _make(self) -> None:
+        made = self._made = bare(40, (-0.01, 1.01), (LOW, HIGH))
         made.yaxis.visible = False
+        self._number = 0
         axis = made.xaxis
         axis.major_label_text_font_size, axis.major_label_standoff = "11px", 1
         axis.major_tick_out, axis.major_tick_in, axis.minor_tick_line_alpha = 3, 0, 0.0
         axis.axis_line_alpha = 0.4
         self.add("area", "varea", "x y2", y1=0, color=FORCE, alpha=0.16)
-        self.add("paths", "multi_line", "xs ys line_color line_width")
+        # The first is on top.
+        for path, color in reversed(PATHS.items()):
+            self.add(path, color=color, width=2.0 if path == "first" else 1.4)
         look = {"y": LOW, "length": 0, "angle": np.pi / 2, "color": ERROR, "alpha": 0.5}
         self.add("instant", "ray", "x", **look)
         self.add("now", "scatter", color=FORCE, size=13)
-        self.add(
-            "titles", "text", "x text text_color", y=TITLE, text_font_size="12px",
-            text_font=value("Roboto, sans-serif"), text_baseline="middle",
-        )  # fmt: skip
+        self.mark("time", FORCE, alpha=0.0)
+        self.legend(*PATHS, "time", place="center")
         # The range has bounds, so that the tool only keeps a touch from scrolling the page.
         made.add_tools(PanTool(dimensions="width"))
         for event in (Pan, Tap):
             made.on_event(event, self._select)
-        self._width, self._shown = WIDTH, (0, WIDTH)
-        made.on_change("inner_width", self._resize)
+
+    def magnify(self, size: str) -> None:
+        """Keep the size of its type: there is no room for more."""
 
     def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
         """Show the load paths of a run, and the instant."""
         run = frame.run
+        if run.number != self._number:
+            self._number = run.number
+            self._show_paths(run)
+        column, area = [run.column(selection.phase)], self.sources["area"].data
+        self.fill("instant", x=area["x"][column])
+        self.fill("now", x=area["x"][column], y=area["y2"][column])
+
+    def _show_paths(self, run: Run) -> None:
         unit = unit_for(float(run.instants[-1]), "s")
         times = run.instants / np.float32(unit.factor)
-        if self._shown != (run.number, self._width):
-            self._shown = run.number, self._width
-            self._show_paths(run, times, unit.name)
-        column = [run.column(selection.phase)]
-        self.fill("instant", x=times[column])
-        self.fill("now", x=times[column], y=self.sources["area"].data["y2"][column])
-
-    def _show_paths(self, run: Run, times: Array, unit: str) -> None:
-        end = float(times[-1])
-        margin = 0.01 * end
-        across = self.figure.x_range
-        across.update(bounds=(-margin, end + margin), start=-margin, end=end + margin)
-        colors = [FORCE, *THIN]
-        paths = paths_of(run)[: len(colors)]
-        colors = colors[: len(paths)]
-        ys = [np.float32(values / (np.abs(values).max() or 1.0)) for _, values, _ in paths]
-        self.fill("area", x=times, y2=ys[0])
-        # The first is on top.
-        widths = [2.0, *[1.4] * len(THIN)][: len(paths)]
-        looks = {"line_color": colors[::-1], "line_width": widths[::-1]}
-        self.fill("paths", xs=[times] * len(paths), ys=ys[::-1], **looks)
-        titles = [title for title, _, _ in paths] + [f"t, {unit}"]
-        letter = LETTER / self._width
-        ends = np.cumsum([0.0, *((len(title) + 4) * letter for title in titles[:-1])])
-        x = end * np.append(ends[:-1], 1.0 - 4 * letter)
-        self.fill("titles", x=x, text=titles, text_color=[*colors, THIN[0]])
-
-    def _resize(self, _name: str, _old: int, new: int) -> None:
-        self._width = max(new, 1)
+        ends = -0.01 * float(times[-1]), 1.01 * float(times[-1])
+        self.figure.x_range.update(start=ends[0], end=ends[1], bounds=ends)
+        given = paths_of(run)[: len(PATHS)]
+        for path, (title, values, _) in zip_longest(PATHS, given, fillvalue=("", times[:0], False)):
+            y = np.float32(values / (np.abs(values).max(initial=0.0) or 1.0))
+            self.fill(path, title, x=times[: len(y)], y=y)
+        self.fill("area", x=times, y2=self.sources["first"].data["y"])
+        self.show("time", f"t in {unit.name}")
 
     def _select(self, event: Any) -> None:
         end = self.figure.x_range.end / 1.01
@@ -127,7 +110,6 @@ def _path(
     low, high = float(values.min()) / factor + 0.0, float(values.max()) / factor + 0.0
     changes = high - low > 1e-6 * max(abs(low), abs(high))
     separator = "" if unit == "°" else " "
-    largest = number(low if abs(low) > abs(high) else high)
-    text = f"{number(low)} to {number(high)}" if changes else largest
+    text = f"{number(low)} to {number(high)}" if changes else number(high)
     sampled = np.interp(run.instants, instants, values)
     return f"{symbol} = {text}{separator}{unit}", sampled, changes

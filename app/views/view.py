@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 from bokeh.core.properties import value
 from bokeh.models import (
+    ColorBar,
     ColumnDataSource,
     CrosshairTool,
     GlyphRenderer,
     HoverTool,
     Legend,
     LegendItem,
+    LinearColorMapper,
     NumeralTickFormatter,
     Range1d,
     Title,
@@ -27,7 +29,7 @@ from numpy.typing import ArrayLike
 from app.frame import Floats, Frame, Run, Selection
 from app.state import PageState
 from app.units import Unit, unit_for
-from app.views.colors import CUT
+from app.views.colors import CUT, KEYS, STATUS
 from solver.settings import Settings
 
 TOOLS = "pan,box_zoom,wheel_zoom,reset,save,fullscreen"
@@ -35,13 +37,14 @@ TEXT = "12px"
 """Size of text in plots, of which the theme takes shares."""
 LONGEST = 16
 """Letters in a line of the title beside a plot: a small one is no higher."""
+ABOVE = {"margin-left": "-44px", "top": "-3px"}
+"""Has a legend begin at the left end of the figure."""
 CLOSE = """
 .bk-grid { gap: 6px 8px !important; }
 .bk-item { gap: 4px !important; }
 .bk-item .bk-label { min-width: 0 !important; }
 """
-"""Lets a legend of seven entries stand in one line, from the left end of the figure on; the theme
-keeps them farther apart."""
+"""Lets a legend of seven entries stand in one line; the theme keeps them farther apart."""
 
 
 class Axis:
@@ -121,6 +124,8 @@ class View:
         What its tab is called.
     needs
         Names of the extras of a frame that it shows.
+    applies
+        Whether it says anything about a run with such settings.
     x, y
         The axes.
     sources
@@ -129,6 +134,7 @@ class View:
 
     name: ClassVar[str]
     needs: ClassVar[frozenset[str]] = frozenset()
+    applies: ClassVar[Callable[[Settings], bool]] = staticmethod(lambda settings: True)
 
     def __init__(self, state: PageState) -> None:
         self.state, self._type = state, TEXT
@@ -137,15 +143,10 @@ class View:
         self._glyphs: dict[str, list[GlyphRenderer]] = {}
         self._items: dict[str, LegendItem] = {}
 
-    @staticmethod
-    def applies(settings: Settings) -> bool:  # noqa: ARG004  # most say something of any
-        """Whether it says anything about such a run."""
-        return True
-
     @cached_property
     def figure(self) -> figure:
         """The figure."""
-        self.make()
+        self._make()
         # A page opens sooner without glyphs of what nobody selects or mutes.
         for renderer in self._made.renderers:
             renderer.update(nonselection_glyph=None, muted_glyph=None)
@@ -159,7 +160,7 @@ class View:
             for model in (self._made, *self._made.legend):
                 model.styles = {**model.styles, "font-size": size}
 
-    def make(self) -> None:
+    def _make(self) -> None:
         """Make the figure, by `begin` and `add`."""
         raise NotImplementedError
 
@@ -199,15 +200,25 @@ class View:
         self._glyphs.setdefault(name, []).append(renderer)
         return renderer
 
+    def add_status(self) -> GlyphRenderer:
+        """An image of statuses, and a mark for each in the legend."""
+        for key, color in KEYS.items():
+            self.mark(key, color)
+        colors = LinearColorMapper(palette=list(STATUS.values()), low=-1.5, high=2.5)
+        return self.add("status", "image", "image x y dw dh", color_mapper=colors)
+
     def mark(self, name: str, color: str, **look: Any) -> None:
         """A square that stands in the legend only."""
         look = {"marker": "square", "size": 10, "color": color} | look
         self._glyphs[name] = [self._made.scatter([np.nan], [np.nan], **look)]
 
-    def legend(self, **titles: str) -> None:
-        """Name glyphs in a legend, in this order."""
-        box = legend(self._made, {title: self._glyphs[name] for name, title in titles.items()})
+    def legend(self, *names: str, place: str = "above", **titles: str) -> Legend:
+        """Name glyphs in a legend, in this order, by their own names or by titles."""
+        titles = {name: name for name in names} | titles
+        entries = {title: self._glyphs[name] for name, title in titles.items()}
+        box = legend(self._made, entries, place)
         self._items = dict(zip(titles, box.items, strict=True))
+        return box
 
     def show(self, name: str, wanted: bool | str) -> None:
         """Show or hide an entry of the legend, or give it another title."""
@@ -219,12 +230,29 @@ class View:
 
     def fill(self, name: str, title: str = "", **columns: Any) -> None:
         """Fill a source; the legend has it, by a title, if there is anything in it."""
-        put(self.sources[name], **columns)
+        target = self.sources[name]
+        # What is the same is not sent again.
+        if not all(_equal(target.data[column], new) for column, new in columns.items()):
+            target.data = columns
         self.show(name, any(map(len, columns.values())) and (title or True))
 
     def draw(self, name: str, x: ArrayLike, y: ArrayLike, title: str = "") -> None:
         """Draw a curve of values in SI."""
         self.fill(name, title, x=self.x(x), y=self.y(y))
+
+
+class ExtraView(View):
+    """A view of the one extra that it needs, which the worker sends once the view is in sight."""
+
+    def update(self, frame: Frame, selection: Selection, ghost: Frame | None) -> None:
+        """Show what a frame has of it."""
+        (name,) = self.needs
+        extra = frame.extras.get(name)
+        if extra is not None:
+            self._show(extra, frame, selection)
+
+    def _show(self, extra: Any, frame: Frame, selection: Selection) -> None:
+        raise NotImplementedError
 
 
 def plot(**more: Any) -> figure:
@@ -263,6 +291,17 @@ def bare(least: int, across: tuple[float, float], up: tuple[float, float]) -> fi
     return made
 
 
+def color_bar(made: figure, colors: LinearColorMapper, **look: Any) -> ColorBar:
+    """A bar beside a figure that says what its colours mean."""
+    bar = ColorBar(
+        color_mapper=colors, width=9, padding=2, margin=0, title_standoff=4,
+        title_text_font_size="11px", title_text_font_style="normal",
+        major_label_text_font_size="11px", background_fill_alpha=0.0, **look,
+    )  # fmt: skip
+    made.add_layout(bar, "right")
+    return bar
+
+
 def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str]) -> None:
     """Show values where the pointer is: names, and columns of the renderers' sources."""
     made.add_tools(HoverTool(renderers=renderers, tooltips=list(tips.items())))
@@ -271,12 +310,6 @@ def hover(made: figure, renderers: list[GlyphRenderer], tips: Mapping[str, str])
 def source(*columns: str) -> ColumnDataSource:
     """An empty source."""
     return ColumnDataSource({name: [] for name in columns})
-
-
-def put(target: ColumnDataSource, **columns: Any) -> None:
-    """Fill a source, where anything has changed: what is the same is not sent again."""
-    if not all(_equal(target.data[name], new) for name, new in columns.items()):
-        target.data = columns
 
 
 def _equal(old: Any, new: Any) -> bool:
@@ -294,8 +327,11 @@ def joined(curves: Iterable[ArrayLike]) -> Floats:
     return np.concatenate(pieces[:-1] or [gap[:, :0]], axis=1)
 
 
-def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
-    """A legend in one line above the plot, where it covers no curve; a click hides a curve."""
+def legend(made: figure, entries: dict[str, list[GlyphRenderer]], place: str = "above") -> Legend:
+    """A legend in one line, above the plot, where it covers no curve, or in it.
+
+    A click hides a curve.
+    """
     box = Legend(
         items=list(entries.items()),
         orientation="horizontal",
@@ -304,10 +340,11 @@ def legend(made: figure, entries: dict[str, list[GlyphRenderer]]) -> Legend:
         margin=2,
         label_height=12,
         click_policy="hide",
-        styles={"font-size": TEXT, "margin-left": "-44px", "top": "-3px"},
+        background_fill_alpha=0.0,
+        styles={"font-size": TEXT} | (ABOVE if place == "above" else {}),
         stylesheets=[CLOSE],
     )
-    made.add_layout(box, "above")
+    made.add_layout(box, place)
     return box
 
 
@@ -325,11 +362,9 @@ def whole(axis: Any) -> None:
 def extent(curves: Iterable[ArrayLike]) -> tuple[float, float]:
     """Smallest and largest value of all, as far as they are finite; zeros where there is none."""
     parts = [part for curve in curves if (part := np.asarray(curve)).size]
-    lows, highs = ([float(end(part)) for part in parts] for end in (np.min, np.max))
-    return (
-        min(filter(math.isfinite, lows), default=0.0),
-        max(filter(math.isfinite, highs), default=0.0),
-    )
+    ends = [(float(part.min()), float(part.max())) for part in parts]
+    lows, highs = zip(*[e for e in ends if all(map(math.isfinite, e))] or [(0.0, 0.0)], strict=True)
+    return min(lows), max(highs)
 
 
 def rounded_up(size: float, steps: Iterable[float] = (1.0, 2.0, 5.0, 10.0)) -> float:

@@ -11,18 +11,16 @@ import numpy as np
 from app.frame import Floats
 from app.messages import Needs
 from app.units import percent, unit_for
-from app.worker.geometry import StressField, floats, thinned
+from app.worker.geometry import DrawnRods, StressField, floats, thinned
 from app.worker.strand import all_wires, axial_force_of_rope, section, wire_ranges
 from solver.discrete import Problem
-from solver.discrete.probes import AxialForce
-from solver.discrete.rope.rope import Rope
 from solver.latin import Iterate
 from solver.reduction.basis import Modes
 from solver.reduction.sizes import Sizes, in_pieces, of_bases, of_clips
 from solver.reduction.svd import friction_spectra
 from solver.reference.condensation import NoReferenceError
 from solver.reference.shakedown.slip_space import SlipSpace, room_of_two, slip_space
-from solver.scenes import kind_of, structure_of
+from solver.scenes import kind_of
 from solver.study.other_programs.beside import Beside
 from solver.study.other_programs.brought import Brought
 from solver.study.quantities.clip_measures import can_be_clipped, clips_in, products_in
@@ -33,7 +31,7 @@ from solver.study.quantities.slips import slips_of
 if TYPE_CHECKING:
     from app.worker.sampling import Sampler
 
-MOST_SPECTRA, MOST_VALUES = 60, 64
+MOST_SPECTRA, MOST_VALUES = 24, 64
 """Substructures, and singular values of each, that are shown at most."""
 MOST_WIRES, MOST_PLACES, MOST_MODES = 6, 201, 5
 """Wires, places along them, and modes that are shown at most."""
@@ -54,29 +52,24 @@ def axial_force(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, A
     "names" of the wires; "stuck", what the force would be if nothing slipped, of the selected wire
     of a strand that is bent, else None.
     """
-    rope = structure_of(sampler.settings)
-    if isinstance(rope, Rope):
-        return axial_force_of_rope(rope, sampler, iterate, needs)
-    if kind_of(sampler.settings) != "wires":
+    if sampler.rope is not None:
+        return axial_force_of_rope(sampler.rope, sampler, iterate, needs)
+    drawn = sampler.drawn
+    if kind_of(sampler.settings) != "wires" or not isinstance(drawn, DrawnRods):
         return None
-    force = _axial_of(sampler)
+    force = drawn.axial
     count = int(force.wires.max()) + 1
     places = thinned(len(force.wires) // count, MOST_PLACES)
     broken = int(getattr(sampler.settings, "broken", 0))
     wires = sorted({*thinned(count, MOST_WIRES).tolist(), *([broken - 1] if broken else [])})
-    values = [force(iterate.displacement[:, column]) for column in sampler.columns]
-    shown = np.stack(values, axis=1).reshape(count, -1, len(values))[np.ix_(wires, places)]
+    values = drawn.axial_force(iterate)
+    shown = values.reshape(count, -1, values.shape[1])[np.ix_(wires, places)]
     return {
         "x": floats(force.positions[places]),
         "force": floats(shown),
         "names": [f"{n + 1}, broken" if n + 1 == broken else str(n + 1) for n in wires],
         "stuck": None,
     }
-
-
-@lru_cache(maxsize=1)
-def _axial_of(sampler: Sampler) -> AxialForce:
-    return AxialForce(sampler.problem)
 
 
 def slips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Floats] | None:
@@ -198,13 +191,10 @@ def _signed_size(space: Floats) -> Floats:
 
     The sign of the largest entry itself would flip whenever two lobes change places.
     """
-    sizes = np.ones(len(space))
-    for number, mode in enumerate(space):
-        largest = float(np.abs(mode).max(initial=0.0))
-        if largest > 0.0:
-            lobe = np.flatnonzero(np.abs(mode) >= 0.5 * largest)[-1]
-            sizes[number] = np.copysign(largest, mode[lobe])
-    return sizes
+    largest = np.abs(space).max(axis=1)
+    last = np.argmax(np.abs(space[:, ::-1]) >= 0.5 * largest[:, None], axis=1)
+    size = np.copysign(largest, space[np.arange(len(space)), -1 - last])
+    return np.where(largest > 0.0, size, 1.0)
 
 
 def clips(sampler: Sampler, iterate: Iterate, needs: Needs) -> dict[str, Any] | None:
@@ -269,16 +259,6 @@ def stress(sampler: Sampler, iterate: Iterate, needs: Needs) -> StressField:
 Extra = Callable[["Sampler", Iterate, Needs], Any]
 
 
-def _of_rope(extra: Callable[[Rope, Sampler, Iterate, Needs], Any]) -> Extra:
-    """An extra of a strand that is bent; None of all else."""
-
-    def of_rope(sampler: Sampler, iterate: Iterate, needs: Needs) -> Any:
-        rope = structure_of(sampler.settings)
-        return extra(rope, sampler, iterate, needs) if isinstance(rope, Rope) else None
-
-    return of_rope
-
-
 EXTRAS: dict[str, Extra] = {
     "spectra": spectra,
     "axial force": axial_force,
@@ -288,8 +268,7 @@ EXTRAS: dict[str, Extra] = {
     "clips": clips,
     "beside": beside,
     "stress": stress,
-    "section": _of_rope(section),
-    "all_wires": _of_rope(all_wires),
-    "wire_ranges": _of_rope(wire_ranges),
 }
 """By the name that a view needs them by."""
+OF_ROPE = {"section": section, "all_wires": all_wires, "wire_ranges": wire_ranges}
+"""Those of a strand that is bent, which have it as their first argument."""

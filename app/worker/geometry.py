@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from app.frame import DeformedGeometry, Floats, Geometry
+from app.worker.outlines import outlines_of
 from solver.arrays import Array
 from solver.discrete import Problem
 from solver.discrete.elements import von_mises
@@ -21,16 +20,12 @@ THICKNESS, PITCH = 0.08, 0.1
 """Of a rod as it is drawn, which has none in the model, and between two rods; shares of length."""
 MOST_POINTS = 200
 """Contact points of an interface, and nodes of a rod, that are drawn at most."""
+NONE = -1
+"""In place of a degree of freedom."""
 MOST_QUADS = 400
 """Quadrilaterals that are drawn at most, or one for each body."""
-
-
-class StressField(NamedTuple):
-    """What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
-
-    title: str
-    unit: str
-    values: Floats
+StressField = tuple[str, str, Floats]
+"""What colours the quadrilaterals: title, SI unit, and values, (n_quads, n_instants)."""
 
 
 def floats(values: NDArray[np.generic]) -> Floats:
@@ -64,22 +59,26 @@ class Drawn:
             points, pairs = np.unique(law.points, return_index=True)
             kept = thinned(len(points), MOST_POINTS)
             chosen.append(first + kept)
-            tangent = law.tangent.above[pairs[kept]]
-            normal = law.normal.component.above[pairs[kept]] if law.normal else tangent
-            dofs.append(problem.row_dofs[np.stack([tangent, normal], axis=1)])
+            moving = [law.tangent, *([law.normal.component] if law.normal else [])]
+            rows = np.stack([component.above[pairs[kept]] for component in moving], axis=1)
+            # What does not move off its support has no degree of freedom there.
+            own = problem.row_dofs[rows]
+            dofs.append(np.pad(own, ((0, 0), (0, 2 - len(moving))), constant_values=NONE))
             chains.append(np.full(len(kept), number))
             first += len(points)
         self._points, self._columns = np.concatenate(chosen), columns
         self._dofs = np.concatenate(dofs)
-        self._moves = np.array([1.0, 0.0 if heights is not None else 1.0])[:, None]
         places = problem.positions[self._dofs[:, 0]]
         if heights is not None:
             places = np.stack([places, heights[self._dofs[:, 0]]], axis=1)
-        self.geometry = Geometry(description, *mesh, floats(places), np.concatenate(chains))
+        self.geometry = Geometry(
+            description, *mesh, floats(places), np.concatenate(chains), *outlines_of(*mesh)
+        )
 
     def deformed(self, iterate: Iterate) -> DeformedGeometry:
         """How the bodies have moved."""
-        moved = iterate.displacement[self._dofs][:, :, self._columns] * self._moves
+        moved = iterate.displacement[self._dofs][:, :, self._columns]
+        moved[self._dofs == NONE] = 0.0
         status = iterate.status[np.ix_(self._points, self._columns)]
         return DeformedGeometry(self._nodes_moved(iterate), floats(moved), status)
 
@@ -111,7 +110,7 @@ class DrawnRods(Drawn):
             size += 2 * len(places)
             first_element += len(part.dofs) - 1
         self._along = np.concatenate(kept)
-        self._force, self._elements = AxialForce(problem), np.concatenate(elements)
+        self.axial, self._elements = AxialForce(problem), np.concatenate(elements)
         nodes = np.stack([problem.positions[self._along], np.concatenate(lows)], axis=1)
         quads = np.concatenate(corners).astype(np.int32)
         mesh = floats(nodes), quads, np.concatenate(parts)
@@ -119,9 +118,12 @@ class DrawnRods(Drawn):
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """Axial force, as rods have no height."""
+        return "axial force", "N", floats(self.axial_force(iterate)[self._elements])
+
+    def axial_force(self, iterate: Iterate) -> Array:
+        """That in all elements, shape (n_elements, n_instants), N."""
         moved = iterate.displacement[:, self._columns].T
-        force = np.stack([self._force(at_once)[self._elements] for at_once in moved], axis=1)
-        return StressField("axial force", "N", floats(force))
+        return np.stack([self.axial(at_once) for at_once in moved], axis=1)
 
     def _nodes_moved(self, iterate: Iterate) -> Floats:
         """They move along themselves."""
@@ -150,17 +152,16 @@ class DrawnMesh(Drawn):
 
     def stress(self, iterate: Iterate, component: str, settings: Settings) -> StressField:
         """A component of stress, or von Mises' equivalent, its mean in every quadrilateral."""
-        moved, values = self._moved(iterate), settings.values()
-        means = []
-        for place in range(len(self._columns)):
-            stress = self._inside.stress(moved[:, :, place])
+        values, means = settings.values(), []
+        for moved in np.moveaxis(self._moved(iterate), -1, 0):
+            stress = self._inside.stress(moved)
             if component in STRESSES:
                 shown = stress[:, STRESSES[component]]
             else:
                 shown = von_mises(stress, values["poisson"], values["plane"])
             means.append(np.bincount(self._quad, weights=shown) / self._counts)
         title = component if component in STRESSES else "von Mises stress"
-        return StressField(title, "Pa", floats(np.stack(means, axis=1)))
+        return title, "Pa", floats(np.stack(means, axis=1))
 
     def _moved(self, iterate: Iterate) -> Array:
         return self._inside.displacement(iterate.displacement, slice(None))[:, :, self._columns]
@@ -172,49 +173,35 @@ class DrawnMesh(Drawn):
 def thinned_mesh(
     inside: Inside,
 ) -> tuple[NDArray[np.intp], NDArray[np.int32], NDArray[np.intp]]:
-    """Nodes and quadrilaterals that are drawn of a mesh, and in which each element lies."""
-    bodies = np.unique(inside.bodies)
-    most = max(MOST_QUADS // len(bodies), 1)
+    """Nodes and quadrilaterals that are drawn of bodies, and in which each element lies.
+
+    The mesh of each body is a grid, of which some lines are left out.
+    """
     nodes, quads, quad_of = [], [], np.zeros(len(inside.elements), dtype=np.intp)
     n_nodes = n_quads = 0
-    for body in bodies:
+    most = max(MOST_QUADS // len(np.unique(inside.bodies)), 1)
+    for body in np.unique(inside.bodies):
         elements = np.flatnonzero(inside.bodies == body)
-        kept, corners, places = _thinned_body(inside.nodes, inside.elements[elements], most)
-        nodes.append(kept)
-        quads.append(corners + n_nodes)
-        quad_of[elements] = places + n_quads
-        n_nodes += len(kept)
-        n_quads += len(corners)
+        kept, corners = np.unique(inside.elements[elements], return_inverse=True)
+        (x, column), (y, row) = (
+            np.unique(values.round(9), return_inverse=True)
+            for values in inside.nodes[kept].T / np.ptp(inside.nodes)
+        )
+        grid = np.zeros((len(y), len(x)), dtype=np.intp)
+        grid[row, column] = kept
+        share = min(np.sqrt(most / len(elements)), 1.0)
+        rows = max(int(share * (len(y) - 1)), 1)
+        columns = max(min(int(share * (len(x) - 1)), most // rows), 1)
+        up, across = thinned(len(y), rows + 1), thinned(len(x), columns + 1)
+        drawn = n_nodes + np.arange(len(up) * len(across)).reshape(len(up), len(across))
+        around = drawn[:-1, :-1], drawn[:-1, 1:], drawn[1:, 1:], drawn[1:, :-1]
+        nodes.append(grid[np.ix_(up, across)].ravel())
+        quads.append(np.stack([corner.ravel() for corner in around], axis=1))
+        first_row, first_column = (
+            lines[corners.reshape(-1, 4)].min(axis=1) for lines in (row, column)
+        )
+        at = np.searchsorted(up, first_row, side="right") - 1
+        beside = np.searchsorted(across, first_column, side="right") - 1
+        quad_of[elements] = n_quads + at * (len(across) - 1) + beside
+        n_nodes, n_quads = n_nodes + len(nodes[-1]), n_quads + len(quads[-1])
     return np.concatenate(nodes), np.concatenate(quads).astype(np.int32), quad_of
-
-
-def _thinned_body(
-    nodes: Array, elements: NDArray[np.intp], most: int
-) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
-    """The same of one body; a mesh that is no grid is drawn as it is."""
-    kept, corners = np.unique(elements, return_inverse=True)
-    corners = corners.reshape(-1, 4)
-    (x, column), (y, row) = (
-        np.unique(values.round(9), return_inverse=True) for values in nodes[kept].T / np.ptp(nodes)
-    )
-    columns, rows = len(x) - 1, len(y) - 1
-    if len(kept) != len(x) * len(y) or len(elements) != columns * rows:
-        return kept, corners, np.arange(len(elements))
-    across, up = _lines(columns, rows, most)
-    grid = np.zeros((rows + 1, columns + 1), dtype=np.intp)
-    grid[row, column] = kept
-    drawn = np.arange(len(up) * len(across)).reshape(len(up), len(across))
-    around = drawn[:-1, :-1], drawn[:-1, 1:], drawn[1:, 1:], drawn[1:, :-1]
-    first_row, first_column = row[corners].min(axis=1), column[corners].min(axis=1)
-    at = np.searchsorted(up, first_row, side="right") - 1
-    beside = np.searchsorted(across, first_column, side="right") - 1
-    quads = np.stack([corner.ravel() for corner in around], axis=1)
-    return grid[np.ix_(up, across)].ravel(), quads, at * (len(across) - 1) + beside
-
-
-def _lines(columns: int, rows: int, most: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Node lines of a body, so that few enough quadrilaterals lie between them."""
-    share = min(np.sqrt(most / (columns * rows)), 1.0)
-    up = rows if share == 1.0 else min(max(int(rows * share), 1), most)
-    across = columns if share == 1.0 else min(max(int(columns * share), 1), max(most // up, 1))
-    return thinned(columns + 1, across + 1), thinned(rows + 1, up + 1)

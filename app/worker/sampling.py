@@ -10,7 +10,7 @@ import numpy as np
 
 from app.frame import ContactFields, Floats, Frame, Interface, Run
 from app.messages import Needs
-from app.worker.extras import EXTRAS
+from app.worker.extras import EXTRAS, OF_ROPE
 from app.worker.geometry import DrawnMesh, DrawnRods, floats, thinned
 from app.worker.strand import DrawnRope
 from solver.arrays import Array
@@ -45,8 +45,8 @@ class Sampler:
         What all frames share; `complete` adds the reference.
     problem, settings, loop, columns, rows
         What is solved, its loop, and the instants, and points by interface, that are shown.
-    drawn
-        The bodies as they are drawn.
+    drawn, rope
+        The bodies as they are drawn, and the strand if it is one that is bent.
     """
 
     def __init__(self, problem: Problem, settings: Settings, number: int) -> None:
@@ -56,8 +56,14 @@ class Sampler:
             name: thinned(len(law.positions), MOST_POINTS) for name, law in problem.rubbing.items()
         }
         self.loop = loop_of(settings, problem)
-        self.drawn = _drawn(problem, structure_of(settings), self.columns)
-        load = self.loop.force
+        structure = structure_of(settings)
+        self.rope = structure if isinstance(structure, Rope) else None
+        self.drawn: DrawnRods | DrawnMesh | DrawnRope
+        if self.rope is not None:
+            self.drawn = DrawnRope(self.rope, self.columns)
+        else:
+            kind = DrawnRods if problem.inside is None else DrawnMesh
+            self.drawn = kind(problem, structure.described(), self.columns)
         self.run = Run(
             number=number,
             settings=settings,
@@ -67,7 +73,6 @@ class Sampler:
             geometry=self.drawn.geometry,
             across=self.loop.across,
             up=self.loop.up,
-            load=floats(load[self.columns]) if isinstance(load, np.ndarray) else None,
             is_idle=nothing_acts(problem),
         )
 
@@ -107,11 +112,17 @@ class Sampler:
             energy=float(run.dissipated.sum()),
             residual=iterate.residual,
             remarks=tuple(remarks_on(self.settings, iterate)) if status else (),
-            extras={
-                name: EXTRAS[name](self, iterate, needs) for name in needs.extras if name in EXTRAS
-            },
+            extras=self._extras(iterate, needs),
             readings={name: reading(name)(run) for name in needs.readings},
         )
+
+    def _extras(self, iterate: Iterate, needs: Needs) -> dict[str, Any]:
+        names, rope = needs.extras, self.rope
+        extras = {name: EXTRAS[name](self, iterate, needs) for name in names & EXTRAS.keys()}
+        if rope is not None:
+            of_rope = names & OF_ROPE.keys()
+            extras |= {name: OF_ROPE[name](rope, self, iterate, needs) for name in of_rope}
+        return extras
 
     def _names(self, needs: Needs) -> tuple[str, ...]:
         """Interfaces whose contact a frame has."""
@@ -157,14 +168,6 @@ class Sampler:
         )
         both = self.loop.displacement(shown.displacement), force
         return floats(np.stack([np.asarray(values)[self.columns] for values in both]))
-
-
-def _drawn(problem: Problem, structure: Any, columns: Array) -> DrawnRods | DrawnMesh | DrawnRope:
-    """The bodies of a structure as they are drawn."""
-    if isinstance(structure, Rope):
-        return DrawnRope(structure, columns)
-    kind = DrawnRods if problem.inside is None else DrawnMesh
-    return kind(problem, structure.described(), columns)
 
 
 def _columns(history: Sequence[Record]) -> dict[str, Floats]:

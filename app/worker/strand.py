@@ -16,6 +16,7 @@ from scipy.integrate import cumulative_trapezoid
 from app.frame import Bytes, DeformedGeometry, Geometry
 from app.messages import Needs
 from app.worker.geometry import StressField, floats, thinned
+from app.worker.outlines import outlines_of
 from solver.arrays import Array
 from solver.discrete.rope.forces import WireForces, cut_at, stress_ranges
 from solver.discrete.rope.rope import Rope
@@ -59,7 +60,8 @@ class DrawnRope:
             numbers, 0.5 * (self._z[rows] + self._z[rows + 1])
         )
         points, chains, self._points, self._sides = self._lines()
-        self.geometry = Geometry(description, floats(nodes), quads, numbers, floats(points), chains)
+        mesh = floats(nodes), quads, numbers
+        self.geometry = Geometry(description, *mesh, floats(points), chains, *outlines_of(*mesh))
         self._nodes_moved, self._points_moved = (
             self._moved(np.asarray(places)) for places in (nodes, points)
         )
@@ -76,7 +78,7 @@ class DrawnRope:
         stress = self._forces(iterate.displacement, self._columns)
         stress = stress / self._forces.areas[:, None, None]
         element = np.minimum(self._quad_points, stress.shape[1] - 1)
-        return StressField("wire stress", "Pa", floats(stress[self._quad_wires, element]))
+        return "wire stress", "Pa", floats(stress[self._quad_wires, element])
 
     def _angle(self, wire: Array, place: Array) -> Array:
         """Polar angle of outer wires by their number, and at places along the strand."""
