@@ -6,11 +6,12 @@ import atexit
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import ClassVar
 
 import panel as pn
 
@@ -29,8 +30,6 @@ LIMIT = 60.0
 PROCESSES = "processes"
 SETTINGS = "settings.toml"
 OUT = "out"
-_lock = threading.Lock()
-_users = 0
 
 
 def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
@@ -143,21 +142,6 @@ def share_of(named: str, users: int) -> str:
     return f"{PROCESSES}:{max(1, width // users)}"
 
 
-@contextmanager
-def shared() -> Iterator[Pool]:
-    """A share of the server's executor."""
-    global _users
-    with _lock:
-        _users += 1
-        share = share_of(executor_of_the_server() or PROCESSES, _users)
-    try:
-        with opened(share, patience(LIMIT)) as pool:
-            yield pool
-    finally:
-        with _lock:
-            _users -= 1
-
-
 class Sweep:
     """Runs of a plan, on a thread of its own.
 
@@ -168,6 +152,8 @@ class Sweep:
     message
         Why it came to nothing, or empty.
     """
+
+    _under_way: ClassVar[set[Sweep]] = set()
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
@@ -195,8 +181,10 @@ class Sweep:
         self._is_cancelled.set()
 
     def _go(self) -> None:
+        named = executor_of_the_server() or PROCESSES
+        self._under_way.add(self)
         try:
-            with shared() as pool:
+            with opened(share_of(named, len(self._under_way)), patience(LIMIT)) as pool:
                 self.rows.extend(
                     sweep(self.plan, pool, limit=LIMIT, cancelled=self._is_cancelled.is_set)
                 )
@@ -206,5 +194,7 @@ class Sweep:
             log.exception("A sweep broke.")
             text = f"{type(trouble).__name__}: {trouble}"
             self.message = f"The executor broke ({text}); start again."
+        finally:
+            self._under_way.discard(self)
         if self._is_cancelled.is_set():
             self.message = "Cancelled."

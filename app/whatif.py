@@ -47,6 +47,7 @@ class WhatIf:
 
     def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
         self.state, self._open_run = state, open_run
+        self.question = Question((), "")
         self.sweep: Sweep | None = None
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
@@ -69,7 +70,6 @@ class WhatIf:
         state.param.watch(lambda event: self._show(), ["settings", "tab", "question"])
         follow(self.look, self.end)
         self._show()
-        self.start()
 
     def _make_fields(self) -> None:
         self.spans = (
@@ -144,10 +144,13 @@ class WhatIf:
     # Fields
 
     def _show(self) -> None:
-        """Show the question, of which another scene may know nothing."""
+        """Show the question, of which another scene may know nothing, and have it answered.
+
+        One that was put together in the fields waits until it is to be drawn.
+        """
         if self.state.tab != "What if":
             return
-        settings = self.state.settings
+        settings, before = self.state.settings, self.question
         self.question = question_of(self.state.question, settings)
         self._is_updating = True
         for span, text in zip(self.spans, (*self.question.vary, ""), strict=False):
@@ -163,7 +166,9 @@ class WhatIf:
             button.visible = READY[title][1](settings) is not None
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
-        if self.sweep is not None:
+        if self.sweep is None or self.question != before:
+            self.start()
+        else:
             self._draw()
 
     def _change(self) -> None:
@@ -176,7 +181,7 @@ class WhatIf:
             at = self._at.value.strip() or (str(TENTH) if parameter.needed else "")
             of = f"{of}@{at}" if at else of
         try:
-            texts = [span.text(span.spacing.value) for span in self.spans]
+            texts = [span.text() for span in self.spans]
             question = Question(tuple(filter(None, texts)), of)
             refusal = question.refusal(settings)
         except ValueError as problem:
@@ -184,11 +189,13 @@ class WhatIf:
         self._start.disabled, self._help.object = bool(refusal), ""
         self._message.object = refusal
         if not refusal:
+            self.question = question
             self.state.question = str(question)
 
     def _on_ready(self, title: str) -> None:
         self._help.object, make = READY[title]
-        self.state.question = str(make(self.state.settings))
+        self.question = make(self.state.settings)
+        self.state.question = str(self.question)
         self.start()
 
     def _on_mesh(self) -> None:

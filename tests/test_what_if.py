@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ from app.jobs import Job, Sweep, share_of
 from app.questions import READY, Question, bathtub, question_of
 from app.state import PageState, default_settings
 from app.whatif import WhatIf, nearest
-from solver.running.pool import Pool
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
@@ -27,12 +26,7 @@ LOADS = Question(("friction=0.2:0.4:3", "peak=600:900:2"), "dissipation")
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     """Runs take place in this process."""
     pool = Here()
-
-    @contextmanager
-    def shared() -> Iterator[Pool]:
-        yield pool
-
-    monkeypatch.setattr(jobs, "shared", shared)
+    monkeypatch.setattr(jobs, "opened", lambda named, limit: nullcontext(pool))
     return pool
 
 
@@ -79,6 +73,17 @@ def test_rows_come_one_by_one_and_cancel_ends_them(
     running.thread.join()
     assert running.message == "Cancelled."
     assert 0 < len(running.rows) < plan.size
+
+
+@pytest.mark.usefixtures("here")
+def test_the_chart_is_of_another_question_once_one_goes_back_to_it() -> None:
+    made = asked(LOADS)
+    made.spans[1].name.value = ""
+    assert made.question.vary == LOADS.vary[:1]
+    assert made.sweep.plan.size == 6
+    made.state.question = "friction=0.2:0.4:2 dissipation"
+    made.sweep.thread.join()
+    assert made.sweep.plan.size == len(made.sweep.rows) == 2
 
 
 @pytest.mark.usefixtures("here")
