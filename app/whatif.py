@@ -11,7 +11,7 @@ import panel as pn
 import panel_material_ui as pmui
 from bokeh.events import Tap
 
-from app.charts import form, in_units, keys, overlay
+from app.charts import in_units, keys, overlay
 from app.files import download
 from app.jobs import SETTINGS, Job, Sweep, follow
 from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
@@ -52,7 +52,7 @@ class WhatIf:
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
         self._is_updating = False
-        self._form: tuple[Any, ...] = ()
+        self._is_logarithmic: bool | None = None
         self._make_fields()
         self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
         table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
@@ -104,7 +104,7 @@ class WhatIf:
             return
         self.cancel()
         self.sweep = Sweep(self.question.plan(self.state.settings))
-        self._form = ()
+        self._is_logarithmic = None
         self._draw()
 
     def cancel(self) -> None:
@@ -221,10 +221,11 @@ class WhatIf:
         self._message.object = f"{sweep.message} {words}".strip()
         chart = self.chart()
         data = chart, _place_of(sweep.plan, chart, settings)
-        if form(chart) == self._form:
+        scale = chart.scale if isinstance(chart, Map) else chart.y
+        if scale.logarithmic is self._is_logarithmic:
             self._pipe.send(data)
             return
-        self._form, self._keys.object = form(chart), keys([chart])
+        self._is_logarithmic, self._keys.object = scale.logarithmic, keys([chart])
         self._pipe = hv.streams.Pipe(data=data)
         self._chart.object = hv.DynamicMap(
             lambda data: overlay(*data).opts(hooks=[self._listen]), streams=[self._pipe]
