@@ -108,11 +108,9 @@ class Job:
 
     @property
     def failure(self) -> str:
-        """Why it came to nothing, or nothing."""
+        """Why it came to nothing in the end, or nothing."""
         if self._is_cancelled:
             return "Cancelled."
-        if not self.is_over:
-            return ""
         if self._future.exception() is not None:
             return "Its process stopped unexpectedly; start it again."
         has_failed = self._future.result() not in (0, 1) or not (self.files or self.lines)
