@@ -132,7 +132,8 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
         xs, ys = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
         x_limits, y_limits = (axis.limits or (None, None) for axis in (chart.x, chart.y))
     ring = hv.Points([here] if np.isfinite(here).all() else [], ["x", "y"])
-    look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5}
+    # Whether axes follow a chart that fills is asked of elements, not of their overlay.
+    look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5, "framewise": True}
     return hv.Overlay([*made, ring.opts(**look)]).opts(
         title=title,
         logx=chart.x.logarithmic,
@@ -146,7 +147,6 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
         padding=(0.03, 0.1),
         responsive=True,
         height=HEIGHT,
-        framewise=True,
         show_legend=False,
         show_grid=isinstance(chart, Panel),
         default_tools=TOOLS,

@@ -97,6 +97,7 @@ def test_a_chart_that_fills_shows_what_is_new_in_the_same_figure() -> None:
     figure = hv.renderer("bokeh").get_plot(filling).state
     pipe.send(whole)
     assert sum(len(data["said"]) for data in data_of(figure, "said")) == 4
+    assert (figure.y_range.start, figure.y_range.end) == whole.y.limits
     other = replace(whole, y=replace(whole.y, unit="k"))
     pipe.send(other)
     assert figure.yaxis.axis_label == other.y.label
