@@ -13,9 +13,9 @@ import numpy as np
 import pandas as pd
 from bokeh.embed import components
 from bokeh.palettes import Viridis256
-from bokeh.plotting import figure
-from bokeh.plotting.contour import contour_data
 from bokeh.resources import Resources
+from contourpy import contour_generator
+from holoviews.util.locator import MaxNLocator
 
 from app.units import unit_for
 from app.views.colors import FORCE, REFERENCE
@@ -33,7 +33,6 @@ HEIGHT = 350
 LABEL = 34
 """Characters of a line beside an axis."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
-BY_HUE = {"color": "hue", "cmap": list(COLORS), "clim": (-0.5, len(COLORS) - 0.5)}
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
 THIN = "points", "faint"
 STYLE = """<style>
@@ -42,13 +41,6 @@ STYLE = """<style>
 .key { margin-right: 1rem; white-space: nowrap; }
 </style>"""
 Point = tuple[float, float]
-Path = tuple[Array, Array]
-
-
-def draw(chart: Chart) -> figure:
-    """Figure of a chart, as wide as there is room for; `keys` are its legend."""
-    drawn: figure = hv.renderer("bokeh").get_plot(overlay(in_units(chart))).state
-    return drawn
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
@@ -58,7 +50,8 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
     -------
     What all of them need, and each section (HTML).
     """
-    figures = [draw(chart) for plot in plots for chart in plot.charts]
+    draw = hv.renderer("bokeh").get_plot
+    figures = [draw(overlay(in_units(chart))).state for plot in plots for chart in plot.charts]
     script, places = components(figures, wrap_script=True)
     waiting = iter(places)
     sections = [
@@ -180,13 +173,8 @@ def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
 
 
 def _table(runs: Runs) -> pd.DataFrame:
-    """Runs as HoloViews takes them, but for whole numbers, which it would take for colours."""
-    names = {"x": runs.x, "y": runs.y, "hue": runs.hues * 1.0, "value": runs.values}
-    return pd.DataFrame({**names, "said": np.array(runs.said, dtype=object)})
-
-
-def _points(table: pd.DataFrame) -> hv.Points:
-    return hv.Points(table, ["x", "y"], ["hue", "said"])
+    """Runs as HoloViews takes them."""
+    return pd.DataFrame({"x": runs.x, "y": runs.y, "said": np.array(runs.said, dtype=object)})
 
 
 def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
@@ -194,16 +182,21 @@ def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
         yield from _of_curve(panel, curve)
     if panel.runs is None:
         return
-    runs, holds, known = _table(panel.runs), panel.runs.holds, np.isfinite(panel.runs.y)
+    runs, known = _table(panel.runs), np.isfinite(panel.runs.y)
     low, high = panel.y.limits or (0.0, 1.0)
     # What has no value stands at the upper edge.
     top = high * (low / high) ** 0.03 if panel.y.logarithmic else high - 0.03 * (high - low)
-    dots = {**BY_HUE, **HOVER, "size": 7, "hit_dilation": 2.0, "line_width": 1.6}
     line = hv.Curve(([here[0]] * 2, [low, high]), "x", "y")
     yield line.opts(color=FORCE, line_dash="dotted", line_width=1.5)
-    yield _points(runs[known & ~holds]).opts(**dots, fill_alpha=0.0)
-    yield _points(runs[known & holds]).opts(**dots)
-    yield _points(runs[~known].assign(y=top)).opts(**dots, marker="x")
+    looks = {
+        "color": np.array(COLORS)[panel.runs.hues],
+        "fill_alpha": panel.runs.holds * 1.0,
+        "marker": np.where(known, "circle", "x"),
+    }
+    table = runs.assign(y=runs["y"].where(known, top), **looks)
+    by_column = {name: name for name in looks}
+    dots = hv.Points(table, ["x", "y"], ["said", *looks])
+    yield dots.opts(**HOVER, **by_column, size=7, hit_dilation=2.0, line_width=1.6)
 
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
@@ -224,25 +217,22 @@ def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
 
 
 def _of_map(chart: Map) -> Iterator[hv.Element]:
-    low, high = span(chart)
-    by_value = {
-        **{"color": "value", "cmap": Viridis256, "clim": (low, high), "line_alpha": 0.0},
-        **{"logz": chart.scale.logarithmic, "colorbar": True, "clabel": " "},
-    }
     runs, holds = _table(chart.runs), chart.runs.holds
-    if chart.is_sampled:
-        rows, columns = np.nonzero(np.isfinite(chart.z))
-        places = {"x": chart.x_values[columns], "y": chart.y_values[rows]}
-        known = pd.DataFrame({**places, "value": chart.z[rows, columns]})
-        yield _cells(chart, known).opts(**by_value)
-    else:
-        yield _cells(chart, runs[holds]).opts(**by_value, **HOVER)
-        hatch = {"glyph.hatch_pattern": {"value": "right_diagonal_line"}}
-        hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
-        hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
-        yield _cells(chart, runs[~holds]).opts(**hollow, **HOVER)
+    rows, columns = np.nonzero(np.isfinite(chart.z))
+    places = {"x": chart.x_values[columns], "y": chart.y_values[rows]}
+    known = pd.DataFrame({**places, "value": chart.z[rows, columns]})
+    yield _cells(chart, known).opts(
+        color="value",
+        cmap=Viridis256,
+        logz=chart.scale.logarithmic,
+        line_alpha=0.0,
+        colorbar=True,
+        clabel=" ",
+    )
     paths, labels = contours(chart)
     yield hv.Contours(paths, ["x", "y"]).opts(color="#000", alpha=0.75, line_width=1.2)
+    if chart.level is not None:
+        labels = known.assign(text=[f"{value:.2g}" for value in known["value"]])
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
@@ -250,18 +240,15 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         background_fill_alpha=0.7,
     )
     if chart.is_sampled:
-        dots = {"color": "#fff", "line_color": "#444", "size": 4, **HOVER}
-        yield _points(runs[holds]).opts(**dots)
-
-
-def span(chart: Map) -> tuple[float, float]:
-    """Ends of the scale of colours."""
-    known = chart.z[np.isfinite(chart.z)]
-    if not known.size:
-        return (1.0, 10.0)
-    low, high = float(known.min()), float(known.max())
-    by = 0.1 * abs(low) or 1.0
-    return (low, high) if low < high else (low - by, high + by)
+        dots = hv.Points(runs[holds], ["x", "y"], "said")
+        yield dots.opts(color="#fff", line_color="#444", size=4, **HOVER)
+    else:
+        # Over each run's cell, for its words; hatched where it is no answer.
+        hatched = runs.assign(hatch=np.where(holds, " ", "right_diagonal_line"))
+        hatch = {"glyph.hatch_pattern": {"field": "hatch"}}
+        hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
+        hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
+        yield _cells(chart, hatched).opts(**hollow, **HOVER)
 
 
 def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
@@ -273,44 +260,30 @@ def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
     return hv.Rectangles(table.assign(**sides), list(sides), list(table))
 
 
-def levels(low: float, high: float, *, is_logarithmic: bool) -> Array:
-    """Values that are easily read, between two others."""
+def levels(values: Array, *, is_logarithmic: bool) -> Array:
+    """Values that are easily read, between others, none where these are the same."""
+    low, high = values.min(initial=np.inf), values.max(initial=-np.inf)
+    if low >= high:
+        return np.array([])
     if is_logarithmic:
         powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
         several = np.outer(powers, [1.0, 2.0, 5.0] if len(powers) <= 4 else [1.0]).ravel()
     else:
-        rough = (high - low) / LEVELS
-        power = 10.0 ** np.floor(np.log10(rough))
-        step = power * next(n for n in (1.0, 2.0, 5.0, 10.0) if n * power >= rough)
-        several = step * np.arange(np.ceil(low / step), high / step)
+        several = MaxNLocator(LEVELS).tick_values(low, high)
     return np.asarray(several[(several > low) & (several < high)])
 
 
-def contours(chart: Map) -> tuple[list[Path], list[tuple[float, float, str]]]:
+def contours(chart: Map) -> tuple[list[Array], list[tuple[float, float, str]]]:
     """Lines of equal value, straight between runs on the page, and values with their places."""
-    low, high = span(chart)
-    at = levels(low, high, is_logarithmic=chart.scale.logarithmic)
-    at = at if chart.level is None else np.array([chart.level])
-    paths: list[Path] = []
-    labels: list[tuple[float, float, str]] = []
-    if min(chart.z.shape) > 1 and at.size:
-        (x, x_back), (y, y_back), (z, _) = map(_even, (chart.x, chart.y, chart.scale))
-        lines: Any = contour_data(
-            x(chart.x_values), y(chart.y_values), z(chart.z), z(at), want_fill=False
-        ).line_data
-        for number, (level, *path) in enumerate(zip(at, lines.xs, lines.ys, strict=True)):
-            across, up = x_back(path[0]), y_back(path[1])
-            known = np.flatnonzero(np.isfinite(across))
-            if known.size:
-                paths.append((across, up))
-                # Not all in the same place, where lines are close.
-                place = known[len(known) * (1 + number % 3) // 4]
-                labels.append((across[place], up[place], f"{level:.4g}"))
-    if chart.level is not None:
-        labels = [
-            (x, y, f"{value:.2g}")
-            for y, row in zip(chart.y_values, chart.z, strict=True)
-            for x, value in zip(chart.x_values, row, strict=True)
-            if np.isfinite(value)
-        ]
-    return paths, labels
+    if min(chart.z.shape) == 1:
+        return [], []
+    (x, x_back), (y, y_back), (z, _) = map(_even, (chart.x, chart.y, chart.scale))
+    known = chart.z[np.isfinite(chart.z)]
+    several = levels(known, is_logarithmic=chart.scale.logarithmic)
+    at = several if chart.level is None else [chart.level]
+    made = contour_generator(x(chart.x_values), y(chart.y_values), z(chart.z))
+    lines = [(f"{level:.4g}", line.T) for level in at for line in made.lines(z(level))]
+    paths = [np.stack([x_back(across), y_back(up)], 1) for _, (across, up) in lines]
+    # Not all in the same place, where lines are close.
+    places = [len(path) * (1 + number % 3) // 4 for number, path in enumerate(paths)]
+    return paths, [(*p[i], text) for p, i, (text, _) in zip(paths, places, lines, strict=True)]

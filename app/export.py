@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import pickle
 from base64 import b64encode
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
+from pprint import pformat
+from textwrap import indent
 from typing import Any
 
 import numpy as np
@@ -43,24 +44,16 @@ from solver.study.other_programs.fclib import can_write
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
 from solver.files import scene_settings
-from solver.latin import solve
-from solver.reference.choice import reference_of
-from solver.reference.distance import distance_to
-from solver.scenes import discretise
-from solver.scenes.method import method_of
+from solver.study.quantities.finished import finished_run
 
-settings = scene_settings({scene}).checked(
-    {{
-{values}    }}
+settings = scene_settings("{scene}").checked(
+    {values}
 )
-problem = discretise(settings)
-distance = {distance}
-solution = solve(problem, method_of(settings), distance=distance)
+solution = finished_run(settings, errors={errors}).solution
 for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
-DISTANCE = "distance_to(reference_of(problem), problem)"
 MOST_INSTANTS = 60
 HEIGHTS = {"Scene": 260, "Load path": 70}
 HEIGHT = 300
@@ -83,12 +76,8 @@ models.forEach((model, n) => { model[names[n]] = values[n][i] })
 
 def program(settings: Settings) -> str:
     """A Python program that gives the numbers of a run again, with all its settings."""
-    values = settings.values().items()
-    return PROGRAM.format(
-        scene=json.dumps(settings.scene),
-        values="".join(f"        {json.dumps(name)}: {value!r},\n" for name, value in values),
-        distance=DISTANCE if has_reference(settings) else "None  # it would take too long",
-    )
+    values = indent(pformat(settings.values(), sort_dicts=False), "    ").lstrip()
+    return PROGRAM.format(scene=settings.scene, values=values, errors=has_reference(settings))
 
 
 def history_table(frame: Frame) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import logging
+import re
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -49,10 +50,9 @@ def executor() -> Pool:
     """
     named = executor_of_the_server() or PROCESSES
     stack = ExitStack()
-    on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
-    pool = stack.enter_context(opened(on, lasting=False))
     atexit.register(stack.close)
-    return pool
+    on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
+    return stack.enter_context(opened(on, lasting=False))
 
 
 class Job:
@@ -133,9 +133,9 @@ def share_of(named: str, users: int) -> str:
     A queue for all would have everybody wait for the longest run of anybody. Where no number is
     named, one processor is left to the pages, but of two none: the processes are niced.
     """
-    kind, _, count = named.partition(":")
-    if kind != PROCESSES or (count and not count.isdecimal()) or count == "0":
+    if not re.fullmatch(rf"{PROCESSES}(:[1-9]\d*)?", named):
         return named
+    _, _, count = named.partition(":")
     width = int(count) if count else max(processors() - 1, min(processors(), 2))
     return f"{PROCESSES}:{max(1, width // users)}"
 

@@ -17,7 +17,7 @@ from app.jobs import SETTINGS, Job, Sweep, follow
 from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
 from app.refusals import message_of
 from app.state import ANSWER, PageState, answer
-from app.units import number, sizes_of, unit_for
+from app.units import sizes_of, unit_for
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
@@ -257,21 +257,19 @@ class WhatIf:
 def nearest(chart: Chart, x: float, y: float) -> int | None:
     """Number in the chart of the run that is meant by a place on it; None where there is none."""
     assert chart.runs is not None
-    ways = []
-    for axis, values, at in ((chart.x, chart.runs.x, x), (chart.y, chart.runs.y, y)):
-        if axis.logarithmic:
-            values, at = np.log(values), np.log(at)
-        known = values[np.isfinite(values)]
-        ways.append((values - at) / ((np.ptp(known) if len(known) else 0.0) or 1.0))
-    far = np.hypot(*ways)
-    if not np.isfinite(far).any():
+    known, away = np.flatnonzero(np.isfinite(chart.runs.y)), 0.0
+    if not known.size:
         return None
-    place = int(np.nanargmin(far))
-    return place if isinstance(chart, Map) or far[place] < NEAR else None
+    for axis, values, at in ((chart.x, chart.runs.x, x), (chart.y, chart.runs.y, y)):
+        scale = np.log if axis.logarithmic else np.asarray
+        places = scale(values[known])
+        away = np.hypot(away, (places - scale(at)) / (np.ptp(places) or 1.0))
+    nearest = int(away.argmin())
+    return int(known[nearest]) if isinstance(chart, Map) or away[nearest] < NEAR else None
 
 
 def _measured(value: float, unit: str) -> str:
-    return unit_for(abs(value), unit)(value, 4) if unit != "%" else f"{number(value, 4)} %"
+    return unit_for(abs(value), unit)(value, 4)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
@@ -282,16 +280,15 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
 
 
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
-    """Where settings stand on a chart; NaN off its axes, and above a panel's."""
+    """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
     place = [np.nan, np.nan]
-    axes = ordered(plan) if settings.scene == plan.settings.scene else []
-    shown = [chart.x, chart.y] if is_map(plan) else [chart.x]
-    for i, (axis, across) in enumerate(zip(axes, shown, strict=False)):
-        value = getattr(settings, axis.name)
-        if not axis.is_numeric:
-            place[i] = axis.values.index(value) if value in axis.values else np.nan
-        elif min(axis.values) <= value <= max(axis.values):
-            place[i] = value / sizes_of(plan.unit(axis)).get(across.unit, 1.0)
+    axes = ordered(plan)[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
+    for i, axis in enumerate(axes):
+        value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
+        if axis.is_numeric:
+            place[i] = value / sizes_of(plan.unit(axis)).get(unit, 1.0)
+        elif value in axis.values:
+            place[i] = axis.values.index(value)
     return place[0], place[1]
 
 
