@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 from base64 import b64encode
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -208,14 +208,18 @@ def _changes(
     return {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
 
 
+def _tables(frame: Frame, views: Iterable[View]) -> dict[str, Callable[[], str]]:
+    """What makes the tables of what is seen (CSV), by title."""
+    plots = {view.name: partial(plot_table, view, frame) for view in views}
+    return {"All iterations": partial(history_table, frame), **plots}
+
+
 def _below(frame: Frame, views: Sequence[View]) -> str:
     """Tables and settings (HTML)."""
-    tables = {f"{slug(view)}.csv": plot_table(view, frame) for view in views}
-    tables["iterations.csv"] = history_table(frame)
     links = ", ".join(
-        f'<a download="{name}" href="data:text/csv;base64,'
-        f'{b64encode(text.encode()).decode()}">{name}</a>'
-        for name, text in tables.items()
+        f'<a download="{slug(title)}.csv" href="data:text/csv;base64,'
+        f'{b64encode(make().encode()).decode()}">{slug(title)}.csv</a>'
+        for title, make in _tables(frame, views).items()
     )
     settings = escape(dump(frame.run.settings))
     below = f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
@@ -243,11 +247,10 @@ class TakeAway:
             "The run as one page (.html)": (".html", page),
             "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
             "The run as a program (.py)": (".py", partial(program, settings)),
-            "All iterations (.csv)": ("-iterations.csv", partial(history_table, frame)),
         }
         offers |= {
-            f"{view.name} (.csv)": (f"-{slug(view)}.csv", partial(plot_table, view, frame))
-            for view in views
+            f"{title} (.csv)": (f"-{slug(title)}.csv", make)
+            for title, make in _tables(frame, views).items()
         }
         name = f"slipfront-{settings.scene}"
         buttons: list[Any] = [
@@ -278,6 +281,6 @@ class TakeAway:
         return column
 
 
-def slug(view: View) -> str:
-    """The name of a view in the name of a file."""
-    return view.name.lower().replace(" ", "-").replace("/", "-")
+def slug(title: str) -> str:
+    """A title in the name of a file."""
+    return title.lower().replace(" ", "-").replace("/", "-")

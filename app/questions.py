@@ -236,15 +236,16 @@ class Span:
         self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
         spacings = [EVEN, DECADES, LISTED]
         self.spacing = pmui.Select(label="Values in", options=spacings, width=140, **FIELD)
-        self.low = pmui.TextInput(label="from", width=110, **FIELD)
-        self.high = pmui.TextInput(label="to", width=110, **FIELD)
-        self.count = pmui.IntInput(label="Values", value=2, start=2, width=110, **FIELD)
-        self.listed = pmui.TextInput(label="Values", width=330, **FIELD)
+        is_listed, is_range = self.spacing.rx() == LISTED, self.spacing.rx() != LISTED
+        ends = {"width": 110, "visible": is_range, **FIELD}
+        self.low = pmui.TextInput(label="from", **ends)
+        self.high = pmui.TextInput(label="to", **ends)
+        self.count = pmui.IntInput(label="Values", value=2, start=2, **ends)
+        self.listed = pmui.TextInput(label="Values", width=330, visible=is_listed, **FIELD)
         self.chosen = pmui.CheckButtonGroup(label="", size="small", margin=(4, 6), sx=PLAIN)
-        self.view = pn.FlexBox(
-            self.name, self.spacing, self.low, self.high, self.count, self.listed, self.chosen
-        )
-        for field in self.view:
+        self._numbers = pn.FlexBox(self.spacing, self.low, self.high, self.count, self.listed)
+        self.view = pn.FlexBox(self.name, self._numbers, self.chosen)
+        for field in (self.name, *self._numbers, self.chosen):
             field.param.watch(self._on_field, "value")
 
     def show(self, settings: Settings, text: str) -> None:
@@ -254,7 +255,8 @@ class Span:
         titles = {_titled(known, settings): key for key, known in variable(settings).items()}
         self.name.param.update(options={**self._nothing, **titles}, value=name)
         definition = settings.definitions().get(name)
-        if isinstance(definition, param.Number):
+        is_number = isinstance(definition, param.Number)
+        if is_number:
             unit = unit_of(definition)
             numbers = [f"{v / unit.factor:.10g}" for v in axis_of(settings, text).values]
             self.low.param.update(label=unit.titled("from"), value=numbers[0])
@@ -265,18 +267,9 @@ class Span:
             self.spacing.value = in_range if ":" in text else LISTED
         elif definition is not None:
             self.chosen.param.update(options=names_of(definition), value=values.split(","))
-        self._arrange()
-        self._is_updating = False
-
-    def _arrange(self) -> None:
-        """Have those fields in sight that the setting and its spacing need."""
-        definition = self._settings.definitions().get(self.name.value)
-        is_number, is_listed = isinstance(definition, param.Number), self.spacing.value == LISTED
-        self.spacing.visible = is_number
-        self.listed.visible = is_number and is_listed
-        for field in (self.low, self.high, self.count):
-            field.visible = is_number and not is_listed
+        self._numbers.visible = is_number
         self.chosen.visible = definition is not None and not is_number
+        self._is_updating = False
 
     def text(self) -> str:
         """The setting and its values as the command line takes them, in SI; "" for none.
@@ -302,12 +295,11 @@ class Span:
         return f"{name}={':'.join([*values, str(self.count.value)])}{log}"
 
     def _on_field(self, event: param.parameterized.Event) -> None:
-        """Have the fields fit; another setting brings its own values."""
+        """Have the question changed; another setting brings its own values."""
         if self._is_updating:
             return
         if event.obj is self.name:
             self.show(self._settings, proposed(self._settings, event.new) if event.new else "")
-        self._arrange()
         self._changed()
 
 

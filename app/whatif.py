@@ -60,7 +60,7 @@ class WhatIf:
             pn.FlexBox(*self._ready.values(), self._help),
             *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._start, self._cancel),
-            self._message,
+            self.message,
             self._keys,
             self._chart,
             pn.FlexBox(table, self.mesh, self._meshed),
@@ -87,20 +87,15 @@ class WhatIf:
             title: _button(title, lambda title=title: self._on_ready(title)) for title in READY
         }
         self._help = pmui.Typography("", variant="body2", margin=(2, 8))
-        self._message = pmui.Typography("", variant="body2", margin=(2, 8))
+        self.message = pmui.Typography("", variant="body2", margin=(2, 8))
         self._meshed = pmui.Typography("", variant="body2", margin=(10, 8))
         self._keys = pn.pane.HTML("", margin=(4, 8))
-
-    @property
-    def message(self) -> str:
-        """How far the runs are, or what is refused."""
-        return str(self._message.object)
 
     def start(self) -> None:
         """Have the question answered, in place of the one before."""
         refusal = self.question.refusal(self.state.settings)
         if refusal:
-            self._message.object = refusal
+            self.message.object = refusal
             return
         self.cancel()
         self.sweep = Sweep(self.question.plan(self.state.settings))
@@ -187,7 +182,7 @@ class WhatIf:
         except ValueError as problem:
             refusal = f"{problem}."
         self._start.disabled, self._help.object = bool(refusal), ""
-        self._message.object = refusal
+        self.message.object = refusal
         if not refusal:
             self.question = question
             self.state.question = str(question)
@@ -218,7 +213,7 @@ class WhatIf:
         words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
-        self._message.object = f"{sweep.message} {words}".strip()
+        self.message.object = f"{sweep.message} {words}".strip()
         chart = self.chart()
         data = chart, _place_of(sweep.plan, chart, settings)
         scale = chart.scale if isinstance(chart, Map) else chart.y
@@ -241,7 +236,7 @@ class WhatIf:
         """Open the run of the point at a place on the chart, as the page shows runs."""
         chart, page = self.chart(), self.state.settings
         place = nearest(chart, x, y)
-        if self.sweep is None or chart.runs is None or place is None:
+        if self.sweep is None or place is None:
             return
         plan = self.sweep.plan
         try:

@@ -49,7 +49,7 @@ def test_the_tab_opens_with_its_first_chart_drawn() -> None:
     made = asked(LOADS)
     chart = made.chart()
     assert np.isfinite(chart.runs.values).sum() == 6
-    assert "6 of 6 runs: 6 converged" in made.message
+    assert "6 of 6 runs: 6 converged" in made.message.object
     rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "f")]
     assert len(rows) == 6
 
@@ -109,9 +109,9 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
     first.spacing.value = "a list"
     assert made.question.vary[0] == "length=0.5,1,2"
     first.listed.value = "1, long"
-    assert "number" in made.message
+    assert "number" in made.message.object
     first.listed.value = "-1, 2"
-    assert "cannot be" in made.message
+    assert "cannot be" in made.message.object
     assert made.question.vary[0] == "length=0.5,1,2"
     first.listed.value = "1, 2"
     second.name.value = "acceleration"
