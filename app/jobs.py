@@ -75,11 +75,6 @@ class Job:
         self._future = executor().submit(command, tuple(arguments), self.folder)
 
     @property
-    def is_begun(self) -> bool:
-        """Whether its turn has come."""
-        return self._future.running() or self._future.done()
-
-    @property
     def is_over(self) -> bool:
         """Whether nothing more comes."""
         return self._future.done()
@@ -100,7 +95,7 @@ class Job:
     @property
     def progress(self) -> str:
         """How far it is, or why it came to nothing."""
-        if not self.is_begun:
+        if not self._future.running() and not self.is_over:
             return "Waiting: another report is made first."
         if self.is_over:
             return self.failure

@@ -199,7 +199,7 @@ def test_commands_run_in_turn_to_their_end_and_a_cancelled_one_leaves_nothing() 
 class Done:
     """A job that is over."""
 
-    is_begun, is_over, failure, progress = True, True, "", ""
+    is_over, failure, progress = True, "", ""
 
     def __init__(self, *arguments: Any) -> None:
         link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
