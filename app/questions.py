@@ -234,18 +234,21 @@ class Span:
         self._nothing = {"–": ""} if is_optional else {}
         self._changed, self._is_updating = changed, False
         self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
-        spacings = [EVEN, DECADES, LISTED]
-        self.spacing = pmui.Select(label="Values in", options=spacings, width=140, **FIELD)
-        is_listed, is_range = self.spacing.rx() == LISTED, self.spacing.rx() != LISTED
-        ends = {"width": 110, "visible": is_range, **FIELD}
+        spacings, self._is_number = [EVEN, DECADES, LISTED], pn.rx(False)
+        self.spacing = pmui.Select(
+            label="Values in", options=spacings, width=140, visible=self._is_number, **FIELD
+        )
+        ends = {"width": 110, "visible": self._is_number & (self.spacing.rx() != LISTED), **FIELD}
         self.low = pmui.TextInput(label="from", **ends)
         self.high = pmui.TextInput(label="to", **ends)
         self.count = pmui.IntInput(label="Values", value=2, start=2, **ends)
+        is_listed = self._is_number & (self.spacing.rx() == LISTED)
         self.listed = pmui.TextInput(label="Values", width=330, visible=is_listed, **FIELD)
         self.chosen = pmui.CheckButtonGroup(label="", size="small", margin=(4, 6), sx=PLAIN)
-        self._numbers = pn.FlexBox(self.spacing, self.low, self.high, self.count, self.listed)
-        self.view = pn.FlexBox(self.name, self._numbers, self.chosen)
-        for field in (self.name, *self._numbers, self.chosen):
+        self.view = pn.FlexBox(
+            self.name, self.spacing, self.low, self.high, self.count, self.listed, self.chosen
+        )
+        for field in self.view:
             field.param.watch(self._on_field, "value")
 
     def show(self, settings: Settings, text: str) -> None:
@@ -267,7 +270,7 @@ class Span:
             self.spacing.value = in_range if ":" in text else LISTED
         elif definition is not None:
             self.chosen.param.update(options=names_of(definition), value=values.split(","))
-        self._numbers.visible = is_number
+        self._is_number.rx.value = is_number
         self.chosen.visible = definition is not None and not is_number
         self._is_updating = False
 

@@ -162,6 +162,7 @@ class WhatIf:
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
         if self.sweep is None or self.question != before:
+            self._help.object = ""
             self.start()
         else:
             self._draw()
