@@ -10,15 +10,16 @@ from typing import Any
 
 import holoviews as hv
 import numpy as np
+import pandas as pd
 from bokeh.embed import components
 from bokeh.palettes import Viridis256
-from bokeh.plotting import figure
-from bokeh.plotting.contour import contour_data
 from bokeh.resources import Resources
+from contourpy import contour_generator
+from holoviews.util.locator import MaxNLocator
 
 from app.units import unit_for
 from app.views.colors import FORCE, REFERENCE
-from solver.arrays import Array, Flags
+from solver.arrays import Array
 from solver.study.chart import HUES, Chart, Map, Panel, PanelAxis, PanelCurve, Runs
 from solver.study.page import PlotSection
 
@@ -28,10 +29,10 @@ COLORS = (REFERENCE, *HUES)
 """Of curves by their hue."""
 LEVELS = 8
 """Lines of equal value on a map, about."""
+HEIGHT = 350
 LABEL = 34
 """Characters of a line beside an axis."""
 TOOLS = ["box_zoom", "pan", "wheel_zoom", "reset", "save"]
-BY_HUE = {"color": "hue", "cmap": list(COLORS), "clim": (-0.5, len(COLORS) - 0.5)}
 HOVER: dict[str, Any] = {"tools": ["hover"], "hover_tooltips": "@said"}
 THIN = "points", "faint"
 STYLE = """<style>
@@ -40,14 +41,6 @@ STYLE = """<style>
 .key { margin-right: 1rem; white-space: nowrap; }
 </style>"""
 Point = tuple[float, float]
-Path = tuple[Array, Array]
-
-
-def draw(chart: Chart, height: int = 340) -> figure:
-    """Figure of a chart, as wide as there is room for; `keys` are its legend."""
-    made = overlay(in_units(chart), height=height)
-    drawn: figure = hv.renderer("bokeh").get_plot(made).state
-    return drawn
 
 
 def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
@@ -57,7 +50,8 @@ def render(plots: Sequence[PlotSection]) -> tuple[str, Sequence[str]]:
     -------
     What all of them need, and each section (HTML).
     """
-    figures = [draw(chart) for plot in plots for chart in plot.charts]
+    draw = hv.renderer("bokeh").get_plot
+    figures = [draw(overlay(in_units(chart))).state for plot in plots for chart in plot.charts]
     script, places = components(figures, wrap_script=True)
     waiting = iter(places)
     sections = [
@@ -93,73 +87,59 @@ def in_units(chart: Chart) -> Chart:
     """A chart in the units that one reads; the engine gives it in SI."""
     runs = chart.runs
     if isinstance(chart, Map):
-        x_axis, x = _in_unit(chart.x, [chart.x_values])
-        y_axis, y = _in_unit(chart.y, [chart.y_values])
-        scale, z = _in_unit(chart.scale, [chart.z.ravel()])
-        return replace(
-            chart,
-            x=x_axis,
-            y=y_axis,
-            scale=scale,
-            x_values=chart.x_values / x,
-            y_values=chart.y_values / y,
-            z=chart.z / z,
-            level=None if chart.level is None else chart.level / z,
-            runs=replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / z),
-        )
-    drawn = [*chart.curves, *([] if runs is None else [runs])]
-    x_axis, x = _in_unit(chart.x, [each.x for each in drawn])
-    y_axis, y = _in_unit(chart.y, [each.y for each in drawn])
-    curves = tuple(replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves)
-    runs = runs and replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / y)
-    return replace(chart, x=x_axis, y=y_axis, curves=curves, runs=runs)
+        x_axis, x = _in_unit(chart.x, chart.x_values)
+        y_axis, y = _in_unit(chart.y, chart.y_values)
+        scale, size = _in_unit(chart.scale, chart.z.ravel())
+        more = {"x_values": chart.x_values / x, "y_values": chart.y_values / y}
+        more |= {"scale": scale, "z": chart.z / size, "level": chart.level and chart.level / size}
+    else:
+        drawn = [*chart.curves, *([] if runs is None else [runs])]
+        x_axis, x = _in_unit(chart.x, *(each.x for each in drawn))
+        y_axis, y = _in_unit(chart.y, *(each.y for each in drawn))
+        size = y
+        curves = [replace(curve, x=curve.x / x, y=curve.y / y) for curve in chart.curves]
+        more = {"curves": tuple(curves)}
+    if runs is not None:
+        runs = replace(runs, x=runs.x / x, y=runs.y / y, values=runs.values / size)
+    return replace(chart, x=x_axis, y=y_axis, runs=runs, **more)
 
 
-def _in_unit(axis: PanelAxis, values: Sequence[Array]) -> tuple[PanelAxis, float]:
+def _in_unit(axis: PanelAxis, *values: Array) -> tuple[PanelAxis, float]:
     """An axis in the unit in which such values are read, and the size of that unit."""
-    all_values = np.abs(np.concatenate(values)) if values else np.array([])
-    unit = unit_for(float(all_values[np.isfinite(all_values)].max(initial=0.0)), axis.unit)
+    sizes = np.abs(np.concatenate([[0.0], *values]))
+    unit = unit_for(float(sizes[np.isfinite(sizes)].max()), axis.unit)
     limits = axis.limits and (axis.limits[0] / unit.factor, axis.limits[1] / unit.factor)
     return replace(axis, unit=unit.name, limits=limits), unit.factor
 
 
-def form(chart: Chart) -> tuple[Any, ...]:
-    """What of a chart cannot change in a figure: it is drawn anew where this differs."""
-    axes = [chart.x, chart.y, *([chart.scale] if isinstance(chart, Map) else [])]
-    size = (len(chart.curves),) if isinstance(chart, Panel) else (chart.is_sampled,)
-    return (type(chart), *size, *((axis.label, axis.logarithmic) for axis in axes))
-
-
-def overlay(chart: Chart, here: Point = (np.nan, np.nan), height: int = 360) -> hv.Overlay:
+def overlay(chart: Chart, here: Point = (np.nan, np.nan)) -> hv.Overlay:
     """A chart, and a place on its axes that is marked, as HoloViews' elements."""
-    title, is_each = chart.title, False
+    title = chart.title
     if isinstance(chart, Map):
-        made, is_each = _of_map(chart), chart.level is not None
+        made = _of_map(chart)
         xs, ys = chart.x_values, chart.y_values
         title += f" ({chart.scale.unit})" if chart.scale.unit else ""
-        x_limits, y_limits = (
-            tuple(edges(v, a)[[0, -1]]) for v, a in ((xs, chart.x), (ys, chart.y))
-        )
+        x_limits, y_limits = edges(xs, chart.x)[[0, -1]], edges(ys, chart.y)[[0, -1]]
     else:
         made = _of_panel(chart, here)
         xs, ys = (np.concatenate([getattr(c, n) for c in chart.curves] or [[]]) for n in "xy")
         x_limits, y_limits = (axis.limits or (None, None) for axis in (chart.x, chart.y))
     ring = hv.Points([here] if np.isfinite(here).all() else [], ["x", "y"])
-    look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5}
+    # Whether axes follow a chart that fills is asked of elements, not of their overlay.
+    look = {"color": FORCE, "fill_alpha": 0.0, "size": 16, "line_width": 2.5, "framewise": True}
     return hv.Overlay([*made, ring.opts(**look)]).opts(
         title=title,
         logx=chart.x.logarithmic,
         logy=chart.y.logarithmic,
-        xlim=x_limits,
-        ylim=y_limits,
+        xlim=tuple(x_limits),
+        ylim=tuple(y_limits),
         xlabel=textwrap.fill(chart.x.label, 2 * LABEL),
         ylabel=textwrap.fill(chart.y.label, LABEL),
-        xticks=_ticks(chart.x, xs, is_each),
-        yticks=_ticks(chart.y, ys, is_each),
+        xticks=_ticks(chart.x, xs),
+        yticks=_ticks(chart.y, ys),
         padding=(0.03, 0.1),
         responsive=True,
-        height=height,
-        framewise=True,
+        height=HEIGHT,
         show_legend=False,
         show_grid=isinstance(chart, Panel),
         default_tools=TOOLS,
@@ -170,23 +150,31 @@ def overlay(chart: Chart, here: Point = (np.nan, np.nan), height: int = 360) -> 
     )
 
 
+def _even(axis: PanelAxis) -> Any:
+    """Functions from the values of an axis to what is even on it, and back."""
+    return (np.log, np.exp) if axis.logarithmic else (np.asarray, np.asarray)
+
+
 def edges(values: Array, axis: PanelAxis) -> Array:
     """Where cells about n ascending values end, shape (n + 1,)."""
-    v = np.log(values) if axis.logarithmic else values
-    steps = np.diff(v) if len(v) > 1 else np.ones(1)
-    inner = (v[:-1] + v[1:]) / 2.0
-    ends: Array = np.concatenate([[v[0] - steps[0] / 2.0], inner, [v[-1] + steps[-1] / 2.0]])
-    return np.exp(ends) if axis.logarithmic else ends
+    to, back = _even(axis)
+    at = to(values)
+    half = np.diff(at) / 2.0 if len(at) > 1 else np.array([0.5])
+    ends: Array = back(np.concatenate([at[:1] - half[:1], at[:-1] + half, at[-1:] + half[-1:]]))
+    return ends
 
 
-def _ticks(axis: PanelAxis, values: Iterable[float], is_each: bool) -> list[Any] | None:
-    """Names of an axis, its few whole numbers, or each of its values; None for round numbers."""
+def _ticks(axis: PanelAxis, values: Iterable[float]) -> list[Any] | None:
+    """Names of an axis, or its few whole numbers; None for round numbers."""
     if axis.names:
         return list(enumerate(axis.names))
-    if is_each:
-        return [(value, f"{value:g}") for value in values]
     whole = sorted({int(value) for value in values}) if axis.whole else []
     return whole if 0 < len(whole) <= 7 else None
+
+
+def _table(runs: Runs) -> pd.DataFrame:
+    """Runs as HoloViews takes them."""
+    return pd.DataFrame({"x": runs.x, "y": runs.y, "said": np.array(runs.said, dtype=object)})
 
 
 def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
@@ -194,16 +182,21 @@ def _of_panel(panel: Panel, here: Point) -> Iterator[hv.Element]:
         yield from _of_curve(panel, curve)
     if panel.runs is None:
         return
-    runs, known = panel.runs, np.isfinite(panel.runs.y)
+    runs, known = _table(panel.runs), np.isfinite(panel.runs.y)
     low, high = panel.y.limits or (0.0, 1.0)
     # What has no value stands at the upper edge.
     top = high * (low / high) ** 0.03 if panel.y.logarithmic else high - 0.03 * (high - low)
-    dots = {**BY_HUE, **HOVER, "size": 7, "hit_dilation": 2.0, "line_width": 1.6}
     line = hv.Curve(([here[0]] * 2, [low, high]), "x", "y")
     yield line.opts(color=FORCE, line_dash="dotted", line_width=1.5)
-    yield _points(runs, known & ~runs.holds).opts(**dots, fill_alpha=0.0)
-    yield _points(runs, known & runs.holds).opts(**dots)
-    yield _points(replace(runs, y=np.full_like(runs.y, top)), ~known).opts(**dots, marker="x")
+    looks = {
+        "color": np.array(COLORS)[panel.runs.hues],
+        "fill_alpha": panel.runs.holds * 1.0,
+        "marker": np.where(known, "circle", "x"),
+    }
+    table = runs.assign(y=runs["y"].where(known, top), **looks)
+    by_column = {name: name for name in looks}
+    dots = hv.Points(table, ["x", "y"], ["said", *looks])
+    yield dots.opts(**HOVER, **by_column, size=7, hit_dilation=2.0, line_width=1.6)
 
 
 def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
@@ -223,36 +216,23 @@ def _of_curve(panel: Panel, curve: PanelCurve) -> Iterator[hv.Element]:
         yield hv.Points((curve.x, y), ["x", "y"]).opts(color=COLORS[curve.hue], size=6)
 
 
-def _told(runs: Runs, which: Flags) -> dict[str, Any]:
-    said = [runs.said[int(place)] for place in np.flatnonzero(which)]
-    # Whole numbers HoloViews takes for a colour.
-    return {"x": runs.x[which], "y": runs.y[which], "hue": runs.hues[which] * 1.0, "said": said}
-
-
-def _points(runs: Runs, which: Flags) -> hv.Points:
-    return hv.Points(_told(runs, which), ["x", "y"], ["hue", "said"])
-
-
 def _of_map(chart: Map) -> Iterator[hv.Element]:
-    low, high = span(chart)
-    by_value = {
-        **{"color": "value", "cmap": Viridis256, "clim": (low, high), "line_alpha": 0.0},
-        **{"logz": chart.scale.logarithmic, "colorbar": True, "clabel": " "},
-    }
-    runs, holds = chart.runs, chart.runs.holds
-    if chart.is_sampled:
-        rows, columns = np.nonzero(np.isfinite(chart.z))
-        x, y = chart.x_values[columns], chart.y_values[rows]
-        yield _cells(chart, {"x": x, "y": y, "value": chart.z[rows, columns]}).opts(**by_value)
-    else:
-        cells = {**_told(runs, holds), "value": runs.values[holds]}
-        yield _cells(chart, cells).opts(**by_value, **HOVER)
-        hatch = {"glyph.hatch_pattern": {"value": "right_diagonal_line"}}
-        hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
-        hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
-        yield _cells(chart, _told(runs, ~holds)).opts(**hollow, **HOVER)
+    runs, holds = _table(chart.runs), chart.runs.holds
+    rows, columns = np.nonzero(np.isfinite(chart.z))
+    places = {"x": chart.x_values[columns], "y": chart.y_values[rows]}
+    known = pd.DataFrame({**places, "value": chart.z[rows, columns]})
+    yield _cells(chart, known).opts(
+        color="value",
+        cmap=Viridis256,
+        logz=chart.scale.logarithmic,
+        line_alpha=0.0,
+        colorbar=True,
+        clabel=" ",
+    )
     paths, labels = contours(chart)
     yield hv.Contours(paths, ["x", "y"]).opts(color="#000", alpha=0.75, line_width=1.2)
+    if chart.level is not None:
+        labels = known.assign(text=[f"{value:.2g}" for value in known["value"]])
     yield hv.Labels(labels, ["x", "y"], "text").opts(
         text_color="#000",
         text_font_size="11px",
@@ -260,68 +240,50 @@ def _of_map(chart: Map) -> Iterator[hv.Element]:
         background_fill_alpha=0.7,
     )
     if chart.is_sampled:
-        dots = {"color": "#fff", "line_color": "#444", "size": 4, **HOVER}
-        yield _points(runs, holds).opts(**dots)
+        dots = hv.Points(runs[holds], ["x", "y"], "said")
+        yield dots.opts(color="#fff", line_color="#444", size=4, **HOVER)
+    else:
+        # Over each run's cell, for its words; hatched where it is no answer.
+        hatched = runs.assign(hatch=np.where(holds, " ", "right_diagonal_line"))
+        hatch = {"glyph.hatch_pattern": {"field": "hatch"}}
+        hatch |= {"glyph.hatch_color": {"value": REFERENCE}}
+        hollow = {"fill_alpha": 0.0, "line_alpha": 0.0, "backend_opts": hatch}
+        yield _cells(chart, hatched).opts(**hollow, **HOVER)
 
 
-def span(chart: Map) -> tuple[float, float]:
-    """Ends of the scale of colours."""
-    known = chart.z[np.isfinite(chart.z)]
-    if not known.size:
-        return (1.0, 10.0)
-    low, high = float(known.min()), float(known.max())
-    by = 0.1 * abs(low) or 1.0
-    return (low, high) if low < high else (low - by, high + by)
-
-
-def _cells(chart: Map, data: dict[str, Any]) -> hv.Rectangles:
-    """Cells about runs, whose places and more are columns of the data."""
-    columns = np.searchsorted(chart.x_values, data["x"])
-    rows = np.searchsorted(chart.y_values, data["y"])
+def _cells(chart: Map, table: pd.DataFrame) -> hv.Rectangles:
+    """Cells about runs."""
+    columns = np.searchsorted(chart.x_values, table["x"])
+    rows = np.searchsorted(chart.y_values, table["y"])
     x, y = edges(chart.x_values, chart.x), edges(chart.y_values, chart.y)
     sides = {"left": x[columns], "bottom": y[rows], "right": x[columns + 1], "top": y[rows + 1]}
-    return hv.Rectangles({**sides, **data}, list(sides), list(data))
+    return hv.Rectangles(table.assign(**sides), list(sides), list(table))
 
 
-def levels(low: float, high: float, *, is_logarithmic: bool) -> Array:
-    """Values that are easily read, between two others."""
+def levels(values: Array, *, is_logarithmic: bool) -> Array:
+    """Values that are easily read, between others, none where these are the same."""
+    low, high = values.min(initial=np.inf), values.max(initial=-np.inf)
+    if low >= high:
+        return np.array([])
     if is_logarithmic:
         powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)))
         several = np.outer(powers, [1.0, 2.0, 5.0] if len(powers) <= 4 else [1.0]).ravel()
     else:
-        rough = (high - low) / LEVELS
-        power = 10.0 ** np.floor(np.log10(rough))
-        step = power * next(n for n in (1.0, 2.0, 5.0, 10.0) if n * power >= rough)
-        several = step * np.arange(np.ceil(low / step), high / step)
+        several = MaxNLocator(LEVELS).tick_values(low, high)
     return np.asarray(several[(several > low) & (several < high)])
 
 
-def contours(chart: Map) -> tuple[list[Path], list[tuple[float, float, str]]]:
+def contours(chart: Map) -> tuple[list[Array], list[tuple[float, float, str]]]:
     """Lines of equal value, straight between runs on the page, and values with their places."""
-    low, high = span(chart)
-    at = levels(low, high, is_logarithmic=chart.scale.logarithmic)
-    at = at if chart.level is None else np.array([chart.level])
-    paths: list[Path] = []
-    labels: list[tuple[float, float, str]] = []
-    if min(chart.z.shape) > 1 and at.size:
-        axes = chart.x, chart.y, chart.scale
-        x, y, z = (np.log if axis.logarithmic else np.asarray for axis in axes)
-        lines: Any = contour_data(
-            x(chart.x_values), y(chart.y_values), z(chart.z), z(at), want_fill=False
-        ).line_data
-        for number, (level, *path) in enumerate(zip(at, lines.xs, lines.ys, strict=True)):
-            across, up = (
-                np.exp(v) if a.logarithmic else v for v, a in zip(path, axes, strict=False)
-            )
-            known = np.flatnonzero(np.isfinite(across))
-            if known.size:
-                paths.append((across, up))
-            if len(known) >= 4:
-                # Not all in the same place, where lines are close.
-                place = known[len(known) * (1 + number % 3) // 4]
-                labels.append((across[place], up[place], f"{level:.4g}"))
-    if chart.level is not None:
-        rows, columns = np.nonzero(np.isfinite(chart.z))
-        texts = [f"{value:.2g}" for value in chart.z[rows, columns]]
-        labels = list(zip(chart.x_values[columns], chart.y_values[rows], texts, strict=True))
-    return paths, labels
+    if min(chart.z.shape) == 1:
+        return [], []
+    (x, x_back), (y, y_back), (z, _) = map(_even, (chart.x, chart.y, chart.scale))
+    known = chart.z[np.isfinite(chart.z)]
+    several = levels(known, is_logarithmic=chart.scale.logarithmic)
+    at = several if chart.level is None else [chart.level]
+    made = contour_generator(x(chart.x_values), y(chart.y_values), z(chart.z))
+    lines = [(f"{level:.4g}", line.T) for level in at for line in made.lines(z(level))]
+    paths = [np.stack([x_back(across), y_back(up)], 1) for _, (across, up) in lines]
+    # Not all in the same place, where lines are close.
+    places = [len(path) * (1 + number % 3) // 4 for number, path in enumerate(paths)]
+    return paths, [(*p[i], text) for p, i, (text, _) in zip(paths, places, lines, strict=True)]

@@ -2,35 +2,25 @@
 
 from __future__ import annotations
 
-import json
 import pickle
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from html import escape
+from pprint import pformat
+from textwrap import indent
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import panel as pn
 import panel_material_ui as pmui
+from bokeh.document import Document
 from bokeh.embed import file_html
 from bokeh.layouts import column, grid
 from bokeh.model import Model
-from bokeh.models import (
-    ColumnDataSource,
-    CustomJS,
-    Div,
-    GlyphRenderer,
-    PointDrawTool,
-    Range1d,
-    Renderer,
-    SaveTool,
-    Slider,
-    Span,
-)
-from bokeh.models.annotations import TextAnnotation
+from bokeh.models import CustomJS, Div, GlyphRenderer, PointDrawTool, SaveTool, Slider
 from bokeh.resources import INLINE
 from jinja2 import Template
 
@@ -54,43 +44,20 @@ from solver.study.other_programs.fclib import can_write
 LOOK: dict[str, Any] = {"size": "small", "width": 340, "margin": (4, 8)}
 PROGRAM = """\
 from solver.files import scene_settings
-from solver.latin import solve
-from solver.scenes import discretise
-from solver.scenes.method import method_of
-{imports}
-settings = scene_settings({scene}).checked(
-    {{
-{values}    }}
+from solver.study.quantities.finished import finished_run
+
+settings = scene_settings("{scene}").checked(
+    {values}
 )
-problem = discretise(settings)
-{solved}
+solution = finished_run(settings, errors={errors}).solution
 for record in solution.records:
     print(record.iteration, record.indicator, record.error_force)
 print(solution.status.ending)
 """
-ALONE = "", "solution = solve(problem, method_of(settings))"
-COMPARED = (
-    """\
-from solver.reference.choice import reference_of
-from solver.reference.distance import distance_to
-""",
-    """\
-distance = distance_to(reference_of(problem), problem)
-solution = solve(problem, method_of(settings), distance=distance)""",
-)
 MOST_INSTANTS = 60
 HEIGHTS = {"Scene": 260, "Load path": 70}
 HEIGHT = 300
 """Pixels of a figure."""
-MOVING: dict[type[Model], list[str]] = {
-    ColumnDataSource: ["data"],
-    Range1d: ["start", "end"],
-    Span: ["location"],
-    TextAnnotation: ["text"],
-    Div: ["text"],
-    Renderer: ["visible"],
-}
-"""What an instant may change in a figure."""
 PAGE = """<!DOCTYPE html>
 <html lang="en">
 <meta charset="utf-8">
@@ -105,19 +72,12 @@ SHOW = """
 const i = cb_obj.value
 models.forEach((model, n) => { model[names[n]] = values[n][i] })
 """
-Values = dict[tuple[Model, str], Any]
 
 
 def program(settings: Settings) -> str:
     """A Python program that gives the numbers of a run again, with all its settings."""
-    imports, solved = COMPARED if has_reference(settings) else ALONE
-    values = settings.values().items()
-    return PROGRAM.format(
-        imports=imports,
-        scene=json.dumps(settings.scene),
-        values="".join(f"        {json.dumps(name)}: {value!r},\n" for name, value in values),
-        solved=solved,
-    )
+    values = indent(pformat(settings.values(), sort_dicts=False), "    ").lstrip()
+    return PROGRAM.format(scene=settings.scene, values=values, errors=has_reference(settings))
 
 
 def history_table(frame: Frame) -> str:
@@ -176,28 +136,37 @@ def offline_page(
     """
     copies = _copies(views, backend)
     instants, end = frame.run.instants, float(frame.run.instants[-1])
-    columns = thinned(len(instants), MOST_INSTANTS).tolist()
-    at = int(np.argmin(np.abs(np.array(columns) - frame.run.column(selection.phase))))
+    columns = thinned(len(instants), MOST_INSTANTS)
+    at = int(np.argmin(np.abs(columns - frame.run.column(selection.phase))))
+    slider = Slider(
+        start=0, end=len(columns) - 1, value=at, title="Instant", sizing_mode="stretch_width"
+    )
     caption = Div(text="", sizing_mode="stretch_width")
-    models = {model for view in copies for model in view.figure.references()} | {caption}
-    values: list[Values] = []
-    # The one that is looked at comes last, so that the page begins with it.
-    for column_of_instant in [*columns, columns[at]]:
-        time, unit = float(instants[column_of_instant]), unit_for(end, "s")
+    rest = [view.figure for view in copies if view.name not in HEIGHTS]
+    page = Document()
+    page.add_root(
+        column(
+            slider,
+            caption,
+            *(view.figure for view in copies if view.name in HEIGHTS),
+            grid(rest, ncols=2, sizing_mode="stretch_width"),
+            Div(text=_below(frame, views), sizing_mode="stretch_width"),
+            sizing_mode="stretch_width",
+        )
+    )
+
+    def show(place: int) -> None:
+        time, unit = float(instants[columns[place]]), unit_for(end, "s")
         caption.text = f"{escape(frame.run.sentence)} At {unit(time)} of {unit(end)}."
         for view in copies:
             view.update(frame, replace(selection, phase=time / end if end else 0.0), ghost)
-        values.append(_values(models))
-    wide = [view.figure for view in copies if view.name in HEIGHTS]
-    rest = [view.figure for view in copies if view.name not in HEIGHTS]
-    page = column(
-        _slider(values[:-1], at),
-        caption,
-        *wide,
-        grid(rest, ncols=2, sizing_mode="stretch_width"),
-        Div(text=_below(frame, views), sizing_mode="stretch_width"),
-        sizing_mode="stretch_width",
-    )
+
+    changes = _changes(page, len(columns), show)
+    models, names = ([key[i] for key in changes] for i in (0, 1))
+    moved = {"models": models, "names": names, "values": list(changes.values())}
+    slider.js_on_change("value", CustomJS(args=moved, code=SHOW))
+    # The page begins with the one that is looked at.
+    show(at)
     return file_html(
         page,
         INLINE,
@@ -222,41 +191,35 @@ def _copies(views: Sequence[View], backend: str) -> list[View]:
     return copies
 
 
-def _values(models: Iterable[Model]) -> Values:
-    """All that an instant changes in them."""
-    return {
-        (model, name): dict(model.data) if name == "data" else getattr(model, name)
-        for model in models
-        for kind, names in MOVING.items()
-        if isinstance(model, kind)
-        for name in names
-    }
+def _changes(
+    page: Document, count: int, show: Callable[[int], None]
+) -> dict[tuple[Model, str], list[Any]]:
+    """Values of all that differs between so many pictures, by model and property."""
+    changes: dict[tuple[Model, str], list[Any]] = {}
+    page.on_change(lambda event: changes.setdefault((event.model, event.attr), []))
+    # At first it is found out what changes at all.
+    for place in range(count):
+        show(place)
+    for place in range(count):
+        show(place)
+        for (model, name), values in changes.items():
+            value = getattr(model, name)
+            values.append(dict(value) if name == "data" else value)
+    return {key: v for key, v in changes.items() if len(set(map(pickle.dumps, v))) > 1}
 
 
-def _slider(instants: Sequence[Values], at: int) -> Slider:
-    """What moves through the instants, and begins with one of them."""
-    last = len(instants) - 1
-    slider = Slider(start=0, end=last, value=at, title="Instant", sizing_mode="stretch_width")
-    moving = [
-        key for key in instants[0] if len({pickle.dumps(values[key]) for values in instants}) > 1
-    ]
-    arguments = {
-        "models": [model for model, _ in moving],
-        "names": [name for _, name in moving],
-        "values": [[values[key] for values in instants] for key in moving],
-    }
-    slider.js_on_change("value", CustomJS(args=arguments, code=SHOW))
-    return slider
+def _tables(frame: Frame, views: Iterable[View]) -> dict[str, Callable[[], str]]:
+    """What makes the tables of what is seen (CSV), by title."""
+    plots = {view.name: partial(plot_table, view, frame) for view in views}
+    return {"All iterations": partial(history_table, frame), **plots}
 
 
 def _below(frame: Frame, views: Sequence[View]) -> str:
     """Tables and settings (HTML)."""
-    tables = {f"{slug(view)}.csv": plot_table(view, frame) for view in views}
-    tables["iterations.csv"] = history_table(frame)
     links = ", ".join(
-        f'<a download="{name}" href="data:text/csv;base64,'
-        f'{b64encode(text.encode()).decode()}">{name}</a>'
-        for name, text in tables.items()
+        f'<a download="{slug(title)}.csv" href="data:text/csv;base64,'
+        f'{b64encode(make().encode()).decode()}">{slug(title)}.csv</a>'
+        for title, make in _tables(frame, views).items()
     )
     settings = escape(dump(frame.run.settings))
     below = f"<details><summary>All settings</summary><pre>{settings}</pre></details>"
@@ -284,11 +247,10 @@ class TakeAway:
             "The run as one page (.html)": (".html", page),
             "The same, to save plots from as SVG (.html)": ("-svg.html", partial(page, "svg")),
             "The run as a program (.py)": (".py", partial(program, settings)),
-            "All iterations (.csv)": ("-iterations.csv", partial(history_table, frame)),
         }
         offers |= {
-            f"{view.name} (.csv)": (f"-{slug(view)}.csv", partial(plot_table, view, frame))
-            for view in views
+            f"{title} (.csv)": (f"-{slug(title)}.csv", make)
+            for title, make in _tables(frame, views).items()
         }
         name = f"slipfront-{settings.scene}"
         buttons: list[Any] = [
@@ -319,6 +281,6 @@ class TakeAway:
         return column
 
 
-def slug(view: View) -> str:
-    """The name of a view in the name of a file."""
-    return view.name.lower().replace(" ", "-").replace("/", "-")
+def slug(title: str) -> str:
+    """A title in the name of a file."""
+    return title.lower().replace(" ", "-").replace("/", "-")

@@ -36,18 +36,14 @@ WORDS = {
 
 
 def dialog() -> pmui.Dialog:
-    """A dialog that is filled when it is first opened."""
-    made = pmui.Dialog(
-        title="Keys and words", width_option="md", show_close_button=True, close_on_click=True
+    """A dialog of both."""
+    return pmui.Dialog(
+        pn.pane.HTML(f"{_table(HELP)}{_table(WORDS)}", sizing_mode="stretch_width"),
+        title="Keys and words",
+        width_option="md",
+        show_close_button=True,
+        close_on_click=True,
     )
-
-    def fill() -> None:
-        if made.open and not made.objects:
-            tables = f"{_table(HELP)}{_table(WORDS)}"
-            made.append(pn.pane.HTML(tables, sizing_mode="stretch_width"))
-
-    made.param.watch(lambda event: fill(), "open")
-    return made
 
 
 def _table(entries: dict[str, str]) -> str:

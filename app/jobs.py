@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import atexit
 import logging
+import re
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import ClassVar
 
 import panel as pn
 
@@ -29,8 +31,6 @@ LIMIT = 60.0
 PROCESSES = "processes"
 SETTINGS = "settings.toml"
 OUT = "out"
-_lock = threading.Lock()
-_users = 0
 
 
 def follow(look: Callable[[], None], end: Callable[[], None]) -> None:
@@ -50,10 +50,9 @@ def executor() -> Pool:
     """
     named = executor_of_the_server() or PROCESSES
     stack = ExitStack()
-    on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
-    pool = stack.enter_context(opened(on, lasting=False))
     atexit.register(stack.close)
-    return pool
+    on = f"{PROCESSES}:1" if named.startswith(PROCESSES) else named
+    return stack.enter_context(opened(on, lasting=False))
 
 
 class Job:
@@ -76,11 +75,6 @@ class Job:
         self._future = executor().submit(command, tuple(arguments), self.folder)
 
     @property
-    def is_begun(self) -> bool:
-        """Whether its turn has come."""
-        return self._future.running() or self._future.done()
-
-    @property
     def is_over(self) -> bool:
         """Whether nothing more comes."""
         return self._future.done()
@@ -101,7 +95,7 @@ class Job:
     @property
     def progress(self) -> str:
         """How far it is, or why it came to nothing."""
-        if not self.is_begun:
+        if not self._future.running() and not self.is_over:
             return "Waiting: another report is made first."
         if self.is_over:
             return self.failure
@@ -109,11 +103,9 @@ class Job:
 
     @property
     def failure(self) -> str:
-        """Why it came to nothing, or nothing."""
+        """Why it came to nothing in the end, or nothing."""
         if self._is_cancelled:
             return "Cancelled."
-        if not self.is_over:
-            return ""
         if self._future.exception() is not None:
             return "Its process stopped unexpectedly; start it again."
         has_failed = self._future.result() not in (0, 1) or not (self.files or self.lines)
@@ -136,26 +128,11 @@ def share_of(named: str, users: int) -> str:
     A queue for all would have everybody wait for the longest run of anybody. Where no number is
     named, one processor is left to the pages, but of two none: the processes are niced.
     """
-    kind, _, count = named.partition(":")
-    if kind != PROCESSES or (count and not count.isdecimal()) or count == "0":
+    if not re.fullmatch(rf"{PROCESSES}(:[1-9]\d*)?", named):
         return named
+    _, _, count = named.partition(":")
     width = int(count) if count else max(processors() - 1, min(processors(), 2))
     return f"{PROCESSES}:{max(1, width // users)}"
-
-
-@contextmanager
-def shared() -> Iterator[Pool]:
-    """A share of the server's executor."""
-    global _users
-    with _lock:
-        _users += 1
-        share = share_of(executor_of_the_server() or PROCESSES, _users)
-    try:
-        with opened(share, patience(LIMIT)) as pool:
-            yield pool
-    finally:
-        with _lock:
-            _users -= 1
 
 
 class Sweep:
@@ -168,6 +145,8 @@ class Sweep:
     message
         Why it came to nothing, or empty.
     """
+
+    _under_way: ClassVar[set[Sweep]] = set()
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
@@ -195,8 +174,10 @@ class Sweep:
         self._is_cancelled.set()
 
     def _go(self) -> None:
+        named = executor_of_the_server() or PROCESSES
+        self._under_way.add(self)
         try:
-            with shared() as pool:
+            with opened(share_of(named, len(self._under_way)), patience(LIMIT)) as pool:
                 self.rows.extend(
                     sweep(self.plan, pool, limit=LIMIT, cancelled=self._is_cancelled.is_set)
                 )
@@ -206,5 +187,7 @@ class Sweep:
             log.exception("A sweep broke.")
             text = f"{type(trouble).__name__}: {trouble}"
             self.message = f"The executor broke ({text}); start again."
+        finally:
+            self._under_way.discard(self)
         if self._is_cancelled.is_set():
             self.message = "Cancelled."

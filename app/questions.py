@@ -14,7 +14,7 @@ import param
 
 from app.refusals import message_of
 from app.state import SEARCH, answer
-from app.units import Unit, typed, unit_of
+from app.units import typed, unit_of
 from app.worker.references import has_reference
 from solver.definitions import CurveParameter, Parameter, SettingError, about
 from solver.scenes import behind, kind_of, loads_of
@@ -232,22 +232,24 @@ class Span:
 
     def __init__(self, label: str, changed: Callable[[], object], *, is_optional: bool) -> None:
         self._nothing = {"–": ""} if is_optional else {}
-        self._is_updating = False
+        self._changed, self._is_updating = changed, False
         self.name = pmui.Select(label=label, options={"–": ""}, value="", width=260, **FIELD)
-        spacings = [EVEN, DECADES, LISTED]
-        self.spacing = pmui.Select(label="Values in", options=spacings, width=140, **FIELD)
-        self.low = pmui.TextInput(label="from", width=110, **FIELD)
-        self.high = pmui.TextInput(label="to", width=110, **FIELD)
-        self.count = pmui.IntInput(label="Values", value=2, start=2, width=110, **FIELD)
-        self.listed = pmui.TextInput(label="Values", width=330, **FIELD)
+        spacings, self._is_number = [EVEN, DECADES, LISTED], pn.rx(False)
+        self.spacing = pmui.Select(
+            label="Values in", options=spacings, width=140, visible=self._is_number, **FIELD
+        )
+        ends = {"width": 110, "visible": self._is_number & (self.spacing.rx() != LISTED), **FIELD}
+        self.low = pmui.TextInput(label="from", **ends)
+        self.high = pmui.TextInput(label="to", **ends)
+        self.count = pmui.IntInput(label="Values", value=2, start=2, **ends)
+        is_listed = self._is_number & (self.spacing.rx() == LISTED)
+        self.listed = pmui.TextInput(label="Values", width=330, visible=is_listed, **FIELD)
         self.chosen = pmui.CheckButtonGroup(label="", size="small", margin=(4, 6), sx=PLAIN)
         self.view = pn.FlexBox(
             self.name, self.spacing, self.low, self.high, self.count, self.listed, self.chosen
         )
-        self.name.param.watch(lambda event: self._propose(), "value")
-        self.spacing.param.watch(lambda event: self._respace(event.old), "value")
         for field in self.view:
-            field.param.watch(lambda event: self._is_updating or changed(), "value")
+            field.param.watch(self._on_field, "value")
 
     def show(self, settings: Settings, text: str) -> None:
         """Show a setting and its values, in the unit of its control; "" is none."""
@@ -258,31 +260,21 @@ class Span:
         definition = settings.definitions().get(name)
         is_number = isinstance(definition, param.Number)
         if is_number:
-            self._show_numbers(unit_of(definition), values)
+            unit = unit_of(definition)
+            numbers = [f"{v / unit.factor:.10g}" for v in axis_of(settings, text).values]
+            self.low.param.update(label=unit.titled("from"), value=numbers[0])
+            self.high.value, self.count.value = numbers[-1], max(len(numbers), 2)
+            label = unit.titled("Values, separated by commas")
+            self.listed.param.update(label=label, value=", ".join(numbers))
+            in_range = DECADES if text.endswith(LOG) else EVEN
+            self.spacing.value = in_range if ":" in text else LISTED
         elif definition is not None:
             self.chosen.param.update(options=names_of(definition), value=values.split(","))
-        is_listed = self.spacing.value == LISTED
-        self.spacing.visible = is_number
-        self.listed.visible = is_number and is_listed
-        for field in (self.low, self.high, self.count):
-            field.visible = is_number and not is_listed
+        self._is_number.rx.value = is_number
         self.chosen.visible = definition is not None and not is_number
         self._is_updating = False
 
-    def _show_numbers(self, unit: Unit, values: str) -> None:
-        self.low.label = unit.titled("from")
-        self.listed.label = unit.titled("Values, separated by commas")
-        if ":" not in values:
-            shown = ", ".join(f"{float(value) / unit.factor:.10g}" for value in values.split(","))
-            self.spacing.value, self.listed.value = LISTED, shown
-            return
-        low, high, count, *log = values.split(":")
-        self.spacing.value = DECADES if log else EVEN
-        for field, end in ((self.low, low), (self.high, high)):
-            field.value = f"{float(end) / unit.factor:.10g}"
-        self.count.value = int(float(count))
-
-    def text(self, spacing: str) -> str:
+    def text(self) -> str:
         """The setting and its values as the command line takes them, in SI; "" for none.
 
         Raises
@@ -296,30 +288,22 @@ class Span:
         definition = self._settings.definitions()[name]
         if not isinstance(definition, param.Number):
             return f"{name}={','.join(self.chosen.value)}"
-        unit, si, is_listed = unit_of(definition), about(definition).unit, spacing == LISTED
+        is_listed = self.spacing.value == LISTED
         texts = self.listed.value.split(",") if is_listed else [self.low.value, self.high.value]
+        unit, si = unit_of(definition), about(definition).unit
         values = [f"{typed(text, unit, si):.12g}" for text in texts]
         if is_listed:
             return f"{name}={','.join(values)}"
-        return f"{name}={':'.join([*values, str(self.count.value)])}{LOG * (spacing == DECADES)}"
+        log = LOG * (self.spacing.value == DECADES)
+        return f"{name}={':'.join([*values, str(self.count.value)])}{log}"
 
-    def _propose(self) -> None:
-        """Another setting brings its own values."""
-        if not self._is_updating:
-            name = self.name.value
-            self.show(self._settings, proposed(self._settings, name) if name else "")
-
-    def _respace(self, before: str) -> None:
-        """Show the same values in another way, where that can be."""
+    def _on_field(self, event: param.parameterized.Event) -> None:
+        """Have the question changed; another setting brings its own values."""
         if self._is_updating:
             return
-        settings, name, spacing = self._settings, self.name.value, self.spacing.value
-        text = proposed(settings, name)
-        with contextlib.suppress(ValueError, SettingError):
-            text = text if before == LISTED else self.text(before)
-            if spacing == LISTED:
-                text = f"{name}={','.join(f'{v:g}' for v in axis_of(settings, text).values)}"
-        self.show(settings, text.removesuffix(LOG) + LOG * (spacing == DECADES))
+        if event.obj is self.name:
+            self.show(self._settings, proposed(self._settings, event.new) if event.new else "")
+        self._changed()
 
 
 def _titled(definition: Parameter, settings: Settings) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from typing import Any
 
@@ -92,20 +91,16 @@ def _written(value: object, unit: Unit | None = None) -> str:
 
 def nearest_allowed(settings: Settings, name: str, value: float) -> float:
     """The value, or the one that holds nearest to it, on the way there from what is set."""
-    definition, nearest = settings.definitions()[name], getattr(settings, name)
-    is_log = about(definition).logarithmic and min(nearest, value) > 0.0
-    good, bad = (math.log10(end) if is_log else float(end) for end in (nearest, value))
-    place, candidate = bad, value
+    is_whole = isinstance(settings.definitions()[name], param.Integer)
+    nearest, refused, candidate = getattr(settings, name), value, value
     for _ in range(HALVINGS):
         try:
             settings.with_change(name, candidate)
-            good, nearest = place, candidate
+            nearest = candidate
         except RefusedError:
-            bad = place
-        if nearest == value:
+            refused = candidate
+        middle = 0.5 * (nearest + refused)
+        candidate = round(middle) if is_whole else float(f"{middle:.3g}")
+        if candidate in (nearest, refused):
             break
-        place = 0.5 * (good + bad)
-        candidate = 10.0**place if is_log else place
-        is_whole = isinstance(definition, param.Integer)
-        candidate = round(candidate) if is_whole else float(f"{candidate:.3g}")
     return nearest

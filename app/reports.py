@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from html import escape
 from typing import Any
 
@@ -41,7 +40,7 @@ FRAME = (
     '<iframe title="{title}" srcdoc="{page}" '
     'style="width: 100%; height: calc(100vh - 240px); min-height: 300px; border: 0"></iframe>'
 )
-DONE: OrderedDict[tuple[tuple[str, ...], str], dict[str, bytes]] = OrderedDict()
+DONE: dict[tuple[tuple[str, ...], str], dict[str, bytes]] = {}
 """Files of finished reports, by the command and the settings that it had."""
 
 
@@ -60,7 +59,6 @@ class Reports:
         self.state = state
         self.job: Job | None = None
         self.title = ""
-        self._has_paused = False
         self.kind = pmui.RadioButtonGroup(
             label="", options=list(WORDS), value=FIGURES, size="small", margin=(6, 6), sx=PLAIN
         )
@@ -122,6 +120,10 @@ class Reports:
         self.end()
         self._running, self.title = self.command, self.kind.value
         self.job = Job(*self._running)
+        state = self.state
+        self._has_paused = self.title == STUDY and state.running and not state.is_over
+        if self._has_paused:
+            state.pause()
         self._show()
         self.look()
 
@@ -138,23 +140,18 @@ class Reports:
 
     def look(self) -> None:
         """Follow the report that is being made."""
-        job, state = self.job, self.state
+        job = self.job
         if job is None:
             return
-        is_timed = self.title == STUDY and job.is_begun and not job.is_over
-        if is_timed and not self._has_paused and state.running and not state.is_over:
-            self._has_paused = True
-            state.pause()
         self._progress.object = f"{self.title}: {job.progress}" if job.progress else ""
         if not job.is_over:
             return
         if self._has_paused:
-            self._has_paused = False
-            state.go_on()
+            self.state.go_on()
         if not job.failure:
             DONE[self._running] = job.files
             while len(DONE) > KEPT:
-                DONE.popitem(last=False)
+                DONE.pop(next(iter(DONE)))
         job.close()
         self.job = None
         self._show()
@@ -172,13 +169,10 @@ class Reports:
         label = "Do it again" if files else "Start"
         self._start.param.update(disabled=is_busy or is_refused, label=label)
         self._cancel.visible = is_busy
-        page = shown(files)
-        if page != self.page.object or len(files) != len(self.files):
-            self.page.object = page
-            self.files[:] = [
-                download(name, name, lambda data=data: data, **LOOKS)
-                for name, data in files.items()
-            ]
+        self.page.object = shown(files)
+        self.files[:] = [
+            download(name, name, lambda data=data: data, **LOOKS) for name, data in files.items()
+        ]
 
 
 def shown(files: dict[str, bytes]) -> str:

@@ -11,6 +11,7 @@ import param
 
 from solver.definitions import Parameter, about
 from solver.scenes import CATALOGUE, points_of
+from solver.units import size_in
 
 PREFIXES = {"µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 PREFIXED = ("m", "N", "Pa", "J", "N/m", "N/m^3", "N·m", "N·m/m", "rad")
@@ -85,15 +86,14 @@ def typed(text: str, unit: Unit, si: str) -> float:
 
     A ValueError says what to write in place of what is no number, or in another unit.
     """
-    match = TYPED.fullmatch(text.strip().replace("−", "-").replace("μ", "µ"))
+    match = TYPED.fullmatch(text.strip().replace("−", "-"))
     if match is None:
         raise ValueError("write a number")
-    digits, behind = match[1].replace(",", "."), match[2].replace("um", "µm")
     sizes = {**sizes_of(si), "": unit.factor, unit.name: unit.factor}
-    size = sizes.get(behind.replace("^2", "²").replace("^3", "³"))
+    size = sizes.get(match[2]) or size_in(match[2], si)
     if size is None:
         raise ValueError(f"write a number in {unit.name or 'no unit'}")
-    return float(f"{float(digits) * size:.15g}")
+    return float(f"{float(match[1].replace(',', '.')) * size:.15g}")
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -11,13 +11,13 @@ import panel as pn
 import panel_material_ui as pmui
 from bokeh.events import Tap
 
-from app.charts import form, in_units, keys, overlay
+from app.charts import in_units, keys, overlay
 from app.files import download
 from app.jobs import SETTINGS, Job, Sweep, follow
 from app.questions import FIELD, READY, TENTH, Question, Span, quantities, question_of
 from app.refusals import message_of
 from app.state import ANSWER, PageState, answer
-from app.units import number, sizes_of, unit_for
+from app.units import sizes_of, unit_for
 from solver.checked import dump
 from solver.definitions import SettingError
 from solver.settings import Settings
@@ -47,11 +47,12 @@ class WhatIf:
 
     def __init__(self, state: PageState, open_run: Callable[[Settings], None]) -> None:
         self.state, self._open_run = state, open_run
+        self.question = Question((), "")
         self.sweep: Sweep | None = None
         self._seen: tuple[int, bool] = 0, False
         self._job: Job | None = None
         self._is_updating = False
-        self._form: tuple[Any, ...] = ()
+        self._is_logarithmic: bool | None = None
         self._make_fields()
         self._chart = pn.pane.HoloViews(None, sizing_mode="stretch_width", margin=(0, 6))
         table = download("Table (.csv)", "what-if.csv", self.table, **FIELD)
@@ -59,7 +60,7 @@ class WhatIf:
             pn.FlexBox(*self._ready.values(), self._help),
             *(span.view for span in self.spans),
             pn.FlexBox(self._of, self._at, self._start, self._cancel),
-            self._message,
+            self.message,
             self._keys,
             self._chart,
             pn.FlexBox(table, self.mesh, self._meshed),
@@ -69,7 +70,6 @@ class WhatIf:
         state.param.watch(lambda event: self._show(), ["settings", "tab", "question"])
         follow(self.look, self.end)
         self._show()
-        self.start()
 
     def _make_fields(self) -> None:
         self.spans = (
@@ -87,24 +87,19 @@ class WhatIf:
             title: _button(title, lambda title=title: self._on_ready(title)) for title in READY
         }
         self._help = pmui.Typography("", variant="body2", margin=(2, 8))
-        self._message = pmui.Typography("", variant="body2", margin=(2, 8))
+        self.message = pmui.Typography("", variant="body2", margin=(2, 8))
         self._meshed = pmui.Typography("", variant="body2", margin=(10, 8))
         self._keys = pn.pane.HTML("", margin=(4, 8))
-
-    @property
-    def message(self) -> str:
-        """How far the runs are, or what is refused."""
-        return str(self._message.object)
 
     def start(self) -> None:
         """Have the question answered, in place of the one before."""
         refusal = self.question.refusal(self.state.settings)
         if refusal:
-            self._message.object = refusal
+            self.message.object = refusal
             return
         self.cancel()
         self.sweep = Sweep(self.question.plan(self.state.settings))
-        self._form = ()
+        self._is_logarithmic = None
         self._draw()
 
     def cancel(self) -> None:
@@ -144,10 +139,13 @@ class WhatIf:
     # Fields
 
     def _show(self) -> None:
-        """Show the question, of which another scene may know nothing."""
+        """Show the question, of which another scene may know nothing, and have it answered.
+
+        One that was put together in the fields waits until it is to be drawn.
+        """
         if self.state.tab != "What if":
             return
-        settings = self.state.settings
+        settings, before = self.state.settings, self.question
         self.question = question_of(self.state.question, settings)
         self._is_updating = True
         for span, text in zip(self.spans, (*self.question.vary, ""), strict=False):
@@ -163,7 +161,10 @@ class WhatIf:
             button.visible = READY[title][1](settings) is not None
         self.mesh.visible = decides(settings, reading(self.question.of))
         self._start.disabled = self._is_updating = False
-        if self.sweep is not None:
+        if self.sweep is None or self.question != before:
+            self._help.object = ""
+            self.start()
+        else:
             self._draw()
 
     def _change(self) -> None:
@@ -176,19 +177,21 @@ class WhatIf:
             at = self._at.value.strip() or (str(TENTH) if parameter.needed else "")
             of = f"{of}@{at}" if at else of
         try:
-            texts = [span.text(span.spacing.value) for span in self.spans]
+            texts = [span.text() for span in self.spans]
             question = Question(tuple(filter(None, texts)), of)
             refusal = question.refusal(settings)
         except ValueError as problem:
             refusal = f"{problem}."
         self._start.disabled, self._help.object = bool(refusal), ""
-        self._message.object = refusal
+        self.message.object = refusal
         if not refusal:
+            self.question = question
             self.state.question = str(question)
 
     def _on_ready(self, title: str) -> None:
         self._help.object, make = READY[title]
-        self.state.question = str(make(self.state.settings))
+        self.question = make(self.state.settings)
+        self.state.question = str(self.question)
         self.start()
 
     def _on_mesh(self) -> None:
@@ -211,13 +214,14 @@ class WhatIf:
         words = counts(sweep.plan, sweep.rows) if sweep.is_over else sweep.progress
         if sweep.is_over and not _is_of(sweep.plan, self.question.asked(settings)):
             words += " These are runs of other settings: draw them again."
-        self._message.object = f"{sweep.message} {words}".strip()
+        self.message.object = f"{sweep.message} {words}".strip()
         chart = self.chart()
         data = chart, _place_of(sweep.plan, chart, settings)
-        if form(chart) == self._form:
+        scale = chart.scale if isinstance(chart, Map) else chart.y
+        if scale.logarithmic is self._is_logarithmic:
             self._pipe.send(data)
             return
-        self._form, self._keys.object = form(chart), keys([chart])
+        self._is_logarithmic, self._keys.object = scale.logarithmic, keys([chart])
         self._pipe = hv.streams.Pipe(data=data)
         self._chart.object = hv.DynamicMap(
             lambda data: overlay(*data).opts(hooks=[self._listen]), streams=[self._pipe]
@@ -233,7 +237,7 @@ class WhatIf:
         """Open the run of the point at a place on the chart, as the page shows runs."""
         chart, page = self.chart(), self.state.settings
         place = nearest(chart, x, y)
-        if self.sweep is None or chart.runs is None or place is None:
+        if self.sweep is None or place is None:
             return
         plan = self.sweep.plan
         try:
@@ -249,21 +253,19 @@ class WhatIf:
 def nearest(chart: Chart, x: float, y: float) -> int | None:
     """Number in the chart of the run that is meant by a place on it; None where there is none."""
     assert chart.runs is not None
-    ways = []
-    for axis, values, at in ((chart.x, chart.runs.x, x), (chart.y, chart.runs.y, y)):
-        if axis.logarithmic:
-            values, at = np.log(values), np.log(at)
-        known = values[np.isfinite(values)]
-        ways.append((values - at) / ((np.ptp(known) if len(known) else 0.0) or 1.0))
-    far = np.hypot(*ways)
-    if not np.isfinite(far).any():
+    known, away = np.flatnonzero(np.isfinite(chart.runs.y)), 0.0
+    if not known.size:
         return None
-    place = int(np.nanargmin(far))
-    return place if isinstance(chart, Map) or far[place] < NEAR else None
+    for axis, values, at in ((chart.x, chart.runs.x, x), (chart.y, chart.runs.y, y)):
+        scale = np.log if axis.logarithmic else np.asarray
+        places = scale(values[known])
+        away = np.hypot(away, (places - scale(at)) / (np.ptp(places) or 1.0))
+    nearest = int(away.argmin())
+    return int(known[nearest]) if isinstance(chart, Map) or away[nearest] < NEAR else None
 
 
 def _measured(value: float, unit: str) -> str:
-    return unit_for(abs(value), unit)(value, 4) if unit != "%" else f"{number(value, 4)} %"
+    return unit_for(abs(value), unit)(value, 4)
 
 
 def _is_of(plan: Plan, settings: Settings) -> bool:
@@ -274,16 +276,15 @@ def _is_of(plan: Plan, settings: Settings) -> bool:
 
 
 def _place_of(plan: Plan, chart: Chart, settings: Settings) -> tuple[float, float]:
-    """Where settings stand on a chart; NaN off its axes, and above a panel's."""
+    """Where settings stand on a chart; NaN for what it has not, and above a panel's."""
     place = [np.nan, np.nan]
-    axes = ordered(plan) if settings.scene == plan.settings.scene else []
-    shown = [chart.x, chart.y] if is_map(plan) else [chart.x]
-    for i, (axis, across) in enumerate(zip(axes, shown, strict=False)):
-        value = getattr(settings, axis.name)
-        if not axis.is_numeric:
-            place[i] = axis.values.index(value) if value in axis.values else np.nan
-        elif min(axis.values) <= value <= max(axis.values):
-            place[i] = value / sizes_of(plan.unit(axis)).get(across.unit, 1.0)
+    axes = ordered(plan)[: 1 + is_map(plan)] if settings.scene == plan.settings.scene else []
+    for i, axis in enumerate(axes):
+        value, unit = getattr(settings, axis.name), (chart.x, chart.y)[i].unit
+        if axis.is_numeric:
+            place[i] = value / sizes_of(plan.unit(axis)).get(unit, 1.0)
+        elif value in axis.values:
+            place[i] = axis.values.index(value)
     return place[0], place[1]
 
 

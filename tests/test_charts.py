@@ -11,12 +11,12 @@ from typing import Any
 import holoviews as hv
 import numpy as np
 import pytest
-from bokeh.models import ColorBar, ColumnDataSource, GlyphRenderer
+from bokeh.models import ColorBar, ColumnDataSource
 from sweeps import tiny
 
-from app.charts import draw, form, in_units, keys, levels, overlay, render
+from app.charts import in_units, keys, levels, overlay, render
 from solver.study import page
-from solver.study.chart import Panel, PanelAxis, PanelCurve
+from solver.study.chart import Chart, Panel, PanelAxis, PanelCurve
 from solver.study.page import PlotSection, write_page
 from solver.study.sweep import Row
 from solver.study.sweep.chart import chart_of, charts
@@ -41,6 +41,11 @@ ENDS = [
 ]
 
 
+def draw(chart: Chart) -> Any:
+    """Figure of a chart."""
+    return hv.renderer("bokeh").get_plot(overlay(in_units(chart))).state
+
+
 def data_of(figure: Any, column: str) -> list[dict[str, Any]]:
     """Data of all sources that have a column."""
     sources = figure.select({"type": ColumnDataSource})
@@ -57,27 +62,23 @@ def test_values_are_drawn_in_units_that_are_read_but_what_a_scale_cannot_hold() 
 
 def test_a_run_that_did_not_converge_is_hollow_and_says_why() -> None:
     figure = draw(chart_of(LINES, ENDS))
-    points = [
-        renderer
-        for renderer in figure.renderers
-        if isinstance(renderer, GlyphRenderer) and "said" in renderer.data_source.data
-    ]
-    by_fill = {
-        renderer.glyph.fill_alpha: renderer.data_source.data["said"]
-        for renderer in points
-        if renderer.glyph.marker == "circle"
-    }
-    assert "Raise max_iterations." in by_fill[0.0][0]
-    assert len(by_fill[1.0]) == 2
-    (crosses,) = (renderer for renderer in points if renderer.glyph.marker == "x")
-    assert "never" in crosses.data_source.data["said"][0]
+    (runs,) = data_of(figure, "said")
+    looks = dict(
+        zip(runs["said"], zip(runs["fill_alpha"], runs["marker"], strict=True), strict=True)
+    )
+    (hollow,) = (said for said, look in looks.items() if look == (0.0, "circle"))
+    (cross,) = (said for said, (_, marker) in looks.items() if marker == "x")
+    assert "Raise max_iterations." in hollow
+    assert "never" in cross
+    assert list(looks.values()).count((1.0, "circle")) == 2
 
 
 def test_a_map_has_a_cell_for_each_run_contours_their_values_and_a_scale() -> None:
     rows = [replace(row, ending="exhausted") if row.number == 5 else row for row in CELLS]
     figure = draw(chart_of(AREA, rows))
-    cells = sorted(len(data["said"]) for data in data_of(figure, "left"))
-    assert cells == [1, AREA.size - 1]
+    values, runs = sorted(data_of(figure, "left"), key=lambda data: len(data["left"]))
+    assert len(values["left"]) == AREA.size - 1
+    assert [place for place, hatch in enumerate(runs["hatch"]) if hatch.strip()] == [5]
     assert "20" in data_of(figure, "text")[0]["text"]
     assert "(mm)" in figure.title.text
     assert len(figure.select({"type": ColorBar})) == 1
@@ -92,25 +93,28 @@ def test_what_lies_between_few_runs_is_drawn_and_the_runs_upon_it() -> None:
 
 def test_a_chart_that_fills_shows_what_is_new_in_the_same_figure() -> None:
     first, whole = (in_units(chart_of(LINES, rows)) for rows in (ENDS[:1], ENDS))
-    assert form(first) == form(whole)
     pipe = hv.streams.Pipe(data=first)
     filling = hv.DynamicMap(lambda data: overlay(data), streams=[pipe])
     figure = hv.renderer("bokeh").get_plot(filling).state
     pipe.send(whole)
     assert sum(len(data["said"]) for data in data_of(figure, "said")) == 4
+    assert (figure.y_range.start, figure.y_range.end) == whole.y.limits
+    other = replace(whole, y=replace(whole.y, unit="k"))
+    pipe.send(other)
+    assert figure.yaxis.axis_label == other.y.label
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "is_logarithmic", "first"),
-    [(0.0, 10.0, False, 2.0), (1.0, 1000.0, True, 2.0), (3.0, 3.1, False, 3.02)],
+    ("ends", "is_logarithmic", "first"),
+    [([0.0, 10.0], False, 1.5), ([1.0, 1e3], True, 2.0), ([3.0, 3.1], False, 3.015)],
 )
 def test_levels_are_round_numbers_inside_the_scale(
-    low: float, high: float, is_logarithmic: bool, first: float
+    ends: list[float], is_logarithmic: bool, first: float
 ) -> None:
-    values = levels(low, high, is_logarithmic=is_logarithmic)
+    values = levels(np.array(ends), is_logarithmic=is_logarithmic)
     assert values[0] == pytest.approx(first)
-    assert low < values.min()
-    assert values.max() < high
+    assert ends[0] < values.min()
+    assert values.max() < ends[1]
 
 
 def test_a_page_of_a_command_loads_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -246,6 +246,12 @@ def test_a_file_is_settings_or_results_of_another_program_or_a_load_path() -> No
     assert state.settings.values() == default_settings("bar").values()
 
 
+def test_a_number_is_read_in_each_unit_of_its_kind() -> None:
+    assert typed("2 d", Unit("s"), "s") == 172800.0
+    assert typed("2 min", Unit("h", 3600.0), "s") == 120.0
+    assert typed("3 N/mm2", Unit("kPa", 1e3), "Pa") == 3e6
+
+
 def test_a_number_in_another_unit_is_refused() -> None:
     for text in ("5 kg", "1e", "--3", "5 5"):
         with pytest.raises(ValueError, match="write a number"):

@@ -142,7 +142,9 @@ def test_the_dialog_offers_a_file_of_each_plot_in_sight() -> None:
     away.open()
     assert away.view.open
     names = [getattr(offer, "filename", "") for offer in away.view]
-    assert {"slipfront-bar.html", "slipfront-bar.py", "slipfront-bar-iterations.csv"} <= {*names}
+    assert {"slipfront-bar.html", "slipfront-bar.py", "slipfront-bar-all-iterations.csv"} <= {
+        *names
+    }
     assert sum(name.endswith(".csv") for name in names) == 1 + len(away.display.views)
     for offer in away.view[2:5]:
         assert offer.callback().getvalue()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,6 @@ from app.jobs import Job, Sweep, share_of
 from app.questions import READY, Question, bathtub, question_of
 from app.state import PageState, default_settings
 from app.whatif import WhatIf, nearest
-from solver.running.pool import Pool
 from solver.scenes import CATALOGUE
 from solver.settings import Settings
 
@@ -27,12 +26,7 @@ LOADS = Question(("friction=0.2:0.4:3", "peak=600:900:2"), "dissipation")
 def here(monkeypatch: pytest.MonkeyPatch) -> Here:
     """Runs take place in this process."""
     pool = Here()
-
-    @contextmanager
-    def shared() -> Iterator[Pool]:
-        yield pool
-
-    monkeypatch.setattr(jobs, "shared", shared)
+    monkeypatch.setattr(jobs, "opened", lambda named, limit: nullcontext(pool))
     return pool
 
 
@@ -55,7 +49,7 @@ def test_the_tab_opens_with_its_first_chart_drawn() -> None:
     made = asked(LOADS)
     chart = made.chart()
     assert np.isfinite(chart.runs.values).sum() == 6
-    assert "6 of 6 runs: 6 converged" in made.message
+    assert "6 of 6 runs: 6 converged" in made.message.object
     rows = [line for line in made.table().splitlines() if line[:1] not in ("#", "f")]
     assert len(rows) == 6
 
@@ -82,6 +76,17 @@ def test_rows_come_one_by_one_and_cancel_ends_them(
 
 
 @pytest.mark.usefixtures("here")
+def test_the_chart_is_of_another_question_once_one_goes_back_to_it() -> None:
+    made = asked(LOADS)
+    made.spans[1].name.value = ""
+    assert made.question.vary == LOADS.vary[:1]
+    assert made.sweep.plan.size == 6
+    made.state.question = "friction=0.2:0.4:2 dissipation"
+    made.sweep.thread.join()
+    assert made.sweep.plan.size == len(made.sweep.rows) == 2
+
+
+@pytest.mark.usefixtures("here")
 def test_a_tap_on_a_point_opens_its_run_as_the_page_shows_runs() -> None:
     opened: list[Settings] = []
     made = asked(LOADS, opened)
@@ -104,9 +109,9 @@ def test_fields_ask_in_the_units_of_the_controls_and_refuse_in_words() -> None:
     first.spacing.value = "a list"
     assert made.question.vary[0] == "length=0.5,1,2"
     first.listed.value = "1, long"
-    assert "number" in made.message
+    assert "number" in made.message.object
     first.listed.value = "-1, 2"
-    assert "cannot be" in made.message
+    assert "cannot be" in made.message.object
     assert made.question.vary[0] == "length=0.5,1,2"
     first.listed.value = "1, 2"
     second.name.value = "acceleration"
@@ -194,7 +199,7 @@ def test_commands_run_in_turn_to_their_end_and_a_cancelled_one_leaves_nothing() 
 class Done:
     """A job that is over."""
 
-    is_begun, is_over, failure, progress = True, True, "", ""
+    is_over, failure, progress = True, "", ""
 
     def __init__(self, *arguments: Any) -> None:
         link = f'<a href="{reports.PAGE}?scene=bar">a run</a>'
