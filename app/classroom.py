@@ -44,13 +44,13 @@ class Classroom:
     is the last one while there is none; `members` follow.
     """
 
-    def __init__(self, code: str, leader: Member) -> None:
+    def __init__(self, code: str, leader: ClassMember) -> None:
         self.code, self.key = code, secrets.token_hex(8)
         self.leader = leader
-        self.members: list[Member] = []
+        self.members: list[ClassMember] = []
         self._gone_at: float | None = None
         self._lesson = ""
-        self.votes: dict[Member, int] = {}
+        self.votes: dict[ClassMember, int] = {}
         self.is_open = False
 
     @property
@@ -63,12 +63,12 @@ class Classroom:
         """Whether it was ended, or its leader has not come back."""
         return self._gone_at is not None and time.monotonic() - self._gone_at > KEPT
 
-    def lead(self, member: Member) -> None:
+    def lead(self, member: ClassMember) -> None:
         """Have a page lead it, in place of the one that did."""
         self.leader, self._gone_at = member, None
         self.notify()
 
-    def part(self, member: Member) -> None:
+    def part(self, member: ClassMember) -> None:
         """Wait for a leader whose page is closed, or let a follower go."""
         if member is self.leader and not self.is_alone:
             self._gone_at = time.monotonic()
@@ -82,7 +82,7 @@ class Classroom:
         self._gone_at = -math.inf
         self.notify()
 
-    def poll_for(self, member: Member) -> Poll | None:
+    def poll_for(self, member: ClassMember) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
         state = self.leader.state
         if state.lesson not in LESSONS or self.is_over:
@@ -116,7 +116,7 @@ def find(code: str) -> Classroom | None:
     return None if room is None or room.is_over else room
 
 
-def begin_class(leader: Member) -> Classroom:
+def begin_class(leader: ClassMember) -> Classroom:
     """A new class; those that are over are forgotten."""
     for code in [code for code, room in CLASSROOMS.items() if room.is_over]:
         del CLASSROOMS[code]
@@ -127,7 +127,7 @@ def begin_class(leader: Member) -> Classroom:
     return CLASSROOMS[code]
 
 
-class Member(param.Parameterized):
+class ClassMember(param.Parameterized):
     """The part of a page in a class: it leads one, follows one, or neither.
 
     Its worker is ended while it follows. `room` is the class that is led or followed, `left` the
@@ -308,7 +308,7 @@ class ClassDialog:
     what the header's button opens.
     """
 
-    def __init__(self, member: Member) -> None:
+    def __init__(self, member: ClassMember) -> None:
         self._member = member
         self._message = pn.pane.HTML(margin=(4, 8))
         self._act = _button("", lambda: self._offer()[1](), variant="text")

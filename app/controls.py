@@ -64,7 +64,7 @@ PICTURES = {
 }
 
 
-class Control:
+class SettingControl:
     """The widget of one setting: it shows the state's and changes it.
 
     `field` takes the value; of a number it is a text field, which has a `slider`, too. Both stand
@@ -251,7 +251,7 @@ class Controls:
 
     def __init__(self, state: PageState, copy: Callable[[], str]) -> None:
         self._state, self._copy = state, copy
-        self._controls: list[Control] = []
+        self._controls: list[SettingControl] = []
         pictures = {
             f"& .MuiToggleButton-root:nth-of-type({number})::before": _picture(entry.emblem)
             for number, entry in enumerate(CATALOGUE.values(), start=1)
@@ -295,7 +295,7 @@ class Controls:
         self._built = self._scene.value = settings.scene
         self._scene.label = CATALOGUE[settings.scene].title
         chief, groups = _groups_of(type(settings))
-        self._controls = [Control(name, self._state) for name in chief]
+        self._controls = [SettingControl(name, self._state) for name in chief]
         self._chief[:] = [control.view for control in self._controls]
         self._names = list(groups.values())
         self._groups.active = []
@@ -311,7 +311,7 @@ class Controls:
             if column is self._files:
                 column.append(FilesPanel(self._state, self._copy, WIDTH).view)
                 continue
-            controls = [Control(name, self._state) for name in self._names[place]]
+            controls = [SettingControl(name, self._state) for name in self._names[place]]
             self._controls += controls
             column[:] = [control.view for control in controls]
 

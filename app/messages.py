@@ -82,11 +82,10 @@ class Began:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A frame, and whether the run goes on."""
+class NewFrame:
+    """The newest iterate of the run."""
 
     frame: Frame
-    goes_on: bool
 
 
 @dataclass(frozen=True)
@@ -117,4 +116,4 @@ class Alive:
     """A sign of life."""
 
 
-Report = Began | Shown | Costly | Failed | Computed | Alive
+Report = Began | NewFrame | Costly | Failed | Computed | Alive

@@ -10,7 +10,7 @@ import panel_material_ui as pmui
 
 from app import glossary
 from app.browser import listen
-from app.classroom import ClassDialog, Member
+from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.export import TakeAway
 from app.lessons.panel import LessonPanel
@@ -68,7 +68,7 @@ class Page:
             else:
                 state.open()
         self._live = Live(state, document)
-        self._member = Member(state, self._supervisor, document)
+        self._member = ClassMember(state, self._supervisor, document)
         self._lesson = LessonPanel(
             state, self._live.transport, self._on_lesson, self._member.open_counts
         )

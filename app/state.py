@@ -18,11 +18,11 @@ from app.messages import (
     Costly,
     Failed,
     Needs,
+    NewFrame,
     Order,
     Pace,
     Ready,
     Report,
-    Shown,
     Start,
     Step,
 )
@@ -267,7 +267,7 @@ class PageState(param.Parameterized):
         match report:
             case Began(number):
                 self.began = number
-            case Shown(frame, _):
+            case NewFrame(frame):
                 self._show(frame)
             case Costly(number, text) if number == self.number:
                 self.is_costly = True

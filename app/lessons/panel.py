@@ -10,7 +10,7 @@ import panel as pn
 import panel_material_ui as pmui
 import param
 
-from app.controls import Control
+from app.controls import SettingControl
 from app.frame import Selection
 from app.lessons.catalogue import (
     LESSONS,
@@ -26,8 +26,7 @@ from app.lessons.handout import handout
 from app.state import PageState, Poll
 from app.transport import Transport
 from app.views.view import View
-from solver.lessons.lesson import SUBJECTS, Lesson
-from solver.lessons.lesson import Control as ControlPlace
+from solver.lessons.lesson import SUBJECTS, Control, Lesson
 
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1
@@ -54,7 +53,7 @@ class LessonPanel:
         self._state, self._transport = state, transport
         self._changed, self._open_counts = changed, open_counts
         self._texts: list[tuple[pn.pane.Markdown, str]] = []
-        self._controls: list[Control] = []
+        self._controls: list[SettingControl] = []
         self._curve: DrawnCurve | None = None
         self._choices, self._class = pn.Column(margin=0), pn.Column(margin=0)
         self._shown: tuple[str, bool] | None = None
@@ -210,8 +209,8 @@ class LessonPanel:
         """Panes of text, with controls where they are named."""
         shown: list[Any] = []
         for part in (part for text in paragraphs for part in parts_of(text)):
-            if isinstance(part, ControlPlace):
-                self._controls.append(Control(part.setting, self._state))
+            if isinstance(part, Control):
+                self._controls.append(SettingControl(part.setting, self._state))
                 shown.append(self._controls[-1].view)
             elif part:
                 shown.append(self._markdown(part))

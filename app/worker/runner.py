@@ -59,11 +59,6 @@ class Pacing:
             return 0.0
         return None if self._pace == 0.0 else max(self._due - time.monotonic(), 0.0)
 
-    @property
-    def goes_on(self) -> bool:
-        """Whether it does not wait."""
-        return self._pace != 0.0 or self._steps > 0
-
     def _interval(self) -> float:
         if self._pace == WHOLE:
             return FIRST * float((1.0 - FIRST / WHOLE_LASTS) ** self._done)
