@@ -97,7 +97,8 @@ class Live:
             self._cards = self._all[:PRESENTED]
         self._above.visible = not state.is_asked and state.view != "embed"
         self._figures.visible = not state.is_asked
-        self._plots.visible = bool(self._cards)
+        # Without plots the scene has all the height.
+        self._plots.css_classes = ["plots"] if self._cards else []
         # What they hold first: of tabs that change while they are being shown some are lost.
         self._fit()
         if self._is_open:

@@ -14,7 +14,7 @@ from app.classroom import ClassDialog, ClassMember
 from app.controls import Controls
 from app.export import TakeAway
 from app.lessons.panel import LessonPanel
-from app.link import Link, read, show, wait_at
+from app.link import Link, read, show
 from app.live import STYLE, Live, column
 from app.messages import Pace
 from app.reports import Reports
@@ -64,7 +64,7 @@ class Page:
             # The first picture is there once the browser is.
             self._supervisor.begin()
             if iteration:
-                wait_at(state, iteration)
+                state.reset(iteration)
             else:
                 state.open()
         self._live = Live(state, document)

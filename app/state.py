@@ -227,10 +227,10 @@ class PageState(param.Parameterized):
         self.param.update(running=False, iteration=None)
         self.send(Step())
 
-    def reset(self) -> None:
-        """Begin anew, and wait after the first iteration."""
+    def reset(self, iteration: int = 1) -> None:
+        """Begin anew, and wait at an iteration."""
         self.running = False
-        self._start(self.settings, 0.0)
+        self._start(self.settings, 0.0, steps=iteration)
 
     def seek(self, iteration: int | None) -> None:
         """Show an earlier iterate of the run; None, and beyond the last, the newest."""
@@ -243,7 +243,7 @@ class PageState(param.Parameterized):
         place = None if is_newest else frame.iteration
         self.param.update(iteration=place, frame=frame, ghost=self._ghost_at(frame))
 
-    def _start(self, settings: Settings, pace: float | None = None, **how: bool) -> None:
+    def _start(self, settings: Settings, pace: float | None = None, **how: Any) -> None:
         """Order a run; `how` is that of `Start`."""
         self.number += 1
         is_dragged = how.get("is_dragged", False)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show, wait_at
-from app.messages import Needs, Pace, Start, Step
+from app.link import LESSONS, LONGEST, Link, Place, link_of, place_of, query_of, read, show
+from app.messages import Needs, Pace, Start
 from app.state import PageState, default_settings
 from app.worker.references import ReferenceCache
 from app.worker.runner import Runner
@@ -128,14 +128,14 @@ def test_an_address_with_an_iteration_runs_up_to_it() -> None:
     state.send = orders.append
     show(state, read("?instant=0.5")[0])
     assert state.selection.phase == 0.5
-    wait_at(state, 7)
+    state.reset(7)
     start = orders[-1]
     assert isinstance(start, Start)
-    assert start.pace == 0.0
     runner = Runner(start, ReferenceCache(), lambda: False)
-    runner.advance()
-    state._show(runner.frame(Needs()))
-    assert Step(6) in orders
+    while runner.rest() is not None:
+        runner.advance()
+    assert runner.status is None
+    assert runner.frame(Needs()).iteration == 7
     assert not any(isinstance(order, Pace) for order in orders)
 
 

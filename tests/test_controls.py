@@ -8,7 +8,7 @@ from typing import Any
 import param
 import pytest
 
-from app.controls import POINTS, SettingControl, Controls
+from app.controls import POINTS, Controls, SettingControl
 from app.files import FilesPanel
 from app.refusals import nearest_allowed
 from app.state import PageState, default_settings
