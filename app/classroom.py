@@ -33,8 +33,6 @@ RESUMED = "settings", "selection", "lesson", "plots"
 """What the next leader has of the last one's state."""
 SHARED = *RESUMED, "frame", "newest", "ghost", "iteration", "running"
 """What followers have of the leader's state."""
-APART = 10_000
-"""Runs of a page that has left a class are counted so far from the leader's."""
 
 
 class Classroom:
@@ -158,7 +156,10 @@ class ClassMember(param.Parameterized):
         return self.room is not None and self in self.room.members
 
     def enter(self, address: str) -> bool:
-        """Follow the class of an address, or lead it on with its key; whether the page follows."""
+        """Follow the class of an address, or lead it on with its key; whether the page follows.
+
+        Where there is no such class, `message` says so, and all stays as it is.
+        """
         code, _, key = address.partition(".")
         room = find(code)
         if room is None:
@@ -171,9 +172,10 @@ class ClassMember(param.Parameterized):
             self.state.param.update(**{name: getattr(last, name) for name in RESUMED})
             self.state.prediction = last.prediction
             self._lead(room)
-        else:
+        elif room is not self.room:
+            self.leave()
             self._follow(room)
-        return self.follows
+        return room is not None and self.follows
 
     def begin(self) -> None:
         """Begin a class that sees what this page shows."""
@@ -199,9 +201,8 @@ class ClassMember(param.Parameterized):
         state.history = History()
         if state.newest is not None:
             state.history.add(state.newest)
-        state.number += APART
         state.poll = None
-        self.state.room = self._address()
+        state.room = self._address()
         self.message = f"You have left class {room.code}."
         self._supervisor.begin()
         state.run()
@@ -328,13 +329,11 @@ class ClassDialog:
 
     def _offered(self) -> list[Any]:
         self._field = pmui.TextInput(label="Code", max_length=4, size="small", width=120)
-        self._refusal = pn.pane.Markdown(margin=0)
         join = _button("Join", self._join, variant="outlined")
         return [
             pn.pane.Markdown("Whoever joins a class sees what its leader sees, and predicts too."),
             _button("Begin a class", self._begin),
             pn.Row(self._field, join, align="end", margin=(12, 0)),
-            self._refusal,
         ]
 
     def _led(self) -> list[Any]:
@@ -355,12 +354,11 @@ class ClassDialog:
 
     def _join(self) -> None:
         code = self._field.value_input or self._field.value
-        if find(code) is None:
-            self._refusal.object = f"There is no class {code[:4] or 'without a code'}."
-            return
-        self._member.leave()
-        self._member.enter(code)
-        self.dialog.open = False
+        if self._member.enter(code):
+            self.dialog.open = False
+        else:
+            refusal = self._member.message if code else "Write a code."
+            self._field.param.update(error_state=True, helper_text=refusal)
 
     def _end(self) -> None:
         self._member.end()

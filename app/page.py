@@ -111,7 +111,7 @@ class Page:
         """Leave nothing behind."""
         self._member.close()
         self._supervisor.end()
-        PAGES.leave()
+        PAGES.release()
 
     def _header(self, take_away: TakeAway) -> pn.Row:
         actions = {
@@ -184,7 +184,7 @@ class Page:
 def open_page() -> pmui.Page:
     """The page of one session; its run starts when the browser is there."""
     pn.extension(notifications=True, reconnect=True, respect_explicit_sizing=True)
-    if not PAGES.enter():
+    if not PAGES.acquire(blocking=False):
         return pmui.Page(title="Slipfront", main=[pn.pane.HTML(FULL, css_classes=["full"])])
     location = pn.state.location
     place, refusal = read(location.search if location is not None else "")

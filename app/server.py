@@ -6,6 +6,7 @@ import logging
 import os
 import time
 from pathlib import Path
+from threading import Semaphore
 from typing import Any
 
 from tornado.httpserver import HTTPServer
@@ -32,26 +33,6 @@ QUIET = 60.0
 """Seconds between two lines of the log that say the same kind of thing."""
 
 
-class Pages:
-    """A count of the pages that are open."""
-
-    def __init__(self) -> None:
-        self._open = 0
-
-    def enter(self) -> bool:
-        """Count a page, if there is room for it."""
-        has_room = self._open < most_pages()
-        self._open += has_room
-        return has_room
-
-    def leave(self) -> None:
-        """Count a page no more."""
-        self._open -= 1
-
-
-PAGES = Pages()
-
-
 def most_pages() -> int:
     """The most pages that may be open, as set, or as the machine's or container's memory allows."""
     if text := os.environ.get(VARIABLE):
@@ -61,6 +42,10 @@ def most_pages() -> int:
     if limit.exists() and (text := limit.read_text(encoding="ascii").strip()) != "max":
         memory = min(memory, float(text))
     return max(int(SHARE * memory / OF_A_PAGE), 1)
+
+
+PAGES = Semaphore(most_pages())
+"""Room for the pages that may be open."""
 
 
 def configure() -> None:

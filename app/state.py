@@ -6,6 +6,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import Any
 
 import param
@@ -38,6 +39,8 @@ SEARCH = {"start": "zero", "finish": "accuracy"}
 """Settings with which one sees the search from nothing, as a page begins."""
 ANSWER = {"start": "nested", "finish": "at-once"}
 """Settings with which the answer is there at once."""
+RUNS = count(1)
+"""Numbers of the runs of all pages: a page that joins a class, or leaves it, sees no number twice."""
 PACES = {
     "whole in 3 s": WHOLE,
     "1 a second": 1.0,
@@ -245,7 +248,7 @@ class PageState(param.Parameterized):
 
     def _start(self, settings: Settings, pace: float | None = None, **how: Any) -> None:
         """Order a run; `how` is that of `Start`."""
-        self.number += 1
+        self.number = next(RUNS)
         is_dragged = how.get("is_dragged", False)
         self.param.update(is_costly=False, message="", iteration=None, is_dragged=is_dragged)
         self.send(Start(self.number, settings, PACES[self.pace] if pace is None else pace, **how))
