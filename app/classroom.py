@@ -18,9 +18,9 @@ import panel_material_ui as pmui
 import param
 import segno
 
-from app.addresses import address_for_others, how_to_open
 from app.lessons.catalogue import LESSONS
 from app.messages import Needs, Order, Ready
+from app.server import address_for_others, how_to_open
 from app.state import History, PageState, Poll
 from app.supervisor import Supervisor
 
@@ -39,7 +39,8 @@ class Classroom:
     """What the pages of a class have in common.
 
     Whoever has `key` may lead: the page that began the class, after it was loaded again. `leader`
-    is the last one while there is none; `members` follow.
+    is the last one while there is none; `members` follow. `opened` is the lesson whose counts all
+    may see.
     """
 
     def __init__(self, code: str, leader: ClassMember) -> None:
@@ -47,9 +48,7 @@ class Classroom:
         self.leader = leader
         self.members: list[ClassMember] = []
         self._gone_at: float | None = None
-        self._lesson = ""
-        self.votes: dict[ClassMember, int] = {}
-        self.is_open = False
+        self.opened = ""
 
     @property
     def is_alone(self) -> bool:
@@ -72,7 +71,6 @@ class Classroom:
             self._gone_at = time.monotonic()
         elif member in self.members:
             self.members.remove(member)
-            self.votes.pop(member, None)
         self.notify()
 
     def end(self) -> None:
@@ -82,24 +80,25 @@ class Classroom:
 
     def poll_for(self, member: ClassMember) -> Poll | None:
         """What the class predicts, as one of its pages sees it; None without a question."""
-        state = self.leader.state
-        if state.lesson not in LESSONS or self.is_over:
+        leader = self.leader.state
+        if leader.lesson not in LESSONS or self.is_over:
             return None
-        votes = list(self.votes.values())
-        choices = range(len(LESSONS[state.lesson].choices))
+        states = (follower.state for follower in self.members)
+        votes = [state.prediction for state in states if state.lesson == leader.lesson]
+        choices = range(len(LESSONS[leader.lesson].choices))
+        counts = [votes.count(choice) for choice in choices]
         return Poll(
             leads=member.leads,
-            predicted=len(votes),
+            predicted=sum(counts),
             present=len(self.members),
-            counts=tuple(votes.count(choice) for choice in choices) if self.is_open else (),
-            is_answered=state.prediction is not None,
+            counts=tuple(counts) if self.opened == leader.lesson else (),
+            is_answered=leader.prediction is not None,
         )
 
     def notify(self) -> None:
         """Have all pages take what is new; another lesson is predicted anew."""
-        lesson = self.leader.state.lesson
-        if lesson != self._lesson:
-            self._lesson, self.votes, self.is_open = lesson, {}, False
+        if self.opened != self.leader.state.lesson:
+            self.opened = ""
         for member in self.members + [self.leader] * (not self.is_alone):
             member.notify()
 
@@ -140,8 +139,8 @@ class ClassMember(param.Parameterized):
         self.room: Classroom | None = None
         self.left: Classroom | None = None
         self._is_due = False
-        state.param.watch(lambda *events: self._on_change(), [*SHARED, "prediction"])
-        state.param.watch(lambda event: self._vote(event.new), "prediction")
+        state.param.watch(lambda *events: self._on_change(), SHARED)
+        state.param.watch(lambda event: self.room and self.room.notify(), "prediction")
         state.param.watch(lambda event: self._on_address(event.new), "room")
 
     @property
@@ -214,7 +213,7 @@ class ClassMember(param.Parameterized):
 
     def open_counts(self) -> None:
         """Have all see how many predicted what."""
-        self.room.is_open = True
+        self.room.opened = self.state.lesson
         self.room.notify()
 
     def close(self) -> None:
@@ -261,7 +260,7 @@ class ClassMember(param.Parameterized):
         values: dict[str, Any] = {"poll": room.poll_for(self)}
         if self.follows:
             leader = room.leader.state
-            state.history, state.number, state.began = leader.history, leader.number, leader.number
+            state.history, state.number = leader.history, leader.number
             values |= {name: getattr(leader, name) for name in SHARED}
         # Watchers of what is as it was have nothing to do.
         changed = {name: value for name, value in values.items() if value != getattr(state, name)}
@@ -279,12 +278,6 @@ class ClassMember(param.Parameterized):
         if room.is_alone:
             return f"The leader of class {room.code} is away: it waits some minutes."
         return f"You follow class {room.code}. Change anything to go on by yourself."
-
-    def _vote(self, choice: int | None) -> None:
-        """Predict, in place of what was predicted before."""
-        if self.follows and choice is not None and choice >= 0:
-            self.room.votes[self] = choice
-            self.room.notify()
 
     def _address(self) -> str:
         """What the page's address has of the class: its code; of one that is led its key, too."""
@@ -383,5 +376,5 @@ class ClassDialog:
 
 
 def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
-    style = {"variant": "contained", "size": "small", "sx": {"textTransform": "none"}, **more}
+    style = {"variant": "contained", "size": "small", **more}
     return pmui.Button(label=label, on_click=lambda event: act(), **style)

@@ -64,9 +64,10 @@ class Live:
         )
         self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
-        self.view = self._arranged()
-        said = ["running", "message", "refusal", "is_costly"]
-        state.param.watch(lambda *events: self._write(), said)
+        below = column("words", self._sentence, self._figures)
+        parts = self._above, below, self._scene, self._timeline, self._plots
+        self.view = column("live", *parts)
+        state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])
         state.param.watch(lambda *events: self._fit(), ["settings", "plots"])
 
     def prepare(self) -> None:
@@ -114,17 +115,13 @@ class Live:
         seen: list[View] = []
         if self._is_open and self.state.tab == TABS[0]:
             seen = [*self._views, *(view for card in self._cards if (view := card.seen))]
-        self.display.views = seen
+        self.display.look_at(seen)
 
     def _fit(self) -> None:
         if self._is_open:
             for card in self._cards:
                 card.fit()
             self.look()
-
-    def _arranged(self) -> pn.Column:
-        below = column("words", self._sentence, self._figures)
-        return column("live", self._above, below, self._scene, self._timeline, self._plots)
 
     def _write(self) -> None:
         """Bring the words up to the frame."""

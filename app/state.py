@@ -11,22 +11,9 @@ from typing import Any
 
 import param
 
+from app import messages
 from app.frame import Frame, Selection
-from app.messages import (
-    WHOLE,
-    Began,
-    Computed,
-    Costly,
-    Failed,
-    Needs,
-    NewFrame,
-    Order,
-    Pace,
-    Ready,
-    Report,
-    Start,
-    Step,
-)
+from app.messages import Needs, Order, Pace, Ready, Report, Start, Step
 from app.refusals import message_of, nearest_allowed
 from solver.refusal import RefusedError
 from solver.scenes import CATALOGUE
@@ -40,9 +27,9 @@ SEARCH = {"start": "zero", "finish": "accuracy"}
 ANSWER = {"start": "nested", "finish": "at-once"}
 """Settings with which the answer is there at once."""
 RUNS = count(1)
-"""Numbers of the runs of all pages: a page that joins a class, or leaves it, sees no number twice."""
+"""Numbers of the runs of all pages: one that joins a class, or leaves it, meets none twice."""
 PACES = {
-    "whole in 3 s": WHOLE,
+    "whole in 3 s": messages.WHOLE,
     "1 a second": 1.0,
     "5 a second": 5.0,
     "20 a second": 20.0,
@@ -268,19 +255,19 @@ class PageState(param.Parameterized):
     def take(self, report: Report) -> None:
         """Take what the worker reports."""
         match report:
-            case Began(number):
+            case messages.Began(number):
                 self.began = number
-            case NewFrame(frame):
+            case messages.NewFrame(frame):
                 self._show(frame)
-            case Costly(number, text) if number == self.number:
+            case messages.Costly(number, text) if number == self.number:
                 self.is_costly = True
                 self.message = (
                     f"This run would take about {text}: press Run to run it anyway, or choose "
                     "fewer elements, instants or bodies."
                 )
-            case Failed(number, text) if number == self.number:
+            case messages.Failed(number, text) if number == self.number:
                 self.message = text
-            case Computed(result) if self._waiting:
+            case messages.Computed(result) if self._waiting:
                 self._waiting.pop(0)(result)
 
     def _show(self, frame: Frame) -> None:

@@ -43,9 +43,8 @@ class Transport:
         self._playing: tuple[Any, float, float, float] | None = None
         self._moved_at = -math.inf
         self._echoes = Echoes()
-        # Not IconButtons, which keep their first icon.
-        self._run = _button("pause", "Run or pause (space)", self._toggle, changes=True)
-        self.play_button = _button("play_circle", "Play through time (t)", self.play, changes=True)
+        self._run = _button("pause", "Run or pause (space)", self._toggle)
+        self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin)
         self.view = pn.Row(
@@ -191,11 +190,16 @@ class Transport:
         return 0 if newest is None else newest.iteration + newest.is_answer
 
 
-def _button(icon: str, description: str, act: Callable[[], None], *, changes: bool = False) -> Any:
-    """A round button; one whose icon changes is a plain one without a label."""
-    kind, style = pmui.IconButton, {}
-    if changes:
-        kind, style = pmui.Button, {"label": "", "variant": "text", "color": "default", "sx": ROUND}
-    button = kind(icon=icon, description=description, size="small", margin=(2, 2), **style)
-    button.on_click(lambda event: act())
-    return button
+def _button(icon: str, description: str, act: Callable[[], None]) -> pmui.Button:
+    """A button with an icon alone; an IconButton would keep its first one."""
+    return pmui.Button(
+        label="",
+        icon=icon,
+        description=description,
+        on_click=lambda event: act(),
+        variant="text",
+        color="default",
+        size="small",
+        margin=2,
+        sx=ROUND,
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from bokeh.models import FixedTicker, FreehandDrawTool, Range1d
+from bokeh.models import FreehandDrawTool
 from bokeh.plotting import figure
 
 from app.views.colors import FORCE, LATIN
@@ -30,14 +30,14 @@ class DrawnCurve:
             y_axis_type="log",
             x_axis_label=about(lesson.settings.definitions()[lesson.draw]).title,
             y_axis_label=lesson.drawn_quantity.split(" to ")[0],
-            x_range=Range1d(places[0] / 2.0, places[-1] * 2.0),
-            y_range=Range1d(1.0, self._top),
+            x_range=(places[0] / 2.0, places[-1] * 2.0),
+            y_range=(1.0, self._top),
             height=200,
             sizing_mode="stretch_width",
             toolbar_location=None,
             tools="",
         )
-        made.xaxis.ticker = FixedTicker(ticks=places)
+        made.xaxis.ticker = places
         made.xaxis.major_label_overrides = {place: f"{place:g}" for place in places}
         made.min_border = 4
         self.drawn, self.measured = source("xs", "ys"), source("x", "y", "text")

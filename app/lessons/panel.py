@@ -31,8 +31,7 @@ from solver.lessons.lesson import SUBJECTS, Control, Lesson
 PARAGRAPH = [":host p { margin: 0 0 8px; font-size: 15px; line-height: 1.4 }"]
 WITHOUT = -1
 """The prediction of who wants to see the answer without one."""
-SENTENCE = {"& .MuiButton-label": {"textAlign": "left"}, "&": {"textTransform": "none"}}
-LEFT = {**SENTENCE, "&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
+LEFT = {"&.MuiButton-root": {"justifyContent": "flex-start", "textAlign": "left"}}
 
 
 class LessonPanel:
@@ -266,5 +265,5 @@ class LessonPanel:
 
 
 def _button(label: str, act: Callable[[], None], **more: Any) -> pmui.Button:
-    style = {"variant": "contained", "size": "small", "margin": (3, 0), "sx": SENTENCE, **more}
+    style = {"variant": "contained", "size": "small", "margin": (3, 0), **more}
     return pmui.Button(label=label, on_click=lambda event: act(), **style)
