@@ -53,18 +53,15 @@ class Live:
         document.add_periodic_callback(self.display.catch_up, LOOK)
         # While the browser loads.
         document.add_next_tick_callback(self.prepare)
-        wraps = {"css_classes": ["wraps"], "stylesheets": [STYLE]}
-        self.transport.view.param.update(**wraps)
-        self._above = pn.Row(
-            self.transport.view, self._status, sizing_mode="stretch_width", margin=0, **wraps
-        )
+        self._above = pn.FlexBox(self.transport.view, self._status, margin=0)
         self._scene, self._plots = column("scene"), column("plots")
         self._timeline = pn.Row(
             self.transport.play_button, sizing_mode="stretch_width", min_height=56, margin=0
         )
         self._kinds: tuple[type[View], ...] | None = None
         self._is_open = False
-        below = column("words", self._sentence, self._figures)
+        words = self._sentence, self._figures
+        below = pn.FlexBox(*words, justify_content="space-between", margin=0)
         parts = self._above, below, self._scene, self._timeline, self._plots
         self.view = column("live", *parts)
         state.param.watch(lambda *events: self._write(), ["running", "message", "refusal"])

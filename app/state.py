@@ -61,9 +61,6 @@ class History:
     def __init__(self) -> None:
         self._frames: list[Frame] = []
 
-    def __len__(self) -> int:
-        return len(self._frames)
-
     @property
     def newest(self) -> Frame | None:
         """The last frame, the answer where the run has one."""
@@ -78,7 +75,7 @@ class History:
         ):
             self._frames.pop()
         self._frames.append(frame)
-        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self) > 2:
+        while sum(kept.nbytes for kept in self._frames) > LIMIT and len(self._frames) > 2:
             self._frames = [*self._frames[:-1:2], self._frames[-1]]
 
     def at(self, iteration: int) -> Frame:

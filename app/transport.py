@@ -47,7 +47,7 @@ class Transport:
         self.play_button = _button("play_circle", "Play through time (t)", self.play)
         self.play_button.margin = (10, 2)
         self._pin = _button("push_pin", PIN, state.pin)
-        self.view = pn.Row(
+        self.view = pn.FlexBox(
             self._run,
             _button("skip_next", "One iteration (s)", state.step),
             _button("replay", "From the start (r)", state.reset),

@@ -54,7 +54,7 @@ class LessonPanel:
         self._texts: list[tuple[pn.pane.Markdown, str]] = []
         self._controls: list[SettingControl] = []
         self._curve: DrawnCurve | None = None
-        self._choices, self._class = pn.Column(margin=0), pn.Column(margin=0)
+        self._choices = pn.Column(margin=0)
         self._shown: tuple[str, bool] | None = None
         self.view = pn.Column(css_classes=["lesson"], margin=(0, 8), visible=False)
         self.dialog = pmui.Dialog(
@@ -105,13 +105,10 @@ class LessonPanel:
         state, lesson = self._state, self.lesson
         shown = state.lesson, state.is_asked
         if shown != self._shown:
-            if self._shown is None or state.lesson != self._shown[0]:
-                self._curve = None
             self._shown = shown
             self._build(lesson)
         if lesson is not None:
-            self._choices[:] = self._choices_of(lesson, state.poll)
-            self._class[:] = self._of_class(state.poll)
+            self._choices[:] = [*self._choices_of(lesson, state.poll), *self._of_class(state.poll)]
 
     def _offers(self, subject: str) -> pn.Column:
         title = f"#### {'Mechanics' if subject == 'mechanics' else 'The method'}"
@@ -140,9 +137,9 @@ class LessonPanel:
             self._changed()
             return
         state.readings = readings_of(lesson)
-        if lesson.draw and (state.is_asked or self._curve is None):
-            self._curve = DrawnCurve(lesson)
-        if lesson.draw and not state.is_asked:
+        if state.is_asked or self._curve is None or self._curve.lesson is not lesson:
+            self._curve = DrawnCurve(lesson) if lesson.draw else None
+        if self._curve is not None and not state.is_asked:
             # A figure's own models change under the document's lock, which a click does not have.
             pn.state.execute(self._curve.reveal, schedule=True)
         parts = self._question(lesson) if state.is_asked else self._answer(lesson)
@@ -168,7 +165,6 @@ class LessonPanel:
             *self._figures(),
             self._markdown(f"**{lesson.question}**"),
             self._choices,
-            self._class,
             _button("Explore freely", self._end, variant="text"),
         ]
 
@@ -194,7 +190,6 @@ class LessonPanel:
         return [
             self._markdown(f"**{lesson.question}**"),
             self._choices,
-            self._class,
             pmui.Alert(object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"),
             *self._figures(),
             *self._paragraphs(lesson.explanation),
