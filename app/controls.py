@@ -240,7 +240,7 @@ class SettingControl:
             self._dialog = CurveDialog(self.name, self._state)
             self.view.append(self._dialog.view)
         self.update()
-        self._dialog.open()
+        self._dialog.view.open = True
 
 
 class Controls:

@@ -228,15 +228,9 @@ class CurveDialog:
             close_on_click=True,
             width_option="sm",
         )
-        self.update()
-
-    def open(self) -> None:
-        """Show the points, those of the preset where there are none yet."""
-        self.update()
-        self.view.open = True
 
     def update(self) -> None:
-        """Show the points that hold."""
+        """Show the points that hold, those of the preset where there are none yet."""
         settings = self._state.settings
         value = getattr(settings, self._name)
         points = points_of(settings, self._name) if isinstance(value, str) else value

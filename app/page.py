@@ -63,10 +63,8 @@ class Page:
         if not state.room:
             # The first picture is there once the browser is.
             self._supervisor.begin()
-            if iteration:
-                state.reset(iteration)
-            else:
-                state.open()
+            state.reset(iteration or 1)
+            state.running = not iteration
         self._live = Live(state, document)
         self._member = ClassMember(state, self._supervisor, document)
         self._lesson = LessonPanel(

@@ -174,11 +174,6 @@ class PageState(param.Parameterized):
         self.running = True
         self._start(self.settings, is_agreed=is_agreed)
 
-    def open(self) -> None:
-        """Run the settings; a search waits after its first iteration until there is a browser."""
-        is_search = self.settings.finish == SEARCH["finish"]
-        self._start(self.settings, 0.0 if is_search else None)
-
     @property
     def is_over(self) -> bool:
         """Whether the run that was ordered last has ended."""
