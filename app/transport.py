@@ -53,6 +53,7 @@ class Transport:
             _button("replay", "From the start (r)", state.reset),
             self._pin,
             *self._choices(),
+            sizing_mode=None,
             margin=0,
         )
         shown = ["settings", "frame", "newest", "running", "is_costly", "pinned"]
