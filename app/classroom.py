@@ -339,7 +339,7 @@ class ClassDialog:
             below = f'<div style="width: 260px">{svg}</div><p>{escape(link)}</p>'
         else:
             below = how_to_open()
-        return [pn.pane.HTML(large), pn.pane.HTML(below), _button("End the class", self._end)]
+        return [pn.pane.HTML(large + below), _button("End the class", self._end)]
 
     def _begin(self) -> None:
         self._member.begin()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 from urllib.parse import quote
 
@@ -264,7 +263,7 @@ class Controls:
             size="small",
             sx=PICTURES | pictures,
         )
-        self._scene.param.watch(lambda event: self._choose(event.new), "value")
+        self._scene.param.watch(lambda event: state.choose_scene(event.new), "value")
         self._chief = pn.Column(margin=0)
         self._groups = pmui.Accordion(
             margin=(10, 0),
@@ -315,12 +314,7 @@ class Controls:
             self._controls += controls
             column[:] = [control.view for control in controls]
 
-    def _choose(self, scene: str) -> None:
-        if scene != self._state.settings.scene:
-            self._state.choose_scene(scene)
 
-
-@cache
 def _groups_of(kind: Any) -> tuple[list[str], dict[str, list[str]]]:
     """The chief settings of a scene, and all others by group; without those of a single value."""
     definitions = kind.definitions()

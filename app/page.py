@@ -71,7 +71,7 @@ class Page:
         )
         self._class = ClassDialog(self._member)
         self._lesson.view.stylesheets = self._class.view.stylesheets = [STYLE]
-        self._beside = column("beside", self._live.view)
+        self._beside = pn.FlexBox(self._live.view, margin=0)
         self._tabs: dict[str, Any] = {TABS[0]: self._beside}
         self._main = column("main", self._beside)
         take_away, self._words = TakeAway(state, self._live.display), glossary.dialog()
@@ -153,7 +153,6 @@ class Page:
         # What comes in front is appended, and put there by the style sheet: a column whose children
         # change their order loses some of them.
         lesson, line = self._lesson.view, self._class.view
-        self._beside.css_classes = ["beside", *["taught"] * lesson.visible]
         views = (
             (self._beside, [self._live.view] + [lesson] * lesson.visible),
             (self._main, [self._tabs[self.state.tab]] + [line] * line.visible),

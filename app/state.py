@@ -166,8 +166,9 @@ class PageState(param.Parameterized):
         self.run()
 
     def choose_scene(self, scene: str) -> None:
-        """Go to a scene, as it was left."""
-        self.adopt(self._left.get(scene) or default_settings(scene))
+        """Go to another scene, as it was left."""
+        if scene != self.settings.scene:
+            self.adopt(self._left.get(scene) or default_settings(scene))
 
     def run(self, *, is_agreed: bool = False) -> None:
         """Run the settings from the start, at the pace."""
@@ -286,8 +287,8 @@ class PageState(param.Parameterized):
     def send_needs(self, *, is_news: bool = True) -> None:
         """Have frames carry what is seen; a worker that is new is told in any case."""
         seen = self.selection
-        needs = Needs(self.needs, seen.interface, seen.substructure, seen.place, seen.stress)
-        needs = replace(needs, readings=tuple(self.readings), brought=self.brought)
+        looked_at = seen.interface, seen.substructure, seen.place, seen.stress
+        needs = Needs(self.needs, *looked_at, tuple(self.readings), self.brought)
         if is_news or needs != self._sent:
             self._sent = needs
             self.send(needs)
