@@ -242,12 +242,13 @@ def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> 
     with suppress(RefusedError):
         return base.replace(**values)
     messages = {}
-    for name, value in values.items():
+    # A method comes first, as it brings values of others.
+    for name in sorted(values, key=lambda name: name != "method"):
         try:
-            base = base.replace(**{name: value})
+            base = base.replace(**{name: values[name]})
         except RefusedError as refusal:
             is_known = refusal.name in base.definitions()
-            message = message_of(refusal, base, name, value)
+            message = message_of(refusal, base, name, values[name])
             messages[name] = message if is_known else f"{name[:40]}: {refusal.remedy}"
     if len(messages) < len(values):
         # One that was refused may hold beside one that came later.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +45,7 @@ class Live:
         self._status = _words("status", margin=(8, 6), styles={"flex": "1 1 240px"})
         self._sentence, self._figures = _words("sentence"), _words("figures")
         self._views: list[View] = [Scene(state), Timeline(state)]
-        self._all = self._cards = [Card(kinds, state, self.look) for kinds in CARDS]
+        self._all = self._cards = [Card(kinds, state) for kinds in CARDS]
         self.transport = Transport(state, document)
         self.display = Display(state, self._write)
         document.add_root(self.display.pulse)
@@ -90,7 +89,7 @@ class Live:
         state, self._kinds = self.state, kinds
         self._cards = self._all
         if kinds is not None:
-            self._cards = [Card((kind,), state, self.look) for kind in kinds]
+            self._cards = [Card((kind,), state) for kind in kinds]
         elif state.view != "page":
             self._cards = self._all[:PRESENTED]
         self._above.visible = not state.is_asked and state.view != "embed"
@@ -105,7 +104,7 @@ class Live:
         size = LARGE if state.view == "present" else TEXT
         for view in (*self._views, *(view for card in self._cards for view in card.views)):
             view.magnify(size)
-        self.view.css_classes = ["live", *([state.view] if state.view != "page" else [])]
+        self.view.css_classes = ["live", state.view]
 
     def look(self) -> None:
         """Have the views in sight updated, and no others."""
@@ -130,12 +129,10 @@ class Live:
 
 
 class Card:
-    """Views that share a place as tabs, of which one is in sight; `changed` follows each turn."""
+    """Views that share a place as tabs, of which the one that the state names is in sight."""
 
-    def __init__(
-        self, kinds: tuple[type[View], ...], state: PageState, changed: Callable[[], None]
-    ) -> None:
-        self._state, self._changed = state, changed
+    def __init__(self, kinds: tuple[type[View], ...], state: PageState) -> None:
+        self._state = state
         self.views = [kind(state) for kind in kinds]
         self.seen: View | None = None
         self._offered: list[View] = []
@@ -159,7 +156,6 @@ class Card:
         self.tabs.param.update(items=[view.name for view in offered], active=active)
         if is_turned:
             self.view[:] = [self.tabs, self._pane(seen)] if seen is not None else [self.tabs]
-            self._changed()
 
     def _choose(self, place: int) -> None:
         """Have the state name the view of a tab; the first that is offered needs no name."""
@@ -168,7 +164,6 @@ class Card:
             mine = {view.name for view in self.views}
             names = [name for name in self._state.plots.split(",") if name and name not in mine]
             self._state.plots = ",".join([*names, view.name] if place else names)
-            self.fit()
 
     def _pane(self, view: View) -> pn.pane.Bokeh:
         """The figure of a view with the frame; it is made when it is first seen."""

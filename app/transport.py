@@ -40,7 +40,7 @@ class Transport:
 
     def __init__(self, state: PageState, document: Any) -> None:
         self._state, self._document = state, document
-        self._playing: tuple[Any, float, float, float] | None = None
+        self._playing: Any = None
         self._moved_at = -math.inf
         self._echoes = Echoes()
         self._run = _button("pause", "Run or pause (space)", self._toggle)
@@ -120,22 +120,22 @@ class Transport:
         if self._playing is not None:
             self.stop()
             return
-        phase = self._state.selection.phase
-        callback = self._document.add_periodic_callback(self._play_on, TICK)
-        self._playing = callback, time.monotonic(), phase if phase < until else 0.0, until
+        began, phase = time.monotonic(), self._state.selection.phase
+        first = phase if phase < until else 0.0
+
+        def play_on() -> None:
+            share = (time.monotonic() - began) / PLAYED_IN
+            self._state.select(phase=(first + share) % until)
+
+        self._playing = self._document.add_periodic_callback(play_on, TICK)
         self.play_button.icon = "pause_circle"
 
     def stop(self) -> None:
         """Go through time no more."""
         if self._playing is not None:
-            self._document.remove_periodic_callback(self._playing[0])
+            self._document.remove_periodic_callback(self._playing)
             self._playing = None
             self.play_button.icon = "play_circle"
-
-    def _play_on(self) -> None:
-        assert self._playing is not None
-        _, began, phase, until = self._playing
-        self._state.select(phase=(phase + (time.monotonic() - began) / PLAYED_IN) % until)
 
     def _move(self, instants: int) -> None:
         """Select an instant so many later."""

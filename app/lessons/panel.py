@@ -142,9 +142,8 @@ class LessonPanel:
         if self._curve is not None and not state.is_asked:
             # A figure's own models change under the document's lock, which a click does not have.
             pn.state.execute(self._curve.reveal, schedule=True)
-        parts = self._question(lesson) if state.is_asked else self._answer(lesson)
         title = f"<small>{place_of(lesson)}</small>\n\n### {lesson.title}"
-        self.view.param.update(objects=[self._markdown(title), *parts], visible=True)
+        self.view.param.update(objects=[self._markdown(title), *self._parts(lesson)], visible=True)
         self._changed()
         self._look(lesson)
 
@@ -158,46 +157,39 @@ class LessonPanel:
             state.select(phase=Selection.phase if lesson.until == 1.0 else 0.0)
             self._transport.play(lesson.until)
 
-    def _question(self, lesson: Lesson) -> list[Any]:
-        """What is shown before the choice."""
-        return [
-            *self._paragraphs(lesson.text),
-            *self._figures(),
-            self._markdown(f"**{lesson.question}**"),
-            self._choices,
-            _button("Explore freely", self._end, variant="text"),
-        ]
+    def _parts(self, lesson: Lesson) -> list[Any]:
+        """The question, and after the choice the answer with what explains it."""
+        figures = [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
+        question = [self._markdown(f"**{lesson.question}**"), self._choices]
+        explore = _button("Explore freely", self._end, variant="text")
+        if self._state.is_asked:
+            return [*self._paragraphs(lesson.text), *figures, *question, explore]
+        explanation = self._paragraphs(lesson.explanation)
+        buttons = pn.FlexBox(*self._onward(lesson), explore, margin=(8, 0))
+        return [*question, self._verdict(lesson), *figures, *explanation, buttons]
 
-    def _answer(self, lesson: Lesson) -> list[Any]:
-        """What is shown after the choice."""
+    def _verdict(self, lesson: Lesson) -> pmui.Alert:
+        """The right choice and why, in the colour of whether it was predicted."""
         prediction, choice = self._state.prediction, lesson.choices[lesson.right]
         is_right, is_open = prediction == lesson.right, prediction in (None, WITHOUT)
         text = f"{'Right: ' if is_right else ''}{choice}. {lesson.why}"
         severity = "info" if is_open else "success" if is_right else "warning"
-        buttons = [
-            pmui.FileDownload(
-                callback=lambda: handout(self._state, lesson, self._curve),
-                filename=f"{lesson.name}.html",
-                label="Handout",
-                size="small",
-            ),
-            _button("Explore freely", self._end, variant="text"),
-        ]
-        following = dict(pairwise(LESSONS)).get(lesson.name)
-        poll = self._state.poll
-        if following is not None and (poll is None or poll.leads):
-            buttons.insert(0, _button("Next lesson", lambda: self.open(following)))
-        return [
-            self._markdown(f"**{lesson.question}**"),
-            self._choices,
-            pmui.Alert(object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"),
-            *self._figures(),
-            *self._paragraphs(lesson.explanation),
-            pn.FlexBox(*buttons, margin=(8, 0)),
-        ]
+        return pmui.Alert(
+            object=text, severity=severity, margin=(4, 0), sizing_mode="stretch_width"
+        )
 
-    def _figures(self) -> list[Any]:
-        return [pn.pane.Bokeh(self._curve.figure, margin=0)] if self._curve else []
+    def _onward(self, lesson: Lesson) -> list[Any]:
+        """The way to the next lesson, which a follower waits for, and the handout."""
+        on_paper = pmui.FileDownload(
+            callback=lambda: handout(self._state, lesson, self._curve),
+            filename=f"{lesson.name}.html",
+            label="Handout",
+            size="small",
+        )
+        following, poll = dict(pairwise(LESSONS)).get(lesson.name), self._state.poll
+        if following is None or not (poll is None or poll.leads):
+            return [on_paper]
+        return [_button("Next lesson", lambda: self.open(following)), on_paper]
 
     def _paragraphs(self, paragraphs: tuple[str, ...]) -> list[Any]:
         """Panes of text, with controls where they are named."""
