@@ -89,7 +89,7 @@ class Page:
         self._class.view.param.watch(lambda event: self._place(), "visible")
         state.param.watch(lambda event: self._turn(event.new), "tab")
         state.param.watch(lambda event: self._dress(), "view")
-        state.param.watch(lambda *events: self._lesson.update(), ["frame", "selection"])
+        state.param.watch(lambda event: self._lesson.update(), "frame")
         self._turn(state.tab)
         self._lesson.show()
 

@@ -16,8 +16,6 @@ from tornado.httpserver import HTTPServer
 from tornado.web import Application, GZipContentEncoding
 from tornado.websocket import WebSocketClosedError
 
-VARIABLE = "SLIPFRONT_PAGES"
-"""Environment variable with the most pages that may be open."""
 OF_A_PAGE = 150_000_000
 """Bytes that a page may need, most of them in its worker and its history."""
 SHARE = 0.8
@@ -32,7 +30,7 @@ DOCUMENTATION = "192.0.2.1"
 
 def most_pages() -> int:
     """The most pages that may be open, as set, or as the machine's or container's memory allows."""
-    if text := os.environ.get(VARIABLE):
+    if text := os.environ.get("SLIPFRONT_PAGES"):
         return max(int(text), 1)
     memory = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     limit = Path("/sys/fs/cgroup/memory.max")
