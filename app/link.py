@@ -254,8 +254,7 @@ def _together(base: Settings, values: Mapping[str, Any], refused: list[str]) -> 
         # One that was refused may hold beside one that came later.
         return _together(base, {name: values[name] for name in messages}, refused)
     refused.extend(messages.values())
-    # Afresh: param copies what a message reads of the units to the settings, which no pipe takes.
-    return base.replace()
+    return base
 
 
 def too_long(settings: Settings) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -82,6 +83,12 @@ def test_a_part_that_is_refused_is_told_and_the_rest_holds(query: str, told: str
     assert refusal.startswith("From the address: ")
     assert refusal.endswith(".")
     assert (place.settings.peak, place.view) == (1100.0, "embed")
+
+
+def test_settings_whose_path_was_refused_go_to_the_worker_all_the_same() -> None:
+    place, refusal = read("?load=[[0,0],[0,1]]&peak=800")
+    assert refusal
+    assert pickle.loads(pickle.dumps(place.settings)).peak == 800.0
 
 
 def test_settings_that_hold_together_may_stand_in_any_order() -> None:
