@@ -13,7 +13,9 @@ from urllib.parse import SplitResult, urlsplit
 
 import panel as pn
 from tornado.httpserver import HTTPServer
-from tornado.web import Application, GZipContentEncoding
+from tornado.httputil import HTTPServerRequest
+from tornado.routing import Matcher, Rule
+from tornado.web import Application, ErrorHandler, GZipContentEncoding
 from tornado.websocket import WebSocketClosedError
 
 OF_A_PAGE = 150_000_000
@@ -24,6 +26,10 @@ FULL = (
     "<h2>Slipfront is full</h2><p>This server has as many pages open as it can serve. "
     "This page tries again by itself.</p><meta http-equiv=refresh content=20>"
 )
+LONGEST = 16_000
+"""Characters of an address; what is longer is refused (414)."""
+RECEIVED = 1 << 20
+"""Bytes of a request's head that are read at all."""
 DOCUMENTATION = "192.0.2.1"
 """An address that is nobody's (RFC 5737)."""
 
@@ -101,13 +107,24 @@ class PageServer(HTTPServer):
         """Set the application up, as `HTTPServer.initialize` does."""
         if isinstance(request_callback, Application):
             request_callback.add_transform(Compressed)
-        super().initialize(request_callback, **options)
+            request_callback.wildcard_router.rules.insert(0, Rule(Refused(), ErrorHandler))
+        super().initialize(request_callback, **{"max_header_size": RECEIVED, **options})
 
 
 class Compressed(GZipContentEncoding):
     """Compression that takes little time: all pages wait for it."""
 
     GZIP_LEVEL = 1
+
+
+class Refused(Matcher):
+    """Addresses that are too long (414), and paths that no file can have (404)."""
+
+    def match(self, request: HTTPServerRequest) -> dict[str, Any] | None:
+        """With which status an address is refused, if it is."""
+        if len(request.uri or "") > LONGEST:
+            return {"target_kwargs": {"status_code": 414}}
+        return {"target_kwargs": {"status_code": 404}} if "%00" in request.path else None
 
 
 def is_of_an_open_page(record: logging.LogRecord) -> bool:

@@ -6,6 +6,7 @@ import os
 import re
 import signal
 import urllib.request
+from urllib.error import HTTPError
 
 import pytest
 from browser import Chrome, Server
@@ -127,6 +128,18 @@ def test_what_a_foolish_address_has_is_said_on_its_page(visit: Visit) -> None:
     expect(page.locator(".status")).to_contain_text("cannot be −1")
     expect(page.locator(".status")).to_contain_text("moon: there is no such setting")
     is_solved(page)
+
+
+@pytest.mark.parametrize(
+    ("path", "code"), [("/app?load=" + "1" * 20_000, 414), ("/static/%00", 404), ("/moon", 404)]
+)
+def test_what_is_no_address_is_refused(server: Server, path: str, code: int) -> None:
+    before = len(server.log)
+    with pytest.raises(HTTPError) as refused:
+        urllib.request.urlopen(server.root + path)
+    with refused.value as answer:
+        assert answer.code == code
+    assert "Traceback" not in server.log[before:]
 
 
 def test_whoever_speaks_another_language_leaves_a_line_in_the_log(
