@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import socket
+import time
 from contextlib import suppress
 from pathlib import Path
 from threading import Semaphore
@@ -32,6 +33,8 @@ RECEIVED = 1 << 20
 """Bytes of a request's head that are read at all."""
 DOCUMENTATION = "192.0.2.1"
 """An address that is nobody's (RFC 5737)."""
+QUIET = 60.0
+"""Seconds between two lines of the log that say the same kind of thing."""
 
 
 def most_pages() -> int:
@@ -96,7 +99,7 @@ def configure() -> None:
     """Have Tornado, on which Panel serves, make its server of this kind."""
     HTTPServer.configure(PageServer)
     for name in ("bokeh.server.views.ws", "bokeh.server.protocol_handler", "tornado.application"):
-        logging.getLogger(name).addFilter(without_traceback)
+        logging.getLogger(name).addFilter(OneLine())
     logging.getLogger("asyncio").addFilter(is_of_an_open_page)
 
 
@@ -132,7 +135,18 @@ def is_of_an_open_page(record: logging.LogRecord) -> bool:
     return not (record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError))
 
 
-def without_traceback(record: logging.LogRecord) -> bool:
-    """Log a message that is none of Bokeh's in one line."""
-    record.exc_info = record.exc_text = None
-    return True
+class OneLine(logging.Filter):
+    """Log a message that is none of Bokeh's in one line, and seldom."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._last = -QUIET
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Whether a record is logged; its traceback is not."""
+        if record.exc_info is None or record.levelno < logging.ERROR:
+            return True
+        record.exc_info = record.exc_text = None
+        now = time.monotonic()
+        is_due, self._last = now - self._last > QUIET, max(self._last, now)
+        return is_due
